@@ -1,0 +1,80 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tissue_stiffness/settings/model_settings.hpp"
+#include "tissue_stiffness/types/estimate.hpp"
+#include "tissue_stiffness/types/load_sample.hpp"
+#include "tissue_stiffness/types/misfit.hpp"
+#include "tissue_stiffness/types/observation.hpp"
+#include "tissue_stiffness/types/prediction.hpp"
+#include "tissue_stiffness/types/tet_mesh.hpp"
+
+namespace tissue_stiffness {
+
+/// What one step of the estimator gives.
+struct StepResult {
+  bool used = false;          ///< false: the frame was skipped, `reason` says why, the estimate is unchanged
+  std::string reason;
+  Estimate estimate;
+  Misfit misfit;
+  std::map<std::string, double> seconds;  ///< wall time of each stage: predict, observe, update, revisit
+};
+
+/// Whether the data determine a parameter, and why.
+struct Identifiability {
+  std::string verdict;  ///< "absolute", "ratio_only" or "none"
+  std::string reason;
+};
+
+/// The online estimator: frames in order of time go in, the posterior of the model's unknown parameters comes out.
+/// Not thread safe; one instance serves one stream.
+class Estimator {
+ public:
+  /// Throws InputError for a model that does not fit the mesh or the effects' specs.
+  Estimator(const ModelSettings& settings, const TetMesh& mesh);
+  ~Estimator();
+  Estimator(Estimator&&) noexcept;
+
+  /// Topics of the measured loads (pressure, wrench) that the model's effects ask for.
+  const std::vector<LoadInput>& load_inputs() const;
+
+  /// Instant at which the body was at rest [s]: `time.start` counts from the recording's first stamp, which the caller knows.
+  /// Without this call the first frame's or load's time is taken as the first stamp.
+  void set_first_stamp(double time);
+
+  /// Feeds a load. Samples may come in any order up to the frame that needs them; between samples loads are linear in time,
+  /// outside they are held.
+  void add_load(const LoadSample& sample);
+
+  /// Predict, observe, update. A frame that is late, empty or makes the model diverge is skipped with the reason; never throws
+  /// on data.
+  StepResult step(const Frame& frame);
+
+  /// Back to the prior; loads and frames are forgotten.
+  void reset();
+
+  const TetMesh& mesh() const;
+  const Estimate& estimate() const;
+  /// Displacement of every mesh node at the last frame, at the estimate [m].
+  const Eigen::Matrix3Xd& displacement() const;
+  /// The last frame's measurement against the model at the estimate.
+  const Prediction& prediction() const;
+  /// By parameter name.
+  std::map<std::string, Identifiability> identifiability() const;
+  /// What the estimator chose by itself, one line each (engine, time step, basis size, nodes), for logs and reports.
+  std::vector<std::string> description() const;
+
+  /// The free run from rest to the last frame at the final estimate, compared with every frame kept: what rms_error,
+  /// relative_error and the reports are made of. One misfit a kept frame.
+  std::vector<Misfit> free_run() const;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace tissue_stiffness

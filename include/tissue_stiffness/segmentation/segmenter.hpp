@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+#include <opencv2/core/mat.hpp>
+#include <string>
+
+#include "tissue_stiffness/settings/model_settings.hpp"
+#include "tissue_stiffness/types/contour.hpp"
+
+namespace tissue_stiffness {
+
+/// Outcome of one image: a contour, or the reason why there is none (`contour` is then empty).
+struct Segmentation {
+  Contour contour;
+  std::string reason;
+  bool found() const { return !contour.empty(); }
+};
+
+/// Finds the outline of the tissue in a sequence of 8-bit images. Keeps what it learnt from earlier frames, so that
+/// neighbouring frames agree; a frame in which nothing is found leaves that memory as it was.
+class Segmenter {
+ public:
+  virtual ~Segmenter() = default;
+  /// `image`: CV_8UC1 or CV_8UC3 (BGR). Never throws on content; throws InputError on another type or an empty image.
+  virtual Segmentation segment(const cv::Mat& image, double stamp) = 0;
+  /// Forgets all earlier frames.
+  virtual void reset() = 0;
+};
+
+std::unique_ptr<Segmenter> make_segmenter(const SegmentationSettings& settings);
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tissue_stiffness {
+
+/// A number of the model file: known, or estimated with a prior. `{prior: m, factor: f}` is log-normal with median m and
+/// 1-sigma factor f > 1; `{mean: m, std: s}` is normal.
+struct Quantity {
+  enum class Kind { known, log_normal, normal };
+  Kind kind = Kind::known;
+  double value = 0.0;   ///< known value, median, or mean
+  double spread = 0.0;  ///< factor (log_normal) or standard deviation (normal)
+
+  bool estimated() const { return kind != Kind::known; }
+};
+
+/// One node of a settings tree, whatever it came from (a YAML file, ROS parameters). Every value knows its path
+/// ("model.yaml:12: effects[1].elasticity.law") and whether it was read, so that a key nobody reads is an error.
+class Value {
+ public:
+  enum class Type { null, boolean, number, text, list, map };
+
+  static Value null(std::string path);
+  static Value boolean(bool value, std::string path);
+  static Value number(double value, std::string path);
+  static Value text(std::string value, std::string path);
+  static Value list(std::vector<Value> items, std::string path);
+  static Value map(std::vector<std::pair<std::string, Value>> entries, std::string path);
+
+  Type type() const { return type_; }
+  const std::string& path() const { return path_; }
+  std::string shown() const;  ///< the value as a user would write it, shortened
+
+  bool has(const std::string& key) const;
+  std::vector<std::string> keys() const;
+
+  /// Entry of a map; marks it read. Throws InputError when missing, naming the keys that are there.
+  const Value& at(const std::string& key) const;
+  const std::vector<Value>& items() const;  ///< throws InputError unless a list; marks read
+
+  // Each conversion marks the value read and throws InputError(path, shown, allowed) when it does not fit.
+  double as_number(double lower, double upper, const std::string& unit) const;
+  int as_integer(int lower, int upper) const;
+  bool as_boolean() const;
+  std::string as_text() const;
+  std::string as_choice(const std::vector<std::string>& allowed) const;
+  Eigen::Vector3d as_vector3(const std::string& unit) const;
+  Quantity as_quantity(double lower, double upper, const std::string& unit) const;
+
+  /// The same with a default when the key is absent.
+  double number_or(const std::string& key, double fallback, double lower, double upper, const std::string& unit) const;
+  std::string text_or(const std::string& key, const std::string& fallback) const;
+
+  void mark_read_deep() const;
+  /// Throws InputError naming the first key below this value that nobody read, with the keys that were asked for there.
+  void require_all_read() const;
+
+ private:
+  Type type_ = Type::null;
+  std::string path_;
+  bool boolean_ = false;
+  double number_ = 0.0;
+  std::string text_;
+  std::vector<Value> items_;
+  std::vector<std::pair<std::string, Value>> entries_;
+  mutable bool read_ = false;
+  mutable std::vector<std::string> asked_;
+};
+
+/// Parses a YAML file. Throws InputError naming file and line for a file that is missing or not YAML.
+Value load_yaml(const std::string& file);
+
+/// Parses YAML text; `name` stands for the file in messages.
+Value parse_yaml(const std::string& text, const std::string& name);
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <limits>
+
+namespace tissue_stiffness {
+
+/// The sensor behind a contour. For a pinhole camera u = fx x/z + cx with x, y, z in the optical frame (z forward, REP-103)
+/// and plumb_bob distortion; for an ultrasound slice u = fx x + cx with fx in pixel/m and the image in the plane z = 0.
+struct Camera {
+  enum class Projection { pinhole, slice };
+
+  Projection projection = Projection::pinhole;
+  int width = 0, height = 0;                 ///< [pixel]
+  double fx = 0, fy = 0, cx = 0, cy = 0;     ///< [pixel], or [pixel/m] for a slice
+  Eigen::Matrix<double, 5, 1> distortion = Eigen::Matrix<double, 5, 1>::Zero();  ///< plumb_bob k1 k2 p1 p2 k3
+  Eigen::Isometry3d model_from_sensor = Eigen::Isometry3d::Identity();           ///< tf2's pose of the sensor in `model`
+
+  /// Pinhole or slice projection of a point of the model frame [m] to the undistorted image [pixel].
+  /// NaN for a point at or behind the pinhole.
+  Eigen::Vector2d project(const Eigen::Vector3d& point) const {
+    const Eigen::Vector3d p = model_from_sensor.inverse() * point;
+    if (projection == Projection::slice) return {fx * p.x() + cx, fy * p.y() + cy};
+    if (p.z() <= 0.0) return Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+    return {fx * p.x() / p.z() + cx, fy * p.y() / p.z() + cy};
+  }
+};
+
+}  // namespace tissue_stiffness
