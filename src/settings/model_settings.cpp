@@ -1,0 +1,112 @@
+#include "tissue_stiffness/settings/model_settings.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+
+#include "tissue_stiffness/settings/read_sections.hpp"
+#include "tissue_stiffness/settings/suggestion.hpp"
+#include "tissue_stiffness/types/error.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double positive = std::numeric_limits<double>::min();
+
+/// `- name: {...}`, or `- name` for an effect without keys.
+EffectSettings read_effect(const Value& entry) {
+  EffectSettings effect;
+  if (entry.type() == Value::Type::text) {
+    effect.name = entry.as_text();
+    effect.arguments = Value::map({}, entry.path());
+    return effect;
+  }
+  const std::vector<std::string> keys = entry.keys();
+  if (keys.size() != 1) throw InputError(entry.path(), entry.shown(), "one effect an entry, `- name: {...}`");
+  effect.name = keys.front();
+  effect.arguments = entry.at(effect.name);  // copied unread: the effects layer asks for what it knows
+  if (effect.arguments.type() == Value::Type::null) effect.arguments = Value::map({}, effect.arguments.path());
+  if (effect.arguments.type() != Value::Type::map) {
+    throw InputError(effect.arguments.path(), effect.arguments.shown(), "a map of the effect's keys");
+  }
+  entry.mark_read_deep();
+  return effect;
+}
+
+std::vector<EffectSettings> read_effects(const Value& list) {
+  std::vector<EffectSettings> effects;
+  std::map<std::string, int> count;
+  for (const Value& entry : list.items()) {
+    EffectSettings effect = read_effect(entry);
+    const int number = ++count[effect.name];
+    effect.label = number == 1 ? effect.name : effect.name + "#" + std::to_string(number);
+    effects.push_back(std::move(effect));
+  }
+  if (effects.empty()) throw InputError(list.path(), "an empty list", "at least one effect");
+  return effects;
+}
+
+TimeSettings read_time(const Value& map) {
+  TimeSettings time;
+  time.start = map.number_or("start", 0.0, -infinity, infinity, "s");
+  time.step = map.number_or("step", 0.0, positive, infinity, "s");
+  return time;
+}
+
+InitialSettings read_initial(const Value& map) {
+  InitialSettings initial;
+  const Value& velocity = map.at("velocity");
+  if (velocity.type() == Value::Type::text) {
+    velocity.as_choice({"from_frames"});
+    initial.kind = InitialSettings::Kind::from_frames;
+  } else if (velocity.type() == Value::Type::list) {
+    initial.kind = InitialSettings::Kind::velocity;
+    initial.velocity = velocity.as_vector3("m/s");
+  } else {
+    throw InputError(velocity.path(), velocity.shown(), "[x, y, z] [m/s] or from_frames");
+  }
+  return initial;
+}
+
+/// A contour can only belong to a region that exists.
+void check_regions(const ModelSettings& model, const Value& observations) {
+  std::vector<std::string> names;
+  for (const RegionSettings& region : model.regions) names.push_back(region.name);
+  for (std::size_t i = 0; i < model.observations.size(); ++i) {
+    const std::string& region = model.observations[i].region;
+    if (region.empty() || std::find(names.begin(), names.end(), region) != names.end()) continue;
+    throw InputError(observations.items()[i].at("contour").at("region").path(),
+                     "`" + region + "`" + did_you_mean(region, names), "the regions of this model: " + join(names));
+  }
+}
+
+}  // namespace
+
+ModelSettings read_model(const Value& root, const std::string& directory) {
+  if (root.type() != Value::Type::map)
+    throw InputError(root.path(), root.shown(), "a model: a map with mesh, effects, ...");
+  ModelSettings model;
+  model.name = root.path();
+  model.directory = directory;
+  model.mesh = read_mesh(root.at("mesh"), directory);
+  if (root.has("regions")) model.regions = read_regions(root.at("regions"));
+  model.effects = read_effects(root.at("effects"));
+  model.observations = read_observations(root.at("observations"));
+  if (root.has("time")) model.time = read_time(root.at("time"));
+  if (root.has("initial")) model.initial = read_initial(root.at("initial"));
+  if (root.has("estimator")) {
+    const bool paper = root.at("estimator").as_choice({"unscented", "paper"}) == "paper";
+    model.estimator = paper ? EstimatorKind::paper : EstimatorKind::unscented;
+  }
+  root.require_all_read();
+  check_regions(model, root.at("observations"));
+  return model;
+}
+
+ModelSettings load_model(const std::string& file) {
+  const std::size_t slash = file.find_last_of('/');
+  return read_model(load_yaml(file), slash == std::string::npos ? "." : file.substr(0, slash + 1));
+}
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,104 @@
+#include <limits>
+
+#include "tissue_stiffness/settings/read_sections.hpp"
+#include "tissue_stiffness/types/error.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double positive = std::numeric_limits<double>::min();
+
+std::string resolved(const std::string& file, const std::string& directory) {
+  if (file.front() == '/' || directory.empty()) return file;
+  return directory.back() == '/' ? directory + file : directory + "/" + file;
+}
+
+Eigen::Vector3d read_direction(const Value& value) {
+  const Eigen::Vector3d direction = value.as_vector3("");
+  if (direction.norm() < positive) throw InputError(value.path(), value.shown(), "a direction, not zero");
+  return direction.normalized();
+}
+
+void read_revolve(const Value& map, MeshSettings& mesh) {
+  mesh.source = MeshSettings::Source::revolve;
+  map.at("contour").as_choice({"first"});
+  mesh.axis = read_direction(map.at("axis"));
+  mesh.max_edge_length = map.number_or("max_edge_length", 0.0, positive, infinity, "m");
+}
+
+void read_extrude(const Value& map, MeshSettings& mesh) {
+  mesh.source = MeshSettings::Source::extrude;
+  map.at("contour").as_choice({"first"});
+  mesh.depth = map.at("depth").as_number(positive, infinity, "m");
+  mesh.max_edge_length = map.number_or("max_edge_length", 0.0, positive, infinity, "m");
+}
+
+Eigen::Vector3d read_radii(const Value& value) {
+  const Eigen::Vector3d radii = value.as_vector3("m");
+  if (!(radii.array() > 0.0).all()) throw InputError(value.path(), value.shown(), "three numbers > 0 [m]");
+  return radii;
+}
+
+BoxShape read_box(const Value& map) {
+  const BoxShape box{map.at("min").as_vector3("m"), map.at("max").as_vector3("m")};
+  if ((box.min.array() > box.max.array()).any()) {
+    throw InputError(map.at("min").path(), map.at("min").shown(), "min <= max = " + map.at("max").shown());
+  }
+  return box;
+}
+
+VertexShape read_vertices(const Value& list) {
+  VertexShape shape;
+  for (const Value& item : list.items()) shape.vertices.push_back(item.as_integer(0, std::numeric_limits<int>::max()));
+  if (shape.vertices.empty()) throw InputError(list.path(), "an empty list", "at least one vertex number");
+  return shape;
+}
+
+RegionSettings read_region(const std::string& name, const Value& map) {
+  const std::string allowed = "one of box, sphere, ellipsoid, half_space, vertices";
+  if (map.type() != Value::Type::map || map.keys().size() != 1) throw InputError(map.path(), map.shown(), allowed);
+  if (map.has("box")) return {name, read_box(map.at("box"))};
+  if (map.has("sphere")) {
+    const Value& sphere = map.at("sphere");
+    return {name, SphereShape{sphere.at("center").as_vector3("m"), sphere.at("radius").as_number(positive, infinity, "m")}};
+  }
+  if (map.has("ellipsoid")) {
+    const Value& ellipsoid = map.at("ellipsoid");
+    return {name, EllipsoidShape{ellipsoid.at("center").as_vector3("m"), read_radii(ellipsoid.at("radii"))}};
+  }
+  if (map.has("half_space")) {
+    const Value& half_space = map.at("half_space");
+    return {name, HalfSpaceShape{half_space.at("point").as_vector3("m"), read_direction(half_space.at("normal"))}};
+  }
+  if (map.has("vertices")) return {name, read_vertices(map.at("vertices"))};
+  throw InputError(map.path(), map.shown(), allowed);
+}
+
+}  // namespace
+
+MeshSettings read_mesh(const Value& map, const std::string& directory) {
+  MeshSettings mesh;
+  const int sources = (map.has("file") ? 1 : 0) + (map.has("revolve") ? 1 : 0) + (map.has("extrude") ? 1 : 0);
+  if (sources != 1) throw InputError(map.path(), map.shown(), "exactly one of file, revolve, extrude");
+  if (map.has("revolve")) {
+    read_revolve(map.at("revolve"), mesh);
+  } else if (map.has("extrude")) {
+    read_extrude(map.at("extrude"), mesh);
+  } else {
+    mesh.file = resolved(map.at("file").as_text(), directory);
+    mesh.scale = map.number_or("scale", 1.0, positive, infinity, "");
+    mesh.max_edge_length = map.number_or("max_edge_length", 0.0, positive, infinity, "m");
+  }
+  if (map.has("order")) mesh.order = map.at("order").as_integer(1, 2);
+  return mesh;
+}
+
+std::vector<RegionSettings> read_regions(const Value& map) {
+  if (map.type() != Value::Type::map) throw InputError(map.path(), map.shown(), "a map of named regions");
+  std::vector<RegionSettings> regions;
+  for (const std::string& name : map.keys()) regions.push_back(read_region(name, map.at(name)));
+  return regions;
+}
+
+}  // namespace tissue_stiffness

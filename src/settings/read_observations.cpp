@@ -1,0 +1,82 @@
+#include <limits>
+
+#include "tissue_stiffness/settings/read_sections.hpp"
+#include "tissue_stiffness/settings/suggestion.hpp"
+#include "tissue_stiffness/types/error.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+using Kind = ObservationSettings::Kind;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double positive = std::numeric_limits<double>::min();
+
+Eigen::Matrix3Xd read_rest(const Value& list) {
+  const std::vector<Value>& rows = list.items();
+  if (rows.empty()) throw InputError(list.path(), "an empty list", "at least one rest position [x, y, z] [m]");
+  Eigen::Matrix3Xd rest(3, static_cast<Eigen::Index>(rows.size()));
+  for (std::size_t i = 0; i < rows.size(); ++i) rest.col(static_cast<Eigen::Index>(i)) = rows[i].as_vector3("m");
+  return rest;
+}
+
+Eigen::Vector2d read_pixel(const Value& list) {
+  const std::vector<Value>& items = list.items();
+  if (items.size() != 2) throw InputError(list.path(), list.shown(), "two numbers [u, v] [pixel]");
+  return {items[0].as_number(0.0, infinity, "pixel"), items[1].as_number(0.0, infinity, "pixel")};
+}
+
+SegmentationSettings read_segmentation(const Value& map) {
+  SegmentationSettings segmentation;
+  const bool cavity = map.at("kind").as_choice({"silhouette", "cavity"}) == "cavity";
+  segmentation.kind = cavity ? SegmentationSettings::Kind::cavity : SegmentationSettings::Kind::silhouette;
+  if (map.has("seed")) segmentation.seed = read_pixel(map.at("seed"));
+  return segmentation;
+}
+
+void read_contour(const Value& map, ObservationSettings& observation) {
+  observation.topic = map.at("image").as_text();
+  observation.camera_info = map.at("camera_info").as_text();
+  if (map.has("segmentation")) observation.segmentation = read_segmentation(map.at("segmentation"));
+  if (map.has("projection")) {
+    const bool slice = map.at("projection").as_choice({"silhouette", "slice"}) == "slice";
+    observation.projection = slice ? ObservationSettings::Projection::slice : ObservationSettings::Projection::silhouette;
+  }
+  observation.region = map.text_or("region", "");
+}
+
+ObservationSettings read_observation(const Value& entry) {
+  static const std::vector<std::pair<std::string, Kind>> kinds = {
+      {"vertices", Kind::vertices}, {"markers", Kind::markers}, {"points", Kind::points}, {"contour", Kind::contour}};
+  const std::vector<std::string> keys = entry.keys();
+  std::vector<std::string> names;
+  for (const auto& kind : kinds) names.push_back(kind.first);
+  if (keys.size() != 1) throw InputError(entry.path(), entry.shown(), "one observation an entry: " + join(names));
+  ObservationSettings observation;
+  bool known = false;
+  for (const auto& kind : kinds) {
+    if (kind.first != keys.front()) continue;
+    observation.kind = kind.second;
+    known = true;
+  }
+  const Value& map = entry.at(keys.front());
+  if (!known) throw InputError(map.path(), "`" + keys.front() + "`" + did_you_mean(keys.front(), names), join(names));
+  if (observation.kind == Kind::contour) {
+    read_contour(map, observation);
+  } else {
+    observation.topic = map.at("topic").as_text();
+  }
+  if (observation.kind == Kind::markers) observation.rest = read_rest(map.at("rest"));
+  observation.noise = map.at("noise").as_number(positive, infinity, "m");
+  return observation;
+}
+
+}  // namespace
+
+std::vector<ObservationSettings> read_observations(const Value& list) {
+  std::vector<ObservationSettings> observations;
+  for (const Value& entry : list.items()) observations.push_back(read_observation(entry));
+  if (observations.empty()) throw InputError(list.path(), "an empty list", "at least one observation");
+  return observations;
+}
+
+}  // namespace tissue_stiffness
