@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+#include "tissue_stiffness/meshing/mesh_io.hpp"
+
+namespace tissue_stiffness {
+
+/// The checked TetMesh of tetrahedra from a file, as described at load_tet_mesh. `where` stands first in messages.
+TetMesh check_tet_file(const TetFile& input, double scale, int order, const std::string& where);
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,58 @@
+#include "tissue_stiffness/meshing/mesh_io.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <iomanip>
+#include <limits>
+
+#include "tissue_stiffness/meshing/file_ending.hpp"
+#include "tissue_stiffness/meshing/tet_file_check.hpp"
+#include "tissue_stiffness/types/error.hpp"
+
+namespace tissue_stiffness {
+
+std::string file_ending(const std::string& file) {
+  const std::size_t dot = file.rfind('.');
+  if (dot == std::string::npos || file.find('/', dot) != std::string::npos) return "";
+  std::string ending = file.substr(dot);
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
+bool is_tet_file(const std::string& file) {
+  const std::string ending = file_ending(file);
+  return ending == ".vtk" || ending == ".node" || ending == ".ele" || ending == ".msh";
+}
+
+TetMesh load_tet_mesh(const std::string& file, double scale, int order) {
+  const std::string where = "mesh file " + file, ending = file_ending(file);
+  if (ending == ".vtk") return check_tet_file(read_vtk(file), scale, order, where);
+  if (ending == ".node" || ending == ".ele") return check_tet_file(read_node_ele(file), scale, order, where);
+  if (ending == ".msh") return check_tet_file(read_msh(file), scale, order, where);
+  throw InputError(where, "ending '" + ending + "'", ".vtk, .node, .ele or .msh");
+}
+
+void save_mesh(const TetMesh& mesh, const std::string& file) {
+  if (file_ending(file) != ".vtk") throw InputError("mesh file " + file, "another ending", ".vtk");
+  std::ofstream out(file);
+  out << "# vtk DataFile Version 3.0\ntissue_stiffness mesh, m\nASCII\nDATASET UNSTRUCTURED_GRID\n";
+  out << "POINTS " << mesh.node_count() << " double\n" << std::setprecision(std::numeric_limits<double>::max_digits10);
+  for (int i = 0; i < mesh.node_count(); ++i) {
+    out << mesh.nodes(0, i) << ' ' << mesh.nodes(1, i) << ' ' << mesh.nodes(2, i) << '\n';
+  }
+  const Eigen::Index size = mesh.tets.rows();
+  out << "CELLS " << mesh.tet_count() << ' ' << mesh.tet_count() * (size + 1) << '\n';
+  for (int tet = 0; tet < mesh.tet_count(); ++tet) {
+    out << size;
+    for (Eigen::Index i = 0; i < size; ++i) out << ' ' << mesh.tets(i, tet);
+    out << '\n';
+  }
+  out << "CELL_TYPES " << mesh.tet_count() << '\n';
+  for (int tet = 0; tet < mesh.tet_count(); ++tet) out << (mesh.quadratic() ? "24\n" : "10\n");
+  out.close();
+  if (!out) throw InputError("mesh file " + file, "no writable file", "a file that can be written");
+}
+
+}  // namespace tissue_stiffness
