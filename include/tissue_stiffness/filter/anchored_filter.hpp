@@ -1,0 +1,64 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace tissue_stiffness {
+
+/// Unscented parameter filter in information form, with sigma points that stay where they are anchored.
+///
+/// The model's free run y_k = h_k(w) from the start of the recording is deterministic in the parameters w, so every sigma
+/// point can carry its own trajectory as long as it does not move. Each measurement is linearised statistically over the
+/// sigma points
+///   h_k(w) ~ h_k(a) + H_k (w - a),  H_k from the central differences,
+/// with the curvature that the points show added to the noise, and adds H^T R^-1 H to the information. When the estimate
+/// leaves the region that the points span, or becomes much sharper than it, the caller moves the anchor there and replays
+/// the recording: Gauss-Newton on the exact posterior, with no linearisation left at the end. Covariance is the inverse of
+/// a sum of squares: never indefinite. Sources: Yang & Lin 2016, eq. 9-23 (parameter filter); Garcia-Fernandez et al. 2015
+/// (iterated posterior linearisation).
+class AnchoredFilter {
+ public:
+  /// Prior N(mean, diag(std^2)) in the filter's coordinates; anchored at its mean with its spread.
+  AnchoredFilter(const Eigen::VectorXd& mean, const Eigen::VectorXd& std);
+
+  /// Sigma points, one a column: the anchor, then anchor + spread_i e_i, then anchor - spread_i e_i. p x (2p + 1).
+  const Eigen::MatrixXd& sigma_points() const { return points_; }
+  const Eigen::VectorXd& anchor() const { return anchor_; }
+  const Eigen::VectorXd& spread() const { return spread_; }
+
+  /// Moves the sigma points and forgets all measurements: the caller replays them.
+  void move_anchor(const Eigen::VectorXd& anchor, const Eigen::VectorXd& spread);
+
+  struct Innovation {
+    double nis = 0.0;   ///< e^T S^-1 e of the innovation before the update
+    int dof = 0;        ///< rows used
+    double cost = 0.0;  ///< weighted sum of (error / sigma)^2 at the anchor
+  };
+  /// y: m; predictions: m x (2p + 1), one column a sigma point; variance: m; weight: m, 1 for a sound row, towards 0 for an
+  /// outlier. Rows with a NaN anywhere are left out.
+  Innovation update(const Eigen::VectorXd& y, const Eigen::MatrixXd& predictions, const Eigen::VectorXd& variance,
+                    const Eigen::VectorXd& weight);
+
+  Eigen::VectorXd mean() const;
+  Eigen::MatrixXd covariance() const;
+  /// Log-posterior's quadratic part at the anchor so far: data cost plus the prior's.
+  double cost() const;
+
+  /// Prediction at `w` from the sigma points' predictions.
+  Eigen::VectorXd predict(const Eigen::MatrixXd& predictions, const Eigen::VectorXd& w) const;
+  /// Same by slopes alone: m x p, central differences over the spread.
+  Eigen::MatrixXd slopes(const Eigen::MatrixXd& predictions) const;
+
+  /// True when the estimate is more than `far` spreads away from the anchor, or some spread is `wide` times its posterior
+  /// standard deviation and above `floor`.
+  bool stale(double far, double wide, const Eigen::VectorXd& floor) const;
+
+ private:
+  Eigen::VectorXd prior_mean_, prior_information_;
+  Eigen::VectorXd anchor_, spread_;
+  Eigen::MatrixXd points_;
+  Eigen::MatrixXd information_;  ///< of the data
+  Eigen::VectorXd gradient_;     ///< H^T R^-1 e summed, at the anchor
+  double data_cost_ = 0.0;
+};
+
+}  // namespace tissue_stiffness

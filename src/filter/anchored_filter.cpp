@@ -1,0 +1,99 @@
+#include "tissue_stiffness/filter/anchored_filter.hpp"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+namespace tissue_stiffness {
+
+AnchoredFilter::AnchoredFilter(const Eigen::VectorXd& mean, const Eigen::VectorXd& std)
+    : prior_mean_(mean), prior_information_(std.array().square().inverse()) {
+  move_anchor(mean, std);
+}
+
+void AnchoredFilter::move_anchor(const Eigen::VectorXd& anchor, const Eigen::VectorXd& spread) {
+  const Eigen::Index p = anchor.size();
+  anchor_ = anchor;
+  spread_ = spread;
+  points_ = anchor.replicate(1, 2 * p + 1);
+  for (Eigen::Index i = 0; i < p; ++i) {
+    points_(i, 1 + i) += spread[i];
+    points_(i, 1 + p + i) -= spread[i];
+  }
+  information_ = Eigen::MatrixXd::Zero(p, p);
+  gradient_ = Eigen::VectorXd::Zero(p);
+  data_cost_ = 0.0;
+}
+
+Eigen::MatrixXd AnchoredFilter::slopes(const Eigen::MatrixXd& y) const {
+  const Eigen::Index p = anchor_.size();
+  return (y.middleCols(1, p) - y.rightCols(p)) * (0.5 * spread_.cwiseInverse()).asDiagonal();
+}
+
+Eigen::VectorXd AnchoredFilter::predict(const Eigen::MatrixXd& predictions, const Eigen::VectorXd& w) const {
+  return predictions.col(0) + slopes(predictions) * (w - anchor_);
+}
+
+AnchoredFilter::Innovation AnchoredFilter::update(const Eigen::VectorXd& y, const Eigen::MatrixXd& predictions,
+                                                  const Eigen::VectorXd& variance, const Eigen::VectorXd& weight) {
+  const Eigen::Index p = anchor_.size();
+  Eigen::MatrixXd h = slopes(predictions);
+  Eigen::VectorXd e = y - predictions.col(0);
+  const Eigen::VectorXd step = mean() - anchor_;
+  // What a straight line through the sigma points misses is noise to the linearised model.
+  Eigen::VectorXd curvature = Eigen::VectorXd::Zero(y.size());
+  for (Eigen::Index i = 0; i < p; ++i) {
+    const Eigen::VectorXd bend = 0.5 * (predictions.col(1 + i) + predictions.col(1 + p + i)) - predictions.col(0);
+    curvature += bend.cwiseAbs2();
+  }
+  Eigen::VectorXd precision(y.size());
+  Innovation out;
+  for (Eigen::Index r = 0; r < y.size(); ++r) {
+    const bool good = std::isfinite(e[r]) && h.row(r).allFinite() && std::isfinite(curvature[r]) && variance[r] > 0.0 &&
+                      std::isfinite(variance[r]);
+    precision[r] = good ? weight[r] / (variance[r] + curvature[r]) : 0.0;
+    if (good) {
+      out.cost += weight[r] * e[r] * e[r] / variance[r];
+      ++out.dof;
+    } else {
+      e[r] = 0.0;
+      h.row(r).setZero();
+    }
+  }
+  const Eigen::MatrixXd weighted = precision.asDiagonal() * h;
+  const Eigen::MatrixXd added = h.transpose() * weighted;
+  const Eigen::VectorXd innovation = e - h * step;
+  // e^T (H P H^T + R)^-1 e by Woodbury: only p x p is inverted.
+  Eigen::MatrixXd before = information_;
+  before.diagonal() += prior_information_;
+  const Eigen::VectorXd projected = weighted.transpose() * innovation;
+  out.nis = innovation.dot(precision.cwiseProduct(innovation)) - projected.dot((before + added).ldlt().solve(projected));
+
+  information_ += added;
+  gradient_ += weighted.transpose() * e;
+  data_cost_ += out.cost;
+  return out;
+}
+
+Eigen::VectorXd AnchoredFilter::mean() const {
+  Eigen::MatrixXd total = information_;
+  total.diagonal() += prior_information_;
+  return anchor_ + total.ldlt().solve(gradient_ + prior_information_.cwiseProduct(prior_mean_ - anchor_));
+}
+
+Eigen::MatrixXd AnchoredFilter::covariance() const {
+  Eigen::MatrixXd total = information_;
+  total.diagonal() += prior_information_;
+  return total.ldlt().solve(Eigen::MatrixXd::Identity(total.rows(), total.cols()));
+}
+
+double AnchoredFilter::cost() const {
+  return data_cost_ + (anchor_ - prior_mean_).cwiseAbs2().dot(prior_information_);
+}
+
+bool AnchoredFilter::stale(double far, double wide, const Eigen::VectorXd& floor) const {
+  const Eigen::ArrayXd step = (mean() - anchor_).array().abs();
+  const Eigen::ArrayXd std = covariance().diagonal().array().sqrt();
+  return (step > far * spread_.array()).any() || (spread_.array() > (wide * std).max(floor.array())).any();
+}
+
+}  // namespace tissue_stiffness

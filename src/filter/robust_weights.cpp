@@ -1,0 +1,34 @@
+#include "tissue_stiffness/filter/robust_weights.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "tissue_stiffness/filter/consistency.hpp"
+
+namespace tissue_stiffness {
+
+Eigen::VectorXd robust_weights(const Eigen::VectorXd& standardised, int group) {
+  if (group < 1 || standardised.size() % group != 0) throw std::invalid_argument("rows do not make whole groups");
+  const Eigen::Index groups = standardised.size() / group;
+  const Eigen::Map<const Eigen::MatrixXd> rows(standardised.data(), group, groups);
+  const Eigen::VectorXd size = rows.colwise().norm().transpose() / std::sqrt(static_cast<double>(group));
+
+  std::vector<double> finite;
+  for (Eigen::Index i = 0; i < groups; ++i) {
+    if (std::isfinite(size[i])) finite.push_back(size[i]);
+  }
+  Eigen::VectorXd weights = Eigen::VectorXd::Ones(standardised.size());
+  if (finite.empty()) return weights;
+  const auto middle = finite.begin() + static_cast<std::ptrdiff_t>(finite.size() / 2);
+  std::nth_element(finite.begin(), middle, finite.end());
+  const double normal_median = std::sqrt(chi_squared_quantile(0.5, group) / group);
+  const double reach = robust_core * std::max(1.0, *middle / normal_median);
+  for (Eigen::Index i = 0; i < groups; ++i) {
+    if (size[i] > reach) weights.segment(i * group, group).setConstant(std::pow(reach / size[i], 2));
+  }
+  return weights;
+}
+
+}  // namespace tissue_stiffness
