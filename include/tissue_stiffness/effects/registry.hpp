@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tissue_stiffness/effects/effect.hpp"
+#include "tissue_stiffness/types/error.hpp"
+
+namespace tissue_stiffness {
+
+namespace effects {
+#define EFFECT(name)       \
+  EffectSpec name##_spec(); \
+  std::unique_ptr<Effect> make_##name(const Value& arguments, const EffectContext& context);
+#include "tissue_stiffness/effects/effects.def"
+#undef EFFECT
+}  // namespace effects
+
+/// Time course of a measured load from the keys `topic` or `course: {file}`. Registers the topic in context.inputs.
+std::shared_ptr<Course> load_course(const Value& arguments, LoadInput::Kind kind, const EffectContext& context);
+
+/// The library: every effect's spec, in the order of effects.def.
+const std::vector<EffectSpec>& effect_specs();
+
+/// Throws InputError naming the effects there are.
+const EffectSpec& effect_spec(const EffectSettings& settings);
+
+/// Values and priors of an effect's parameters, vectors spread out, in the order of the spec. Throws InputError for a value
+/// that is missing or out of bounds.
+std::vector<Quantity> read_parameters(const EffectSettings& settings);
+
+/// Builds an effect. Throws InputError for a key that is missing, wrong or unknown. read_parameters must have been called.
+std::unique_ptr<Effect> make_effect(const EffectSettings& settings, const EffectContext& context);
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "tissue_stiffness/forward/forward_model.hpp"
+#include "tissue_stiffness/forward/observation_operator.hpp"
+#include "tissue_stiffness/types/observation.hpp"
+
+namespace tissue_stiffness {
+
+/// The sigma points' free runs, side by side.
+class Ensemble {
+ public:
+  Ensemble(const Model& model, const ForwardModel& forward,
+           const std::vector<std::unique_ptr<ObservationOperator>>& operators)
+      : model_(model), forward_(forward), operators_(operators) {}
+
+  /// A fresh trajectory from `start` [s] for each column of `sigma_points` (filter coordinates).
+  void restart(const Eigen::MatrixXd& sigma_points, double start);
+  bool started() const { return !trajectories_.empty(); }
+  void clear() { trajectories_.clear(); }
+
+  /// All trajectories to `time`, in parallel. Throws NumericalError when one diverges.
+  void advance(double time);
+
+  /// Predictions of a frame: the first sigma point's in full, and everyone's predicted rows as columns.
+  struct Predicted {
+    Prediction central;
+    Eigen::MatrixXd rows;  ///< rows x sigma points
+  };
+  Predicted predict(const Frame& frame) const;
+
+  /// Displacements, one column a sigma point, 3n x sigma points [m].
+  const Eigen::MatrixXd& displacements() const { return displacements_; }
+
+ private:
+  const Model& model_;
+  const ForwardModel& forward_;
+  const std::vector<std::unique_ptr<ObservationOperator>>& operators_;
+  std::vector<std::unique_ptr<Trajectory>> trajectories_;
+  Eigen::MatrixXd displacements_;
+};
+
+/// A frame's observations against one displacement (3n).
+Prediction predict_frame(const std::vector<std::unique_ptr<ObservationOperator>>& operators, const Frame& frame,
+                         const Eigen::VectorXd& displacement);
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tissue_stiffness/estimation/estimator.hpp"
+#include "tissue_stiffness/forward/forward_model.hpp"
+#include "tissue_stiffness/forward/observation_operator.hpp"
+
+namespace tissue_stiffness {
+
+/// What every estimation scheme shares: the model, its sensors, the clock, and the checks before a frame is used.
+class Scheme {
+ public:
+  Scheme(const ModelSettings& settings, const TetMesh& mesh);
+  virtual ~Scheme() = default;
+
+  StepResult step(const Frame& frame);
+  void reset();
+  void set_first_stamp(double time);
+  void add_load(const LoadSample& sample);
+
+  virtual std::vector<std::string> description() const = 0;
+  virtual std::vector<Misfit> free_run() const = 0;
+  virtual Eigen::MatrixXd parameter_covariance() const = 0;  ///< in the filter's coordinates
+
+  const Model& model() const { return *model_; }
+  const Estimate& estimate() const { return estimate_; }
+  const Eigen::Matrix3Xd& displacement() const { return displacement_; }
+  const Prediction& prediction() const { return prediction_; }
+
+ protected:
+  virtual StepResult process(const Frame& frame) = 0;
+  virtual void forget() = 0;
+
+  double start() const { return first_stamp_.value_or(0.0) + model_->settings().time.start; }
+  Prediction at_rest(const Frame& frame) const;
+  /// The free run at `theta` over the frames, compared with each.
+  std::vector<Misfit> compare_free_run(const std::vector<Frame>& frames, const Eigen::VectorXd& theta) const;
+
+  std::unique_ptr<Model> model_;
+  std::unique_ptr<ForwardModel> forward_;
+  std::vector<std::unique_ptr<ObservationOperator>> operators_;
+  Estimate estimate_;
+  Eigen::Matrix3Xd displacement_;
+  Prediction prediction_;
+
+ private:
+  std::optional<double> first_stamp_;
+  std::optional<double> last_time_;
+};
+
+std::unique_ptr<Scheme> make_unscented_scheme(const ModelSettings& settings, const TetMesh& mesh);
+std::unique_ptr<Scheme> make_paper_scheme(const ModelSettings& settings, const TetMesh& mesh);
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Sparse>
+#include <array>
+#include <vector>
+
+#include "tissue_stiffness/types/tet_mesh.hpp"
+
+namespace tissue_stiffness {
+
+using SparseMatrix = Eigen::SparseMatrix<double>;
+
+/// Isoparametric Lagrange tetrahedra (4 or 10 nodes) at rest: shape gradients and weights at the quadrature points, and the
+/// sparsity pattern that every matrix of the model shares. Stiffness uses 1 (4 nodes) or 4 points (10 nodes, degree 2: exact
+/// for straight edges); mass uses a 14-point rule of degree 5 (Walkington 2000).
+class Discretisation {
+ public:
+  /// Throws InputError naming the element whose Jacobian is not positive.
+  explicit Discretisation(const TetMesh& mesh);
+
+  int dof_count() const { return 3 * node_count_; }
+  int node_count() const { return node_count_; }
+  int element_count() const { return static_cast<int>(elements_.cols()); }
+  int nodes_per_element() const { return static_cast<int>(elements_.rows()); }
+  int points_per_element() const { return points_; }
+  const Eigen::MatrixXi& elements() const { return elements_; }
+
+  /// dN/dX at quadrature point q of element e, 3 x nodes [1/m].
+  Eigen::Map<const Eigen::Matrix3Xd> gradient(int e, int q) const {
+    const Eigen::Index n = elements_.rows();
+    return {gradients_.data() + 3 * n * (static_cast<Eigen::Index>(e) * points_ + q), 3, n};
+  }
+  /// Quadrature weight times Jacobian [m^3]; they sum to the volume.
+  double weight(int e, int q) const { return weights_(q, e); }
+  double volume() const { return weights_.sum(); }
+
+  /// Zero matrix (dofs x dofs) with the pattern of the mesh, 3 x 3 blocks for nodes that share an element.
+  const SparseMatrix& pattern() const { return pattern_; }
+
+  /// Adds a 3 x 3 block at nodes (row, column) of element e, local numbers a and b.
+  void add_block(SparseMatrix& matrix, int e, int a, int b, const Eigen::Matrix3d& block) const {
+    const int n = nodes_per_element();
+    const int k = slots_[static_cast<std::size_t>((e * n + b) * n + a)];
+    const int column = 3 * elements_(b, e);
+    double* values = matrix.valuePtr();
+    const int* outer = matrix.outerIndexPtr();
+    for (int j = 0; j < 3; ++j) {
+      double* to = values + outer[column + j] + 3 * k;
+      for (int i = 0; i < 3; ++i) to[i] += block(i, j);
+    }
+  }
+
+  /// Consistent mass matrix of unit density times a weight an element (1 everywhere, or 1 inside a region) [m^3].
+  SparseMatrix mass(const Eigen::VectorXd& element_weight) const;
+
+  /// Small-strain stiffness of Lame's first parameter = 1, shear modulus = 0, or the other way round [m].
+  SparseMatrix volumetric_stiffness(const Eigen::VectorXd& element_weight) const;
+  SparseMatrix shear_stiffness(const Eigen::VectorXd& element_weight) const;
+
+ private:
+  void compute_gradients(const TetMesh& mesh);
+  void compute_pattern();
+
+  int node_count_ = 0;
+  int points_ = 1;
+  Eigen::MatrixXi elements_;
+  Eigen::Matrix3Xd nodes_;
+  std::vector<double> gradients_;
+  Eigen::MatrixXd weights_;
+  SparseMatrix pattern_;
+  std::vector<int> slots_;
+};
+
+/// Shape functions and their derivatives with respect to the barycentric coordinates (r, s, t) of a 4- or 10-node tetrahedron,
+/// node order of TetMesh.
+Eigen::VectorXd tet_shape(int nodes, const Eigen::Vector3d& rst);
+Eigen::MatrixXd tet_shape_derivative(int nodes, const Eigen::Vector3d& rst);
+
+}  // namespace tissue_stiffness

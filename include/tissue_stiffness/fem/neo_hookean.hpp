@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "tissue_stiffness/fem/discretisation.hpp"
+
+namespace tissue_stiffness {
+
+/// Lame parameters [Pa].
+struct Lame {
+  double lambda;
+  double mu;
+};
+
+/// lambda = E nu / ((1 + nu)(1 - 2 nu)), mu = E / (2 (1 + nu)).
+inline Lame lame(double young_modulus, double poisson_ratio) {
+  return {young_modulus * poisson_ratio / ((1.0 + poisson_ratio) * (1.0 - 2.0 * poisson_ratio)),
+          young_modulus / (2.0 * (1.0 + poisson_ratio))};
+}
+
+/// Compressible neo-Hookean solid, psi = mu/2 (tr F^T F - 3 - 2 ln J) + lambda/2 (ln J)^2 (Bonet & Wood 2008, eq. 6.28), over the
+/// elements listed. All throw NumericalError naming the element that turned inside out.
+class NeoHookean {
+ public:
+  NeoHookean(const Discretisation& fem, std::vector<int> elements) : fem_(fem), elements_(std::move(elements)) {}
+
+  /// Subtracts the internal force [N] at displacement u (3n) from `force`.
+  void add_force(const Lame& lame, const Eigen::VectorXd& u, Eigen::VectorXd& force) const;
+  /// Adds the tangent stiffness [N/m].
+  void add_stiffness(const Lame& lame, const Eigen::VectorXd& u, SparseMatrix& stiffness) const;
+  /// Stored energy [J].
+  double energy(const Lame& lame, const Eigen::VectorXd& u) const;
+
+ private:
+  const Discretisation& fem_;
+  std::vector<int> elements_;
+};
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "tissue_stiffness/fem/discretisation.hpp"
+
+namespace tissue_stiffness {
+
+/// Direct solver for symmetric positive definite matrices that share one sparsity pattern (CHOLMOD, LL^T).
+/// The pattern is analysed once; a copy shares nothing.
+class SparseSolver {
+ public:
+  SparseSolver();
+  ~SparseSolver();
+  SparseSolver(SparseSolver&&) noexcept;
+  SparseSolver& operator=(SparseSolver&&) noexcept;
+
+  /// Numerical factorisation; analyses the pattern at the first call. Throws NumericalError when not positive definite.
+  void factorize(const SparseMatrix& matrix);
+  bool ready() const;
+
+  /// Solution of A x = b for every column of b.
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
+
+  /// Non-zeros of the factor.
+  double factor_size() const;
+
+ private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+};
+
+/// Sets rows and columns of fixed degrees of freedom to zero and their diagonal to `diagonal`.
+void fix_dofs(SparseMatrix& matrix, const std::vector<char>& fixed, double diagonal);
+
+}  // namespace tissue_stiffness

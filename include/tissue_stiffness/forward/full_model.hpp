@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "tissue_stiffness/fem/newmark.hpp"
+#include "tissue_stiffness/forward/forward_model.hpp"
+
+namespace tissue_stiffness {
+
+/// Every node of the mesh, integrated with implicit Newmark or generalised-alpha steps.
+class FullModel : public ForwardModel {
+ public:
+  struct Options {
+    double step = 0.0;               ///< [s]; 0: a fraction of the span that advance() is asked for
+    int steps_per_frame = 4;         ///< when step is 0
+    double spectral_radius = 1.0;    ///< of generalised-alpha at infinite frequency; 1 is Newmark's average acceleration
+  };
+  FullModel(const Model& model, const Options& options) : model_(model), options_(options) {}
+
+  std::unique_ptr<Trajectory> start(const Eigen::VectorXd& theta, double start) const override;
+  std::string description() const override;
+
+ private:
+  const Model& model_;
+  Options options_;
+};
+
+/// Model at one theta as the integrator sees it.
+class ModelSystem : public DynamicSystem {
+ public:
+  ModelSystem(const Model& model, Eigen::VectorXd theta);
+
+  const SparseMatrix& mass() const override { return mass_; }
+  const SparseMatrix& damping() const override { return damping_; }
+  bool damped() const override { return damped_; }
+  const std::vector<char>& fixed() const override { return model_.fixed(); }
+  Eigen::VectorXd force(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const override;
+  SparseMatrix stiffness(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const override;
+  /// Kinetic and stored energy less the work of gravity [J].
+  double energy(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const;
+
+ private:
+  const Model& model_;
+  Eigen::VectorXd theta_;
+  SparseMatrix mass_, damping_, stiffness_;
+  Eigen::VectorXd gravity_;
+  bool damped_ = false;
+};
+
+}  // namespace tissue_stiffness

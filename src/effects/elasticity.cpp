@@ -1,0 +1,74 @@
+// Elastic resistance: small strain (linear) or finite strain (neo_hookean).
+#include "tissue_stiffness/effects/registry.hpp"
+#include "tissue_stiffness/fem/neo_hookean.hpp"
+
+namespace tissue_stiffness::effects {
+namespace {
+
+std::vector<int> elements_of(const Value& arguments, const EffectContext& context) {
+  if (arguments.has("region")) return context.region(arguments.at("region")).tets;
+  std::vector<int> all(static_cast<std::size_t>(context.fem.element_count()));
+  for (std::size_t e = 0; e < all.size(); ++e) all[e] = static_cast<int>(e);
+  return all;
+}
+
+class Elasticity : public Effect {
+ public:
+  Elasticity(const Value& arguments, const EffectContext& context)
+      : elements_(elements_of(arguments, context)), solid_(context.fem, elements_) {
+    if (elements_.empty()) {
+      throw InputError(arguments.at("region").path(), arguments.at("region").shown(), "a region that holds tetrahedra");
+    }
+    finite_strain_ = arguments.at("law").as_choice({"linear", "neo_hookean"}) == "neo_hookean";
+    Eigen::VectorXd inside = Eigen::VectorXd::Zero(context.fem.element_count());
+    for (const int e : elements_) inside[e] = 1.0;
+    volumetric_ = context.fem.volumetric_stiffness(inside);
+    shear_ = context.fem.shear_stiffness(inside);
+  }
+
+  void linear_terms(LinearTerms& out) const override {
+    out.stiffness.push_back({volumetric_, [](const Parameters& p) { return lame(p[0], p[1]).lambda; }});
+    out.stiffness.push_back({shear_, [](const Parameters& p) { return lame(p[0], p[1]).mu; }});
+  }
+  bool nonlinear() const override { return finite_strain_; }
+  bool stiffness_is_reference() const override { return finite_strain_; }
+  void add_force(const Motion& motion, const Parameters& p, Eigen::VectorXd& force) const override {
+    if (finite_strain_) solid_.add_force(lame(p[0], p[1]), motion.displacement, force);
+  }
+  void add_stiffness(const Motion& motion, const Parameters& p, SparseMatrix& stiffness) const override {
+    if (finite_strain_) solid_.add_stiffness(lame(p[0], p[1]), motion.displacement, stiffness);
+  }
+  double energy(const Motion& motion, const Parameters& p) const override {
+    const Lame c = lame(p[0], p[1]);
+    if (finite_strain_) return solid_.energy(c, motion.displacement);
+    const Eigen::VectorXd& u = motion.displacement;
+    return 0.5 * (c.lambda * u.dot(volumetric_ * u) + c.mu * u.dot(shear_ * u));
+  }
+
+ private:
+  std::vector<int> elements_;
+  NeoHookean solid_;
+  bool finite_strain_ = false;
+  SparseMatrix volumetric_, shear_;
+};
+
+}  // namespace
+
+EffectSpec elasticity_spec() {
+  EffectSpec spec;
+  spec.name = "elasticity";
+  spec.summary = "elastic resistance of the tissue, isotropic";
+  spec.formula = "linear: sigma = lambda tr(eps) I + 2 mu eps; neo_hookean: P = mu (F - F^-T) + lambda ln J F^-T";
+  spec.source = "Yang & Lin 2016, eq. 4, second term; Bonet & Wood 2008, eq. 6.29";
+  spec.parameters = {
+      {"young_modulus", "E", "Pa", 1.0, 1e12, ParameterSpec::Default::required, 0.0, 0.0, 1},
+      {"poisson_ratio", "nu", "-", -0.9, 0.4999, ParameterSpec::Default::required, 0.0, NAN, 1}};
+  spec.keys = {{"law", "linear | neo_hookean"}, {"region", "tetrahedra it fills; without it the whole body"}};
+  return spec;
+}
+
+std::unique_ptr<Effect> make_elasticity(const Value& arguments, const EffectContext& context) {
+  return std::make_unique<Elasticity>(arguments, context);
+}
+
+}  // namespace tissue_stiffness::effects

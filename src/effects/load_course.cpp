@@ -1,0 +1,32 @@
+#include <algorithm>
+
+#include "tissue_stiffness/effects/registry.hpp"
+
+namespace tissue_stiffness {
+
+std::shared_ptr<Course> load_course(const Value& arguments, LoadInput::Kind kind, const EffectContext& context) {
+  const int components = kind == LoadInput::Kind::pressure ? 1 : 6;
+  if (arguments.has("topic") == arguments.has("course")) {
+    throw InputError(arguments.path(), arguments.has("topic") ? "topic and course" : "neither topic nor course",
+                     "one of the two");
+  }
+  if (arguments.has("course")) {
+    std::string file = arguments.at("course").at("file").as_text();
+    if (!file.empty() && file[0] != '/') file = context.directory + "/" + file;
+    auto course = std::make_shared<Course>(Course::from_csv(file, components));
+    context.courses["file:" + file] = course;
+    return course;
+  }
+  const std::string topic = arguments.at("topic").as_text();
+  const auto same = [&](const LoadInput& input) { return input.topic == topic; };
+  const auto known = std::find_if(context.inputs.begin(), context.inputs.end(), same);
+  if (known == context.inputs.end()) {
+    context.inputs.push_back({topic, kind});
+    context.courses[topic] = std::make_shared<Course>(components);
+  } else if (known->kind != kind) {
+    throw InputError(arguments.at("topic").path(), topic, "one type of message a topic");
+  }
+  return context.courses[topic];
+}
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,28 @@
+// Damping proportional to mass: slow motions die first.
+#include "tissue_stiffness/effects/registry.hpp"
+
+namespace tissue_stiffness::effects {
+namespace {
+
+class MassDamping : public Effect {
+ public:
+  void linear_terms(LinearTerms& out) const override {
+    out.mass_damping.push_back([](const Parameters& p) { return p[0]; });
+  }
+};
+
+}  // namespace
+
+EffectSpec mass_damping_spec() {
+  EffectSpec spec;
+  spec.name = "mass_damping";
+  spec.summary = "damping proportional to mass; damping ratio falls with frequency";
+  spec.formula = "-alpha M v";
+  spec.source = "Rayleigh damping, mass part";
+  spec.parameters = {{"alpha", "alpha", "1/s", 0.0, 1e5, ParameterSpec::Default::required, 0.0, 0.0, 1}};
+  return spec;
+}
+
+std::unique_ptr<Effect> make_mass_damping(const Value&, const EffectContext&) { return std::make_unique<MassDamping>(); }
+
+}  // namespace tissue_stiffness::effects

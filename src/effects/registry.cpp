@@ -1,0 +1,85 @@
+#include "tissue_stiffness/effects/registry.hpp"
+
+#include <algorithm>
+
+namespace tissue_stiffness {
+namespace {
+
+using Maker = std::unique_ptr<Effect> (*)(const Value&, const EffectContext&);
+
+const std::vector<Maker>& makers() {
+  static const std::vector<Maker> list = {
+#define EFFECT(name) &effects::make_##name,
+#include "tissue_stiffness/effects/effects.def"
+#undef EFFECT
+  };
+  return list;
+}
+
+std::size_t index_of(const EffectSettings& settings) {
+  const auto& specs = effect_specs();
+  const auto at =
+      std::find_if(specs.begin(), specs.end(), [&](const EffectSpec& s) { return s.name == settings.name; });
+  if (at != specs.end()) return static_cast<std::size_t>(at - specs.begin());
+  std::string names;
+  for (const auto& spec : specs) names += (names.empty() ? "" : ", ") + spec.name;
+  throw InputError(settings.arguments.path(), "effect '" + settings.name + "'", names);
+}
+
+Quantity default_value(const ParameterSpec& spec) { return {Quantity::Kind::known, spec.value, 0.0}; }
+
+void read_vector(const Value& value, const ParameterSpec& spec, std::vector<Quantity>& out) {
+  const std::vector<Value>& items = value.items();
+  if (static_cast<int>(items.size()) != spec.components) {
+    throw InputError(value.path(), value.shown(), "[x, y, z] in " + spec.unit);
+  }
+  for (const Value& item : items) out.push_back(item.as_quantity(spec.lower, spec.upper, spec.unit));
+}
+
+}  // namespace
+
+const std::vector<EffectSpec>& effect_specs() {
+  static const std::vector<EffectSpec> list = {
+#define EFFECT(name) effects::name##_spec(),
+#include "tissue_stiffness/effects/effects.def"
+#undef EFFECT
+  };
+  return list;
+}
+
+const EffectSpec& effect_spec(const EffectSettings& settings) { return effect_specs()[index_of(settings)]; }
+
+std::vector<Quantity> read_parameters(const EffectSettings& settings) {
+  std::vector<Quantity> out;
+  for (const ParameterSpec& spec : effect_spec(settings).parameters) {
+    const bool optional = spec.presence == ParameterSpec::Default::optional;
+    if (optional && !settings.arguments.has(spec.name)) {
+      out.insert(out.end(), static_cast<std::size_t>(spec.components), default_value(spec));
+      continue;
+    }
+    const Value& value = settings.arguments.at(spec.name);
+    if (spec.components > 1) {
+      read_vector(value, spec, out);
+    } else {
+      out.push_back(value.as_quantity(spec.lower, spec.upper, spec.unit));
+    }
+  }
+  return out;
+}
+
+std::unique_ptr<Effect> make_effect(const EffectSettings& settings, const EffectContext& context) {
+  auto effect = makers()[index_of(settings)](settings.arguments, context);
+  settings.arguments.require_all_read();
+  return effect;
+}
+
+const Region& EffectContext::region(const Value& name) const {
+  const std::string wanted = name.as_text();
+  const auto at = regions.find(wanted);
+  if (at != regions.end()) return at->second;
+  std::string names;
+  for (const auto& entry : regions) names += (names.empty() ? "" : ", ") + entry.first;
+  throw InputError(name.path(), "region '" + wanted + "'", names.empty() ? "none: `regions` is empty" : names);
+}
+
+}  // namespace tissue_stiffness

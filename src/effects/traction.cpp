@@ -1,0 +1,66 @@
+// Measured total force, spread evenly over a patch of the surface.
+#include "tissue_stiffness/effects/registry.hpp"
+#include "tissue_stiffness/fem/facet_quadrature.hpp"
+
+namespace tissue_stiffness::effects {
+namespace {
+
+// int N_a dA over the facets, divided by their area.
+Eigen::VectorXd mean_weights(const TetMesh& mesh, const std::vector<int>& facets) {
+  const FacetQuadrature rule(static_cast<int>(mesh.facets.rows()));
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(mesh.node_count());
+  for (const int f : facets) {
+    const Eigen::Matrix3Xd x = facet_nodes(mesh, f);
+    for (int q = 0; q < rule.points(); ++q) {
+      const double area = rule.weight(q) * rule.normal(x, q).norm();
+      for (Eigen::Index a = 0; a < x.cols(); ++a) weights[mesh.facets(a, f)] += area * rule.shape(q)[a];
+    }
+  }
+  return weights / weights.sum();
+}
+
+class Traction : public Effect {
+ public:
+  Traction(const Value& arguments, const EffectContext& context)
+      : course_(load_course(arguments, LoadInput::Kind::wrench, context)) {
+    const std::vector<int>& facets = context.region(arguments.at("region")).facets;
+    if (facets.empty()) {
+      throw InputError(arguments.at("region").path(), arguments.at("region").shown(),
+                       "a region that holds boundary facets");
+    }
+    weights_ = mean_weights(context.mesh, facets);
+  }
+
+  void linear_terms(LinearTerms& out) const override {
+    for (int i = 0; i < 3; ++i) {
+      Eigen::VectorXd pattern = Eigen::VectorXd::Zero(3 * weights_.size());
+      for (Eigen::Index a = 0; a < weights_.size(); ++a) pattern[3 * a + i] = weights_[a];
+      out.loads.push_back({pattern, [](const Parameters& p) { return p[0]; }, course_, i});
+    }
+  }
+
+ private:
+  Eigen::VectorXd weights_;
+  std::shared_ptr<Course> course_;
+};
+
+}  // namespace
+
+EffectSpec traction_spec() {
+  EffectSpec spec;
+  spec.name = "traction";
+  spec.summary = "measured total force, spread evenly over a patch of the surface; the torque is not used";
+  spec.formula = "scale F(t) int N_a dA / A";
+  spec.source = "Yang & Lin 2016, eq. 4, fourth term";
+  spec.parameters = {{"scale", "s", "-", -1e3, 1e3, ParameterSpec::Default::optional, 1.0, 0.0, 1}};
+  spec.keys = {{"region", "facets it acts on"},
+               {"topic", "geometry_msgs/WrenchStamped"},
+               {"course", "{file: f.csv} with rows of time [s], fx, fy, fz [N], tx, ty, tz [N m]; instead of topic"}};
+  return spec;
+}
+
+std::unique_ptr<Effect> make_traction(const Value& arguments, const EffectContext& context) {
+  return std::make_unique<Traction>(arguments, context);
+}
+
+}  // namespace tissue_stiffness::effects

@@ -1,0 +1,68 @@
+#include "tissue_stiffness/estimation/ensemble.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <exception>
+
+namespace tissue_stiffness {
+namespace {
+
+// Runs act(i) for i < count in parallel; the error of the lowest i is thrown, whatever the threads did.
+template <typename Act>
+void for_each_index(std::size_t count, const Act& act) {
+  std::vector<std::exception_ptr> errors(count);
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    try {
+      act(i);
+    } catch (...) {
+      errors[i] = std::current_exception();
+    }
+  });
+  for (const std::exception_ptr& error : errors) {
+    if (error) std::rethrow_exception(error);
+  }
+}
+
+}  // namespace
+
+void Ensemble::restart(const Eigen::MatrixXd& sigma_points, double start) {
+  trajectories_.clear();
+  trajectories_.resize(static_cast<std::size_t>(sigma_points.cols()));
+  for_each_index(trajectories_.size(), [&](std::size_t i) {
+    trajectories_[i] = forward_.start(model_.theta(sigma_points.col(static_cast<Eigen::Index>(i))), start);
+  });
+  displacements_ = Eigen::MatrixXd::Zero(model_.fem().dof_count(), sigma_points.cols());
+}
+
+void Ensemble::advance(double time) {
+  for_each_index(trajectories_.size(), [&](std::size_t i) {
+    trajectories_[i]->advance(time);
+    displacements_.col(static_cast<Eigen::Index>(i)) = trajectories_[i]->displacement();
+  });
+}
+
+Ensemble::Predicted Ensemble::predict(const Frame& frame) const {
+  std::vector<Prediction> predictions(trajectories_.size());
+  for_each_index(predictions.size(), [&](std::size_t i) {
+    predictions[i] = predict_frame(operators_, frame, displacements_.col(static_cast<Eigen::Index>(i)));
+  });
+  Predicted out;
+  out.rows.resize(predictions.front().predicted.size(), static_cast<Eigen::Index>(predictions.size()));
+  for (std::size_t i = 0; i < predictions.size(); ++i) {
+    out.rows.col(static_cast<Eigen::Index>(i)) = predictions[i].predicted;
+  }
+  out.central = std::move(predictions.front());
+  return out;
+}
+
+Prediction predict_frame(const std::vector<std::unique_ptr<ObservationOperator>>& operators, const Frame& frame,
+                         const Eigen::VectorXd& displacement) {
+  std::vector<Prediction> parts;
+  for (const Observation& observation : frame.observations) {
+    parts.push_back(operators[static_cast<std::size_t>(observation.source)]->predict(observation, displacement));
+  }
+  return concatenate(parts);
+}
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,59 @@
+#include "tissue_stiffness/estimation/identify.hpp"
+
+#include <cmath>
+#include <vector>
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr double kLearnt = 0.5;  // posterior over prior standard deviation below which the data have spoken
+
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+// Parameters that carry the unit of force: the whole model scales with them.
+bool is_scale(const std::string& name) {
+  for (const char* end : {".young_modulus", ".density", ".mass", ".scale", ".stiffness"}) {
+    if (ends_with(name, end)) return true;
+  }
+  return false;
+}
+
+// Names of the scales whose numbers the model file gives.
+std::vector<std::string> known_scales(const Model& model) {
+  std::vector<std::string> known;
+  for (const EffectSettings& effect : model.settings().effects) {
+    for (const ParameterSpec& spec : effect_spec(effect).parameters) {
+      const std::string name = effect.label + "." + spec.name;
+      bool free = false;
+      for (const FreeParameter& parameter : model.free_parameters()) free = free || parameter.name == name;
+      if (is_scale(name) && !free && effect.name != "contact_plane") known.push_back(name);
+    }
+  }
+  return known;
+}
+
+}  // namespace
+
+std::map<std::string, Identifiability> identify(const Model& model, const Eigen::MatrixXd& covariance) {
+  std::map<std::string, Identifiability> result;
+  const std::vector<std::string> known = known_scales(model);
+  const Eigen::VectorXd prior = model.prior_std();
+  for (std::size_t i = 0; i < model.free_parameters().size(); ++i) {
+    const std::string& name = model.free_parameters()[i].name;
+    const auto k = static_cast<Eigen::Index>(i);
+    const double ratio = std::sqrt(covariance(k, k)) / prior[k];
+    const std::string percent = std::to_string(static_cast<int>(std::round(100.0 * ratio)));
+    if (ratio > kLearnt) {
+      result[name] = {"none", "the data hardly narrow the prior: posterior standard deviation is " + percent + " % of it"};
+    } else if (is_scale(name) && known.empty()) {
+      result[name] = {"ratio_only", "no force, pressure, density or mass is known: all scale together"};
+    } else {
+      result[name] = {"absolute", is_scale(name) ? "scaled by the known " + known.front() : "no scale is involved"};
+    }
+  }
+  return result;
+}
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,84 @@
+#include "tissue_stiffness/estimation/scheme.hpp"
+
+#include "tissue_stiffness/estimation/compare.hpp"
+#include "tissue_stiffness/estimation/ensemble.hpp"
+#include "tissue_stiffness/estimation/posterior.hpp"
+
+namespace tissue_stiffness {
+
+Scheme::Scheme(const ModelSettings& settings, const TetMesh& mesh)
+    : model_(std::make_unique<Model>(settings, mesh)), operators_(make_observation_operators(*model_)) {
+  if (model_->free_parameters().empty()) {
+    throw InputError(settings.name + ": effects", "only known numbers", "at least one {prior, factor} or {mean, std}");
+  }
+  if (operators_.empty()) throw InputError(settings.name + ": observations", "an empty list", "at least one entry");
+  forward_ = make_forward_model(*model_);
+  displacement_ = Eigen::Matrix3Xd::Zero(3, mesh.node_count());
+  const Eigen::VectorXd std = model_->prior_std();
+  estimate_ = summarise(model_->free_parameters(), model_->prior_mean(), std.cwiseAbs2().asDiagonal());
+}
+
+void Scheme::set_first_stamp(double time) {
+  first_stamp_ = time;
+  for (auto& course : model_->courses()) course.second->shift(time);
+}
+
+void Scheme::add_load(const LoadSample& sample) {
+  const auto course = model_->courses().find(sample.topic);
+  if (course == model_->courses().end()) return;
+  if (!sample.value.allFinite() || sample.value.size() != course->second->components()) {
+    throw InputError(sample.topic, "a load that is not finite or has the wrong size",
+                     std::to_string(course->second->components()) + " finite number(s)");
+  }
+  course->second->add(sample.time, sample.value);
+}
+
+StepResult Scheme::step(const Frame& frame) {
+  StepResult result;
+  result.estimate = estimate_;
+  const auto refuse = [&result](const std::string& reason) {
+    result.reason = reason;
+    return result;
+  };
+  if (!first_stamp_) set_first_stamp(frame.time);
+  if (frame.observations.empty()) return refuse("nothing was observed");
+  if (frame.time < start()) return refuse("before the body is at rest (time.start)");
+  if (last_time_ && frame.time <= *last_time_) return refuse("late: not newer than the frame before");
+  try {
+    for (const Observation& observation : frame.observations) {
+      operators_.at(static_cast<std::size_t>(observation.source))->check(observation);
+    }
+    last_time_ = frame.time;
+    return process(frame);
+  } catch (const std::exception& error) {
+    return refuse(error.what());
+  }
+}
+
+void Scheme::reset() {
+  last_time_.reset();
+  first_stamp_.reset();
+  for (auto& course : model_->courses()) course.second->clear();
+  const Eigen::VectorXd std = model_->prior_std();
+  estimate_ = summarise(model_->free_parameters(), model_->prior_mean(), std.cwiseAbs2().asDiagonal());
+  displacement_.setZero();
+  prediction_ = {};
+  forget();
+}
+
+Prediction Scheme::at_rest(const Frame& frame) const {
+  return predict_frame(operators_, frame, Eigen::VectorXd::Zero(model_->fem().dof_count()));
+}
+
+std::vector<Misfit> Scheme::compare_free_run(const std::vector<Frame>& frames, const Eigen::VectorXd& theta) const {
+  std::vector<Misfit> misfits;
+  const auto run = forward_->start(theta, start());
+  for (const Frame& frame : frames) {
+    run->advance(frame.time);
+    const Prediction p = predict_frame(operators_, frame, run->displacement());
+    misfits.push_back(compare(frame.time, p, at_rest(frame).predicted, model_->mesh().node_count()));
+  }
+  return misfits;
+}
+
+}  // namespace tissue_stiffness

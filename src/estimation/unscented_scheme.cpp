@@ -1,0 +1,178 @@
+// The default scheme: free-running sigma points, iterated. `step` reads: predict, observe, update, revisit.
+#include <algorithm>
+#include <cmath>
+
+#include "tissue_stiffness/estimation/compare.hpp"
+#include "tissue_stiffness/estimation/ensemble.hpp"
+#include "tissue_stiffness/estimation/initial_velocity.hpp"
+#include "tissue_stiffness/estimation/posterior.hpp"
+#include "tissue_stiffness/estimation/scheme.hpp"
+#include "tissue_stiffness/estimation/stopwatch.hpp"
+#include "tissue_stiffness/filter/anchored_filter.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr double kFar = 1.0;            // spreads between anchor and estimate that ask for a new anchor
+constexpr double kWide = 6.0;           // posterior standard deviations that the sigma points may span
+constexpr double kNewSpread = 2.0;      // posterior standard deviations that they span after a move
+constexpr double kFloor = 1e-3;         // of the prior's standard deviation: the smallest span
+constexpr double kLongestMove = 3.0;    // spreads that the anchor may move at once
+constexpr int kMostVisits = 8;          // moves of the anchor a frame
+constexpr int kVelocityFrames = 4;      // frames that the initial velocity is read from
+constexpr std::size_t kWindow = 4000;   // frames kept for replay; later ones only add information
+constexpr double kConverged = 0.05;     // relative standard deviation
+constexpr double kInvalidSigmas = 10.0; // rms error over noise at which the model says nothing about the body
+
+class UnscentedScheme : public Scheme {
+ public:
+  UnscentedScheme(const ModelSettings& settings, const TetMesh& mesh)
+      : Scheme(settings, mesh),
+        ensemble_(*model_, *forward_, operators_),
+        filter_(model_->prior_mean(), model_->prior_std()) {}
+
+  std::vector<std::string> description() const override { return {forward_->description()}; }
+
+  std::vector<Misfit> free_run() const override {
+    return frames_.empty() ? std::vector<Misfit>{} : compare_free_run(frames_, model_->theta(filter_.mean()));
+  }
+  Eigen::MatrixXd parameter_covariance() const override { return filter_.covariance(); }
+
+ protected:
+  StepResult process(const Frame& frame) override {
+    if (model_->settings().initial.kind == InitialSettings::Kind::from_frames && !ensemble_.started()) {
+      return wait_for_velocity(frame);
+    }
+    return assimilate(frame);
+  }
+
+  void forget() override {
+    frames_.clear();
+    waiting_.clear();
+    ensemble_.clear();
+    filter_ = AnchoredFilter(model_->prior_mean(), model_->prior_std());
+    complete_ = true;
+  }
+
+ private:
+  StepResult wait_for_velocity(const Frame& frame) {
+    waiting_.push_back(frame);
+    if (waiting_.size() < kVelocityFrames) {
+      StepResult result;
+      result.estimate = estimate_;
+      result.reason = "kept until the initial velocity can be read";
+      return result;
+    }
+    const VelocityEstimate v = velocity_from_frames(*model_, waiting_);
+    model_->set_velocity_prior(v.mean, v.std);
+    filter_ = AnchoredFilter(model_->prior_mean(), model_->prior_std());
+    StepResult result;
+    for (const Frame& kept : waiting_) result = assimilate(kept);
+    waiting_.clear();
+    return result;
+  }
+
+  StepResult assimilate(const Frame& frame) {
+    StepResult result;
+    Stopwatch watch(result.seconds);
+    start_if_needed();
+    ensemble_.advance(frame.time);
+    watch.lap("predict");
+    Ensemble::Predicted predicted = ensemble_.predict(frame);
+    watch.lap("observe");
+    const AnchoredFilter::Innovation innovation = absorb(predicted);
+    if (complete_) frames_.push_back(frame);
+    watch.lap("update");
+    if (frames_.size() > kWindow) {
+      complete_ = false;
+      frames_.clear();
+    }
+    if (complete_ && revisit()) predicted = ensemble_.predict(frame);
+    watch.lap("revisit");
+    publish(frame, predicted, innovation, result);
+    watch.lap("report");
+    return result;
+  }
+
+  void start_if_needed() {
+    if (!ensemble_.started()) restart();
+  }
+
+  void restart() { ensemble_.restart(filter_.sigma_points(), start()); }
+
+  AnchoredFilter::Innovation absorb(const Ensemble::Predicted& predicted) {
+    Prediction now = predicted.central;
+    now.predicted = filter_.predict(predicted.rows, filter_.mean());
+    return filter_.update(now.measured, predicted.rows, now.sigma.cwiseAbs2(), row_weights(now));
+  }
+
+  // Moves the sigma points to where the estimate went and runs the recording again, until nothing moves. True if moved.
+  bool revisit() {
+    bool moved = false;
+    const Eigen::VectorXd floor = kFloor * model_->prior_std();
+    for (int visit = 0; visit < kMostVisits && filter_.stale(kFar, kWide, floor); ++visit) {
+      const AnchoredFilter before = filter_;
+      const Eigen::VectorXd limit = kLongestMove * before.spread();
+      Eigen::VectorXd move = (before.mean() - before.anchor()).cwiseMax(-limit).cwiseMin(limit);
+      const Eigen::VectorXd std = before.covariance().diagonal().cwiseSqrt();
+      const Eigen::VectorXd spread = (kNewSpread * std).cwiseMin(before.spread()).cwiseMax(floor);
+      for (int cut = 0; cut < 5; ++cut, move *= 0.5) {
+        replay(before.anchor() + move, spread);
+        if (filter_.cost() <= before.cost() * (1.0 + 1e-3) + 1.0) break;
+      }
+      moved = true;
+    }
+    return moved;
+  }
+
+  void replay(const Eigen::VectorXd& anchor, const Eigen::VectorXd& spread) {
+    filter_.move_anchor(anchor, spread);
+    restart();
+    for (const Frame& frame : frames_) {
+      ensemble_.advance(frame.time);
+      absorb(ensemble_.predict(frame));
+    }
+  }
+
+  void publish(const Frame& frame, const Ensemble::Predicted& predicted, const AnchoredFilter::Innovation& innovation,
+               StepResult& result) {
+    const Eigen::VectorXd w = filter_.mean();
+    prediction_ = predicted.central;
+    prediction_.predicted = filter_.predict(predicted.rows, w);
+    const Eigen::VectorXd u = filter_.predict(ensemble_.displacements(), w);
+    displacement_ = Eigen::Map<const Eigen::Matrix3Xd>(u.data(), 3, u.size() / 3);
+    result.used = true;
+    result.misfit = compare(frame.time, prediction_, at_rest(frame).predicted, model_->mesh().node_count());
+    result.misfit.nis = innovation.nis;
+    result.misfit.dof = innovation.dof;
+    estimate_ = summarise(model_->free_parameters(), w, filter_.covariance());
+    estimate_.time = frame.time;
+    estimate_.state = state(result.misfit);
+    result.estimate = estimate_;
+  }
+
+  EstimateState state(const Misfit& misfit) const {
+    if (misfit.count == 0) return EstimateState::no_data;
+    if (misfit.rms_sigma > kInvalidSigmas) return EstimateState::model_invalid;
+    for (std::size_t i = 0; i < estimate_.parameters.size(); ++i) {
+      const ParameterEstimate& p = estimate_.parameters[i];
+      const bool positive = model_->free_parameters()[i].prior.kind == Quantity::Kind::log_normal;
+      const double scale = positive ? std::abs(p.mean) : model_->free_parameters()[i].prior.spread;
+      if (p.std > kConverged * scale) return EstimateState::converging;
+    }
+    return EstimateState::converged;
+  }
+
+  Ensemble ensemble_;
+  AnchoredFilter filter_;
+  std::vector<Frame> frames_, waiting_;
+  bool complete_ = true;  ///< every frame since the start is in frames_
+};
+
+}  // namespace
+
+std::unique_ptr<Scheme> make_unscented_scheme(const ModelSettings& settings, const TetMesh& mesh) {
+  return std::make_unique<UnscentedScheme>(settings, mesh);
+}
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,76 @@
+#include "tissue_stiffness/fem/facet_quadrature.hpp"
+
+#include <Eigen/Geometry>
+
+namespace tissue_stiffness {
+namespace {
+
+Eigen::VectorXd triangle_shape(int nodes, double r, double s) {
+  const double t = 1.0 - r - s;
+  if (nodes == 3) return Eigen::Vector3d(t, r, s);
+  Eigen::VectorXd n(6);
+  n << t * (2 * t - 1), r * (2 * r - 1), s * (2 * s - 1), 4 * t * r, 4 * r * s, 4 * s * t;
+  return n;
+}
+
+Eigen::MatrixX2d triangle_derivative(int nodes, double r, double s) {
+  const double t = 1.0 - r - s;
+  Eigen::MatrixX2d d(nodes, 2);
+  if (nodes == 3) {
+    d << -1, -1, 1, 0, 0, 1;
+  } else {
+    d << 1 - 4 * t, 1 - 4 * t, 4 * r - 1, 0, 0, 4 * s - 1, 4 * (t - r), -4 * r, 4 * s, 4 * r, -4 * s, 4 * (t - s);
+  }
+  return d;
+}
+
+}  // namespace
+
+FacetQuadrature::FacetQuadrature(int nodes) {
+  Eigen::Matrix2Xd points;
+  if (nodes == 3) {
+    points.resize(2, 3);
+    weights_ = Eigen::VectorXd::Constant(3, 1.0 / 6.0);
+    points << 1.0 / 6, 2.0 / 3, 1.0 / 6, 1.0 / 6, 1.0 / 6, 2.0 / 3;
+  } else {
+    const double a = 0.445948490915965, b = 0.091576213509771, wa = 0.111690794839005, wb = 0.054975871827661;
+    points.resize(2, 6);
+    points << a, 1 - 2 * a, a, b, 1 - 2 * b, b, a, a, 1 - 2 * a, b, b, 1 - 2 * b;
+    weights_.resize(6);
+    weights_ << wa, wa, wa, wb, wb, wb;
+    weights_ *= 0.5 / weights_.sum();
+  }
+  shape_.resize(nodes, points.cols());
+  for (Eigen::Index q = 0; q < points.cols(); ++q) {
+    shape_.col(q) = triangle_shape(nodes, points(0, q), points(1, q));
+    derivatives_.push_back(triangle_derivative(nodes, points(0, q), points(1, q)));
+  }
+}
+
+Eigen::Vector3d FacetQuadrature::normal(const Eigen::Matrix3Xd& x, int q) const {
+  const Eigen::Matrix<double, 3, 2> tangents = x * derivative(q);
+  return tangents.col(0).cross(tangents.col(1));
+}
+
+Eigen::Matrix3Xd facet_nodes(const TetMesh& mesh, int facet, const Eigen::VectorXd* displacement) {
+  Eigen::Matrix3Xd x(3, mesh.facets.rows());
+  for (Eigen::Index a = 0; a < x.cols(); ++a) {
+    const int node = mesh.facets(a, facet);
+    x.col(a) = mesh.nodes.col(node);
+    if (displacement != nullptr) x.col(a) += displacement->segment<3>(3 * node);
+  }
+  return x;
+}
+
+std::vector<int> facet_local_nodes(const TetMesh& mesh, int facet) {
+  std::vector<int> local;
+  const auto tet = mesh.tets.col(mesh.facet_tet[facet]);
+  for (Eigen::Index a = 0; a < mesh.facets.rows(); ++a) {
+    int k = 0;
+    while (tet[k] != mesh.facets(a, facet)) ++k;
+    local.push_back(k);
+  }
+  return local;
+}
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,112 @@
+#include "tissue_stiffness/fem/neo_hookean.hpp"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <string>
+
+#include "tissue_stiffness/types/error.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+template <int N>
+using Nodal = Eigen::Matrix<double, 3, N>;
+
+template <int N>
+Nodal<N> gather(const Eigen::MatrixXi& elements, int e, const Eigen::VectorXd& u) {
+  Nodal<N> local;
+  for (int a = 0; a < N; ++a) local.col(a) = u.segment<3>(3 * elements(a, e));
+  return local;
+}
+
+// F, its inverse and ln J at one quadrature point.
+struct Deformation {
+  Eigen::Matrix3d gradient;
+  Eigen::Matrix3d inverse;
+  double log_volume;
+};
+
+template <int N>
+Deformation deform(const Nodal<N>& u, const Eigen::Map<const Nodal<N>>& g, int e) {
+  Deformation d;
+  d.gradient.noalias() = u * g.transpose();
+  d.gradient.diagonal().array() += 1.0;
+  const double volume = d.gradient.determinant();
+  if (!(volume > 0.0)) throw NumericalError("tetrahedron " + std::to_string(e) + " turned inside out");
+  d.inverse = d.gradient.inverse();
+  d.log_volume = std::log(volume);
+  return d;
+}
+
+template <int N>
+void force(const Discretisation& fem, const std::vector<int>& list, const Lame& c, const Eigen::VectorXd& u,
+           Eigen::VectorXd& f) {
+  for (const int e : list) {
+    const Nodal<N> local = gather<N>(fem.elements(), e, u);
+    Nodal<N> internal = Nodal<N>::Zero();
+    for (int q = 0; q < fem.points_per_element(); ++q) {
+      const Eigen::Map<const Nodal<N>> g(fem.gradient(e, q).data());
+      const Deformation d = deform<N>(local, g, e);
+      const Eigen::Matrix3d stress =
+          c.mu * d.gradient + (c.lambda * d.log_volume - c.mu) * d.inverse.transpose();  // first Piola-Kirchhoff
+      internal.noalias() += (fem.weight(e, q) * stress) * g;
+    }
+    for (int a = 0; a < N; ++a) f.segment<3>(3 * fem.elements()(a, e)) -= internal.col(a);
+  }
+}
+
+template <int N>
+void stiffness(const Discretisation& fem, const std::vector<int>& list, const Lame& c, const Eigen::VectorXd& u,
+               SparseMatrix& k) {
+  for (const int e : list) {
+    const Nodal<N> local = gather<N>(fem.elements(), e, u);
+    Eigen::Matrix<double, 3 * N, 3 * N> block = Eigen::Matrix<double, 3 * N, 3 * N>::Zero();
+    for (int q = 0; q < fem.points_per_element(); ++q) {
+      const Eigen::Map<const Nodal<N>> g(fem.gradient(e, q).data());
+      const Deformation d = deform<N>(local, g, e);
+      const Nodal<N> h = d.inverse.transpose() * g;  // gradients in the deformed body
+      const double w = fem.weight(e, q), s = w * (c.mu - c.lambda * d.log_volume), l = w * c.lambda, m = w * c.mu;
+      for (int b = 0; b < N; ++b) {
+        for (int a = 0; a < N; ++a) {
+          auto part = block.template block<3, 3>(3 * a, 3 * b);
+          part.noalias() += (s * h.col(b)) * h.col(a).transpose() + (l * h.col(a)) * h.col(b).transpose();
+          part.diagonal().array() += m * g.col(a).dot(g.col(b));
+        }
+      }
+    }
+    for (int b = 0; b < N; ++b) {
+      for (int a = 0; a < N; ++a) fem.add_block(k, e, a, b, block.template block<3, 3>(3 * a, 3 * b));
+    }
+  }
+}
+
+template <int N>
+double stored(const Discretisation& fem, const std::vector<int>& list, const Lame& c, const Eigen::VectorXd& u) {
+  double energy = 0.0;
+  for (const int e : list) {
+    const Nodal<N> local = gather<N>(fem.elements(), e, u);
+    for (int q = 0; q < fem.points_per_element(); ++q) {
+      const Deformation d = deform<N>(local, Eigen::Map<const Nodal<N>>(fem.gradient(e, q).data()), e);
+      energy += fem.weight(e, q) * (0.5 * c.mu * (d.gradient.squaredNorm() - 3.0 - 2.0 * d.log_volume) +
+                                    0.5 * c.lambda * d.log_volume * d.log_volume);
+    }
+  }
+  return energy;
+}
+
+}  // namespace
+
+void NeoHookean::add_force(const Lame& lame, const Eigen::VectorXd& u, Eigen::VectorXd& f) const {
+  fem_.nodes_per_element() == 10 ? force<10>(fem_, elements_, lame, u, f) : force<4>(fem_, elements_, lame, u, f);
+}
+
+void NeoHookean::add_stiffness(const Lame& lame, const Eigen::VectorXd& u, SparseMatrix& k) const {
+  fem_.nodes_per_element() == 10 ? stiffness<10>(fem_, elements_, lame, u, k)
+                                 : stiffness<4>(fem_, elements_, lame, u, k);
+}
+
+double NeoHookean::energy(const Lame& lame, const Eigen::VectorXd& u) const {
+  return fem_.nodes_per_element() == 10 ? stored<10>(fem_, elements_, lame, u) : stored<4>(fem_, elements_, lame, u);
+}
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,108 @@
+// The only file that uses CHOLMOD. Its supernodal part is GPL: TISSUE_STIFFNESS_CHOLMOD_SUPERNODAL=OFF avoids it.
+#include "tissue_stiffness/fem/sparse_solver.hpp"
+
+#include <cholmod.h>
+
+#include "tissue_stiffness/types/error.hpp"
+
+// Trajectories run in parallel, one solver each: threads inside BLAS would only get in their way.
+extern "C" void openblas_set_num_threads(int) __attribute__((weak));
+
+namespace tissue_stiffness {
+
+struct SparseSolver::Data {
+  cholmod_common common{};
+  cholmod_factor* factor = nullptr;
+  bool numeric = false;
+
+  Data() {
+    if (openblas_set_num_threads != nullptr) openblas_set_num_threads(1);
+    cholmod_start(&common);
+#ifdef TISSUE_STIFFNESS_CHOLMOD_SUPERNODAL
+    common.supernodal = CHOLMOD_SUPERNODAL;
+#else
+    common.supernodal = CHOLMOD_SIMPLICIAL;
+#endif
+    common.final_ll = 1;
+    common.print = 0;
+  }
+  Data(const Data&) = delete;
+  Data& operator=(const Data&) = delete;
+  ~Data() {
+    if (factor != nullptr) cholmod_free_factor(&factor, &common);
+    cholmod_finish(&common);
+  }
+};
+
+namespace {
+
+cholmod_sparse view(const SparseMatrix& matrix) {
+  cholmod_sparse v{};
+  v.nrow = static_cast<std::size_t>(matrix.rows());
+  v.ncol = static_cast<std::size_t>(matrix.cols());
+  v.nzmax = static_cast<std::size_t>(matrix.nonZeros());
+  v.p = const_cast<int*>(matrix.outerIndexPtr());
+  v.i = const_cast<int*>(matrix.innerIndexPtr());
+  v.x = const_cast<double*>(matrix.valuePtr());
+  v.stype = -1;
+  v.itype = CHOLMOD_INT;
+  v.xtype = CHOLMOD_REAL;
+  v.dtype = CHOLMOD_DOUBLE;
+  v.sorted = 1;
+  v.packed = 1;
+  return v;
+}
+
+}  // namespace
+
+SparseSolver::SparseSolver() : data_(std::make_unique<Data>()) {}
+SparseSolver::~SparseSolver() = default;
+SparseSolver::SparseSolver(SparseSolver&&) noexcept = default;
+SparseSolver& SparseSolver::operator=(SparseSolver&&) noexcept = default;
+
+void SparseSolver::factorize(const SparseMatrix& matrix) {
+  cholmod_sparse a = view(matrix);
+  if (data_->factor == nullptr) data_->factor = cholmod_analyze(&a, &data_->common);
+  data_->numeric = false;
+  if (data_->factor == nullptr || cholmod_factorize(&a, data_->factor, &data_->common) == 0) {
+    throw NumericalError("sparse factorisation failed: out of memory or a pattern that changed");
+  }
+  if (data_->common.status == CHOLMOD_NOT_POSDEF) {
+    throw NumericalError("matrix is not positive definite (column " + std::to_string(data_->factor->minor) + ")");
+  }
+  data_->numeric = true;
+}
+
+bool SparseSolver::ready() const { return data_->numeric; }
+
+Eigen::MatrixXd SparseSolver::solve(const Eigen::MatrixXd& b) const {
+  if (!data_->numeric) throw NumericalError("solve before a successful factorisation");
+  cholmod_dense rhs{};
+  rhs.nrow = static_cast<std::size_t>(b.rows());
+  rhs.ncol = static_cast<std::size_t>(b.cols());
+  rhs.nzmax = rhs.nrow * rhs.ncol;
+  rhs.d = rhs.nrow;
+  rhs.x = const_cast<double*>(b.data());
+  rhs.xtype = CHOLMOD_REAL;
+  rhs.dtype = CHOLMOD_DOUBLE;
+  cholmod_dense* x = cholmod_solve(CHOLMOD_A, data_->factor, &rhs, &data_->common);
+  if (x == nullptr) throw NumericalError("sparse solve failed");
+  Eigen::MatrixXd result = Eigen::Map<Eigen::MatrixXd>(static_cast<double*>(x->x), b.rows(), b.cols());
+  cholmod_free_dense(&x, &data_->common);
+  return result;
+}
+
+double SparseSolver::factor_size() const { return data_->common.lnz; }
+
+void fix_dofs(SparseMatrix& matrix, const std::vector<char>& fixed, double diagonal) {
+  for (int column = 0; column < matrix.outerSize(); ++column) {
+    const bool column_fixed = fixed[static_cast<std::size_t>(column)] != 0;
+    for (SparseMatrix::InnerIterator it(matrix, column); it; ++it) {
+      if (column_fixed || fixed[static_cast<std::size_t>(it.row())] != 0) {
+        it.valueRef() = it.row() == column ? diagonal : 0.0;
+      }
+    }
+  }
+}
+
+}  // namespace tissue_stiffness
