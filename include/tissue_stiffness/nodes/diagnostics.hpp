@@ -1,0 +1,42 @@
+#pragma once
+
+#include <diagnostic_msgs/DiagnosticStatus.h>
+#include <ros/node_handle.h>
+
+#include <map>
+#include <mutex>
+#include <string>
+
+namespace tissue_stiffness {
+
+/// A node's state on /diagnostics, once a second: counts, texts and the times of stages. Thread safe.
+class Diagnostics {
+ public:
+  Diagnostics(ros::NodeHandle node, const std::string& name);
+
+  void count(const std::string& key);
+  void set(const std::string& key, const std::string& text);
+  /// Wall time of a stage [s]: its mean and its longest are shown.
+  void time(const std::string& stage, double seconds);
+  void state(std::uint8_t level, const std::string& message);
+
+  /// A message that was left out: counted, and logged at most once a second.
+  void bad_message(const std::string& what);
+
+ private:
+  struct Stage {
+    double sum = 0.0, longest = 0.0;
+    int runs = 0;
+  };
+  void publish();
+
+  std::mutex mutex_;
+  diagnostic_msgs::DiagnosticStatus status_;
+  std::map<std::string, int> counts_;
+  std::map<std::string, std::string> texts_;
+  std::map<std::string, Stage> stages_;
+  ros::Publisher publisher_;
+  ros::WallTimer timer_;
+};
+
+}  // namespace tissue_stiffness

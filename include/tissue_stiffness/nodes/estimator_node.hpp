@@ -1,0 +1,71 @@
+#pragma once
+
+#include <ros/node_handle.h>
+#include <std_srvs/Trigger.h>
+
+#include <atomic>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "tissue_stiffness/estimation/estimator.hpp"
+#include "tissue_stiffness/nodes/estimator_inputs.hpp"
+#include "tissue_stiffness/nodes/estimator_outputs.hpp"
+#include "tissue_stiffness/nodes/ros_settings.hpp"
+
+namespace tissue_stiffness {
+
+/// The online estimator behind topics. Callbacks queue, one worker steps over frames and publishes after each.
+///
+/// `time.start` of the model counts from the first stamp heard on any of its topics. The node listens from the moment it is
+/// ready (at once when the mesh comes from the contour), so a recording that waits for subscribers is heard from its start.
+/// When stamps jump back (a bag that loops, a simulated clock that is reset) the estimator starts from the prior again and
+/// `previous_estimate` of /diagnostics keeps what the run before had found.
+///
+/// Private parameters: `model` (a file) or the model's keys; `model_frame` ("model"), `load_timeout` (0.1 s: how long a
+/// frame waits for the loads and other sensors up to its stamp), `transform_timeout` (0.1 s), `queue_size` (100 frames).
+class EstimatorNode {
+ public:
+  EstimatorNode(ros::NodeHandle node, const ros::NodeHandle& private_node);
+  ~EstimatorNode();
+
+  int exit_code() const { return exit_code_; }
+
+ private:
+  EstimatorNode(ros::NodeHandle node, const NodeSettings& settings);
+
+  void on_mesh(const TetMeshConstPtr& message);
+  bool on_reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response);
+
+  void run();
+  void work();
+  std::optional<TetMesh> wait_for_mesh();
+  std::optional<TetMesh> new_mesh();
+  void build(const TetMesh& mesh);
+  void start_lap(const ros::Time& first_stamp);
+  void process(const FrameQueue::Work& work);
+  void report(const StepResult& result);
+
+  ModelSettings settings_;
+  std::uint32_t queue_size_;
+  Diagnostics diagnostics_;
+  SensorPoses poses_;
+  FrameQueue queue_;
+  EstimatorInputs inputs_;
+  EstimatorOutputs outputs_;
+  std::unique_ptr<Estimator> estimator_;  ///< the worker's alone
+
+  std::mutex mesh_mutex_;
+  std::condition_variable mesh_arrived_;
+  std::optional<TetMesh> mesh_;
+  bool stopped_ = false;
+
+  std::atomic<int> exit_code_{0};
+  ros::Subscriber mesh_subscriber_;
+  ros::ServiceServer reset_service_;
+  std::thread worker_;
+};
+
+}  // namespace tissue_stiffness

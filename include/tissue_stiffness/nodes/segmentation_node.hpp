@@ -1,0 +1,50 @@
+#pragma once
+
+#include <image_transport/image_transport.h>
+#include <ros/node_handle.h>
+
+#include <memory>
+
+#include "tissue_stiffness/nodes/diagnostics.hpp"
+#include "tissue_stiffness/nodes/messages.hpp"
+#include "tissue_stiffness/nodes/ros_settings.hpp"
+#include "tissue_stiffness/segmentation/segmenter.hpp"
+
+namespace tissue_stiffness {
+
+/// Finds the tissue's outline in `image` and publishes it on `contour` with the image's header; on `overlay` the image with
+/// that outline and, when it comes on `predicted_contour`, the model's. Works only while somebody listens, so that the
+/// first image of a recording that waits for subscribers is not lost on nobody.
+///
+/// Private parameters: `segmentation: {kind, seed}`, or `model` (a file or the model's keys), of which contour number
+/// `contour_number` (1) counts. With a model the image topic is the model's, unless `image` is remapped. `queue_size`
+/// (100).
+class SegmentationNode {
+ public:
+  SegmentationNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
+  int exit_code() const { return 0; }
+
+ private:
+  void connect();
+  void on_image(const sensor_msgs::ImageConstPtr& message);
+  void on_camera_info(const sensor_msgs::CameraInfoConstPtr& message);
+  void on_predicted(const ContourConstPtr& message) { predicted_ = message; }
+  Segmentation segment(const sensor_msgs::ImageConstPtr& message, const cv::Mat& image);
+  void publish_overlay(const sensor_msgs::Image& message, const cv::Mat& image, const Contour& measured) const;
+
+  ros::NodeHandle node_;
+  image_transport::ImageTransport transport_;
+  Diagnostics diagnostics_;
+  std::unique_ptr<Segmenter> segmenter_;  ///< null: the model has no contour
+  std::string image_topic_, camera_info_topic_;
+  std::uint32_t queue_size_ = 100;
+  ros::Time last_;
+  sensor_msgs::CameraInfoConstPtr camera_info_;
+  ContourConstPtr predicted_;
+  ros::Publisher contour_publisher_;
+  image_transport::Publisher overlay_publisher_;
+  image_transport::Subscriber image_subscriber_;
+  ros::Subscriber camera_info_subscriber_, predicted_subscriber_;
+};
+
+}  // namespace tissue_stiffness

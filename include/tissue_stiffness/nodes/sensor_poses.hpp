@@ -1,0 +1,30 @@
+#pragma once
+
+#include <std_msgs/Header.h>
+#include <tf2_ros/buffer.h>
+#include <tf2_ros/transform_listener.h>
+
+#include <Eigen/Geometry>
+#include <string>
+
+namespace tissue_stiffness {
+
+/// Where sensors are in the model frame, from /tf and /tf_static.
+class SensorPoses {
+ public:
+  /// `patience`: how long to wait for a transform [s of wall time; simulated time may stand still].
+  SensorPoses(std::string model_frame, double patience);
+
+  /// Pose of the header's frame at its stamp. Throws InputError naming `topic` and both frames when there is none.
+  Eigen::Isometry3d model_from(const std_msgs::Header& header, const std::string& topic) const;
+
+  const std::string& model_frame() const { return model_frame_; }
+
+ private:
+  std::string model_frame_;
+  double patience_;
+  tf2_ros::Buffer buffer_;
+  tf2_ros::TransformListener listener_;
+};
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <sensor_msgs/PointCloud2.h>
+#include <visualization_msgs/Marker.h>
+
+#include <Eigen/Core>
+
+#include "tissue_stiffness/types/misfit.hpp"
+#include "tissue_stiffness/types/tet_mesh.hpp"
+
+namespace tissue_stiffness {
+
+// The tracked surface for rviz: rest mesh plus displacement [m], in the frame and at the stamp of `header`.
+
+/// TRIANGLE_LIST coloured by misfit: green at 0 sigma over yellow to red at 3 sigma and beyond, grey where nothing was
+/// measured. A 10-node facet is shown as four triangles.
+visualization_msgs::Marker surface_marker(const TetMesh& mesh, const Eigen::Matrix3Xd& displacement, const Misfit& misfit,
+                                          const std_msgs::Header& header);
+
+/// The surface's nodes with FLOAT32 fields x y z, dx dy dz (displacement), misfit (all in m), misfit_sigma and the integer
+/// `vertex`. The misfit is NaN where nothing was measured.
+sensor_msgs::PointCloud2 surface_cloud(const TetMesh& mesh, const Eigen::Matrix3Xd& displacement, const Misfit& misfit,
+                                       const std_msgs::Header& header);
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,126 @@
+#include "tissue_stiffness/nodes/estimator_inputs.hpp"
+
+#include <ros/ros.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "tissue_stiffness/nodes/message_conversions.hpp"
+#include "tissue_stiffness/types/error.hpp"
+
+namespace tissue_stiffness {
+
+std::vector<LoadInput> load_topics(const ModelSettings& settings) {
+  std::vector<LoadInput> inputs;
+  for (EffectSettings effect : settings.effects) {  // a copy: asking marks keys as known
+    if (!effect.arguments.has("topic")) continue;
+    const std::string topic = effect.arguments.at("topic").as_text();
+    const bool known = std::any_of(inputs.begin(), inputs.end(), [&](const LoadInput& i) { return i.topic == topic; });
+    const auto kind = effect.name == "traction" ? LoadInput::Kind::wrench : LoadInput::Kind::pressure;
+    if (!known) inputs.push_back({topic, kind});
+  }
+  return inputs;
+}
+
+EstimatorInputs::EstimatorInputs(const ros::NodeHandle& node, const ModelSettings& settings, const SensorPoses& poses,
+                                 FrameQueue& queue, Diagnostics& diagnostics)
+    : node_(node), settings_(settings), poses_(poses), queue_(queue), diagnostics_(diagnostics) {}
+
+void EstimatorInputs::listen(std::uint32_t queue_size) {
+  if (!subscribers_.empty()) return;
+  for (const LoadInput& input : load_topics(settings_)) listen_load(input, queue_size);
+  int contours = 0;
+  for (std::size_t i = 0; i < settings_.observations.size(); ++i) {
+    if (settings_.observations[i].kind == ObservationSettings::Kind::contour) {
+      listen_contour(static_cast<int>(i), ++contours, queue_size);
+    } else {
+      listen_cloud(static_cast<int>(i), queue_size);
+    }
+  }
+}
+
+// Checks the stamp and hands the message to `add`; what is wrong with it is reported, never thrown into the spinner.
+template <typename Message, typename Add>
+void EstimatorInputs::subscribe(const std::string& topic, std::uint32_t queue_size, Add add) {
+  queue_.expect(topic);
+  const boost::function<void(const boost::shared_ptr<const Message>&)> callback =
+      [this, topic, add](const boost::shared_ptr<const Message>& message) {
+        try {
+          require_stamp(message->header, topic);
+          add(message);
+        } catch (const InputError& error) {
+          diagnostics_.bad_message(error.what());
+        }
+      };
+  subscribers_.push_back(node_.subscribe<Message>(topic, queue_size, callback));
+}
+
+void EstimatorInputs::listen_cloud(int source, std::uint32_t queue_size) {
+  const ObservationSettings& settings = settings_.observations[static_cast<std::size_t>(source)];
+  const std::string topic = settings.topic;
+  subscribe<sensor_msgs::PointCloud2>(
+      topic, queue_size, [this, topic, source, &settings](const sensor_msgs::PointCloud2ConstPtr& cloud) {
+        queue_.add_observation(topic, cloud->header.stamp, [this, topic, source, &settings, cloud] {
+          return to_observation(*cloud, settings, source, vertex_count_, poses_.model_from(cloud->header, topic));
+        });
+      });
+}
+
+void EstimatorInputs::listen_contour(int source, int number, std::uint32_t queue_size) {
+  const std::string camera_info = settings_.observations[static_cast<std::size_t>(source)].camera_info;
+  const boost::function<void(const sensor_msgs::CameraInfoConstPtr&)> keep =
+      [this, camera_info](const sensor_msgs::CameraInfoConstPtr& info) {
+        const std::lock_guard<std::mutex> lock(camera_mutex_);
+        cameras_[camera_info] = info;
+      };
+  subscribers_.push_back(node_.subscribe<sensor_msgs::CameraInfo>(camera_info, 10, keep));
+  const std::string topic = number == 1 ? "contour" : "contour_" + std::to_string(number);
+  subscribe<ContourMessage>(topic, queue_size, [this, topic, source](const ContourConstPtr& contour) {
+    queue_.add_observation(topic, contour->header.stamp,
+                           [this, topic, source, contour] { return observe_contour(*contour, source, topic); });
+  });
+}
+
+Observation EstimatorInputs::observe_contour(const ContourMessage& message, int source, const std::string& topic) const {
+  const ObservationSettings& settings = settings_.observations[static_cast<std::size_t>(source)];
+  sensor_msgs::CameraInfoConstPtr info;
+  {
+    const std::lock_guard<std::mutex> lock(camera_mutex_);
+    const auto known = cameras_.find(settings.camera_info);
+    if (known != cameras_.end()) info = known->second;
+  }
+  if (!info) throw InputError(topic, "a contour before any camera_info", "a message on " + settings.camera_info);
+  Observation out;
+  out.source = source;
+  out.kind = ObservationKind::contour;
+  out.time = message.header.stamp.toSec();
+  auto contour = std::make_shared<Contour>(to_contour(message, topic));
+  auto camera = std::make_shared<Camera>(
+      to_camera(*info, settings.projection, poses_.model_from(message.header, topic), settings.camera_info));
+  if (contour->width != camera->width || contour->height != camera->height) {
+    throw InputError(
+        topic, "an image of " + std::to_string(contour->width) + " x " + std::to_string(contour->height),
+        std::to_string(camera->width) + " x " + std::to_string(camera->height) + " as in " + settings.camera_info);
+  }
+  out.contour = contour;
+  out.camera = camera;
+  return out;
+}
+
+void EstimatorInputs::listen_load(const LoadInput& input, std::uint32_t queue_size) {
+  const std::string topic = input.topic;
+  const std::uint32_t deep = 10 * queue_size;  // loads come faster than frames
+  if (input.kind == LoadInput::Kind::pressure) {
+    subscribe<sensor_msgs::FluidPressure>(topic, deep, [this, topic](const sensor_msgs::FluidPressureConstPtr& pressure) {
+      const LoadSample sample = to_load(*pressure, topic);
+      queue_.add_load(topic, pressure->header.stamp, [sample] { return sample; });
+    });
+    return;
+  }
+  subscribe<geometry_msgs::WrenchStamped>(topic, deep, [this, topic](const geometry_msgs::WrenchStampedConstPtr& wrench) {
+    queue_.add_load(topic, wrench->header.stamp,
+                    [this, topic, wrench] { return to_load(*wrench, poses_.model_from(wrench->header, topic), topic); });
+  });
+}
+
+}  // namespace tissue_stiffness

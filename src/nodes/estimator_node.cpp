@@ -1,0 +1,170 @@
+#include "tissue_stiffness/nodes/estimator_node.hpp"
+
+#include <ros/ros.h>
+
+#include <sstream>
+
+#include "tissue_stiffness/nodes/message_conversions.hpp"
+#include "tissue_stiffness/types/error.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+using diagnostic_msgs::DiagnosticStatus;
+
+std::string shown(const Estimate& estimate) {
+  std::ostringstream text;
+  for (const ParameterEstimate& p : estimate.parameters) {
+    text << (text.tellp() > 0 ? ", " : "") << p.name << " " << p.mean << " " << p.unit << " (95 %: " << p.lower95 << " to "
+         << p.upper95 << ")";
+  }
+  return text.str();
+}
+
+NodeSettings read_settings(const ros::NodeHandle& private_node) {
+  return read_node_settings(private_node, {"model_frame", "load_timeout", "transform_timeout", "queue_size"});
+}
+
+}  // namespace
+
+EstimatorNode::EstimatorNode(ros::NodeHandle node, const ros::NodeHandle& private_node)
+    : EstimatorNode(std::move(node), read_settings(private_node)) {}
+
+EstimatorNode::EstimatorNode(ros::NodeHandle node, const NodeSettings& settings)
+    : settings_(read_model(settings.model, settings.directory)),
+      queue_size_(static_cast<std::uint32_t>(settings.own.number_or("queue_size", 100, 1, 1e5, "frames"))),
+      diagnostics_(node, "estimator"),
+      poses_(settings.own.text_or("model_frame", "model"), settings.own.number_or("transform_timeout", 0.1, 0, 60, "s")),
+      queue_(std::chrono::duration<double>(settings.own.number_or("load_timeout", 0.1, 0, 60, "s")), queue_size_),
+      inputs_(node, settings_, poses_, queue_, diagnostics_),
+      outputs_(node, poses_.model_frame()) {
+  if (settings_.mesh.source != MeshSettings::Source::file) inputs_.listen(queue_size_);
+  reset_service_ = node.advertiseService("reset", &EstimatorNode::on_reset, this);
+  mesh_subscriber_ = node.subscribe("mesh", 1, &EstimatorNode::on_mesh, this);
+  diagnostics_.state(DiagnosticStatus::WARN, "waiting for mesh");
+  worker_ = std::thread([this] { run(); });
+}
+
+EstimatorNode::~EstimatorNode() {
+  {
+    const std::lock_guard<std::mutex> lock(mesh_mutex_);
+    stopped_ = true;
+  }
+  mesh_arrived_.notify_all();
+  queue_.stop();
+  worker_.join();
+}
+
+void EstimatorNode::on_mesh(const TetMeshConstPtr& message) {
+  try {
+    TetMesh mesh = to_mesh(*message, "mesh");
+    const std::lock_guard<std::mutex> lock(mesh_mutex_);
+    mesh_ = std::move(mesh);
+    mesh_arrived_.notify_all();
+  } catch (const InputError& error) {
+    diagnostics_.bad_message(error.what());
+  }
+}
+
+bool EstimatorNode::on_reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  queue_.restart();
+  response.success = 1;
+  response.message = "the next frame starts from the prior";
+  return true;
+}
+
+// The worker's outermost frame: nothing may leave a thread.
+void EstimatorNode::run() {
+  try {
+    work();
+  } catch (const InputError& error) {
+    ROS_FATAL("%s", error.what());
+    exit_code_ = 2;
+    ros::shutdown();
+  } catch (const std::exception& error) {
+    ROS_FATAL("%s", error.what());
+    exit_code_ = 1;
+    ros::shutdown();
+  }
+}
+
+void EstimatorNode::work() {
+  const std::optional<TetMesh> first = wait_for_mesh();
+  if (!first) return;
+  build(*first);
+  inputs_.listen(queue_size_);
+  while (const auto work = queue_.take()) {
+    if (const auto mesh = new_mesh()) {
+      build(*mesh);
+      queue_.restart();
+    } else {
+      process(*work);
+    }
+  }
+}
+
+std::optional<TetMesh> EstimatorNode::wait_for_mesh() {
+  std::unique_lock<std::mutex> lock(mesh_mutex_);
+  mesh_arrived_.wait(lock, [this] { return stopped_ || mesh_; });
+  return stopped_ ? std::nullopt : std::exchange(mesh_, std::nullopt);
+}
+
+std::optional<TetMesh> EstimatorNode::new_mesh() {
+  const std::lock_guard<std::mutex> lock(mesh_mutex_);
+  return std::exchange(mesh_, std::nullopt);
+}
+
+void EstimatorNode::build(const TetMesh& mesh) {
+  estimator_ = std::make_unique<Estimator>(settings_, mesh);
+  inputs_.set_vertex_count(mesh.corner_count);
+  for (const std::string& line : estimator_->description()) ROS_INFO("%s", line.c_str());
+  diagnostics_.state(DiagnosticStatus::OK, to_string(EstimateState::no_data));
+}
+
+void EstimatorNode::start_lap(const ros::Time& first_stamp) {
+  const Estimate& previous = estimator_->estimate();
+  if (previous.state != EstimateState::no_data) {
+    ROS_INFO("starting again from the prior; the run before found %s", shown(previous).c_str());
+    diagnostics_.set("previous_estimate", shown(previous));
+    diagnostics_.count("restarts");
+  }
+  estimator_->reset();
+  estimator_->set_first_stamp(first_stamp.toSec());
+}
+
+void EstimatorNode::process(const FrameQueue::Work& work) {
+  if (work.new_lap) start_lap(work.first_stamp);
+  const auto left_out = [this](const auto& convert) {
+    try {
+      convert();
+    } catch (const InputError& error) {
+      diagnostics_.bad_message(error.what());
+    }
+  };
+  for (const auto& load : work.loads) left_out([&] { estimator_->add_load(load()); });
+  Frame frame;
+  frame.time = work.stamp.toSec();
+  for (const auto& make : work.observations) left_out([&] { frame.observations.push_back(make()); });
+  if (frame.observations.empty()) return;
+  const StepResult result = estimator_->step(frame);
+  report(result);
+  if (result.used) outputs_.publish(*estimator_, result, frame, work.stamp);
+}
+
+void EstimatorNode::report(const StepResult& result) {
+  diagnostics_.set("frames dropped", std::to_string(queue_.dropped()));
+  if (!result.used) {
+    ROS_WARN_STREAM_THROTTLE(1.0, "frame skipped: " << result.reason);
+    diagnostics_.count("frames skipped");
+    diagnostics_.set("last reason for skipping", result.reason);
+    return;
+  }
+  diagnostics_.count("frames used");
+  diagnostics_.set("estimate", shown(result.estimate));
+  for (const auto& [stage, seconds] : result.seconds) diagnostics_.time(stage, seconds);
+  const EstimateState state = result.estimate.state;
+  const bool good = state != EstimateState::model_invalid && state != EstimateState::drifting;
+  diagnostics_.state(good ? DiagnosticStatus::OK : DiagnosticStatus::WARN, to_string(state));
+}
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,136 @@
+#include "tissue_stiffness/nodes/frame_queue.hpp"
+
+#include <algorithm>
+
+namespace tissue_stiffness {
+namespace {
+
+const ros::Duration kJumpBack(0.5);
+const ros::Duration kJumpAhead(60.0);
+constexpr std::size_t kMostLoads = 100000;  // a load at 1 kHz without a frame for 100 s
+
+}  // namespace
+
+FrameQueue::FrameQueue(std::chrono::duration<double> patience, std::size_t capacity)
+    : patience_(patience), capacity_(capacity) {}
+
+void FrameQueue::expect(const std::string& topic) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  topics_[topic];
+}
+
+void FrameQueue::add_observation(const std::string& topic, const ros::Time& stamp, MakeObservation make) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const Place where = place(topic, stamp);
+  if (where.first < taken_lap_) {
+    ++dropped_;
+    return;
+  }
+  const auto [frame, is_new] = frames_.try_emplace(where);
+  if (is_new) frame->second.arrival = Clock::now();
+  frame->second.observations.push_back(std::move(make));
+  if (frames_.size() > capacity_) {
+    frames_.erase(frames_.begin());
+    ++dropped_;
+  }
+  changed_.notify_one();
+}
+
+void FrameQueue::add_load(const std::string& topic, const ros::Time& stamp, MakeLoad make) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const Place where = place(topic, stamp);
+  if (where.first < taken_lap_) return;
+  loads_.emplace(where, std::move(make));
+  if (loads_.size() > kMostLoads) loads_.erase(loads_.begin());
+  changed_.notify_one();
+}
+
+// The lap that a message belongs to; a jump of its topic's stamps puts the topic into the next one.
+FrameQueue::Place FrameQueue::place(const std::string& name, const ros::Time& stamp) {
+  Topic& topic = topics_[name];
+  const auto lap = laps_.find(topic.lap);
+  if (!topic.seen) {
+    topic = {true, newest_lap_, stamp, stamp};
+  } else if (stamp + kJumpBack < topic.last || (stamp <= topic.first && lap->second.last > stamp) ||
+             stamp > lap->second.last + kJumpAhead) {
+    if (topic.lap == newest_lap_) ++newest_lap_;
+    topic = {true, newest_lap_, stamp, stamp};
+  }
+  topic.last = std::max(topic.last, stamp);
+  const auto [span, is_new] = laps_.try_emplace(topic.lap, Span{stamp, stamp});
+  span->second.first = std::min(span->second.first, stamp);
+  span->second.last = std::max(span->second.last, stamp);
+  return {topic.lap, stamp};
+}
+
+bool FrameQueue::complete(const Place& frame) const {
+  return std::all_of(topics_.begin(), topics_.end(), [&](const auto& entry) {
+    const Topic& topic = entry.second;
+    return topic.seen && Place(topic.lap, topic.last) >= frame;
+  });
+}
+
+std::optional<FrameQueue::Work> FrameQueue::take() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (!stopped_) {
+    if (frames_.empty()) {
+      changed_.wait(lock);
+      continue;
+    }
+    const auto& [place, frame] = *frames_.begin();
+    const auto deadline = frame.arrival + std::chrono::duration_cast<Clock::duration>(patience_);
+    if (complete(place) || Clock::now() >= deadline) return take_front();
+    changed_.wait_until(lock, deadline);
+  }
+  return std::nullopt;
+}
+
+FrameQueue::Work FrameQueue::take_front() {
+  const auto front = frames_.begin();
+  const int lap = front->first.first;
+  Work work;
+  work.new_lap = lap != taken_lap_;
+  work.first_stamp = laps_.at(lap).first;
+  work.stamp = front->first.second;
+  work.observations = std::move(front->second.observations);
+  frames_.erase(front);
+  // Samples beyond the frame go along: the estimator needs the one behind the frame to interpolate.
+  const auto end = loads_.lower_bound(Place(lap + 1, ros::Time()));
+  for (auto load = loads_.begin(); load != end; ++load) {
+    if (load->first.first == lap) work.loads.push_back(std::move(load->second));
+  }
+  loads_.erase(loads_.begin(), end);
+  laps_.erase(laps_.begin(), laps_.lower_bound(std::min(lap, oldest_lap())));
+  taken_lap_ = lap;
+  return work;
+}
+
+int FrameQueue::oldest_lap() const {
+  int oldest = newest_lap_;
+  for (const auto& [name, topic] : topics_) {
+    if (topic.seen) oldest = std::min(oldest, topic.lap);
+  }
+  return oldest;
+}
+
+void FrameQueue::restart() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  dropped_ += frames_.size();
+  frames_.clear();
+  loads_.clear();
+  for (auto& [name, topic] : topics_) topic.seen = false;
+  ++newest_lap_;
+}
+
+void FrameQueue::stop() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  stopped_ = true;
+  changed_.notify_all();
+}
+
+std::size_t FrameQueue::dropped() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return dropped_;
+}
+
+}  // namespace tissue_stiffness

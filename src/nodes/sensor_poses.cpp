@@ -1,0 +1,47 @@
+#include "tissue_stiffness/nodes/sensor_poses.hpp"
+
+#include <ros/ros.h>
+
+#include <chrono>
+#include <thread>
+
+#include "tissue_stiffness/nodes/sensor_conversions.hpp"
+#include "tissue_stiffness/types/error.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+std::string plain(const std::string& frame) {
+  return !frame.empty() && frame[0] == '/' ? frame.substr(1) : frame;
+}
+
+}  // namespace
+
+SensorPoses::SensorPoses(std::string model_frame, double patience)
+    : model_frame_(std::move(model_frame)), patience_(patience), listener_(buffer_) {}
+
+Eigen::Isometry3d SensorPoses::model_from(const std_msgs::Header& header, const std::string& topic) const {
+  const std::string frame = plain(header.frame_id);
+  if (frame == model_frame_) return Eigen::Isometry3d::Identity();
+  if (frame.empty()) {
+    throw InputError(topic + ": header.frame_id", "''", model_frame_ + ", or a frame with a pose on /tf or /tf_static");
+  }
+  using Clock = std::chrono::steady_clock;
+  const auto deadline =
+      Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(patience_));
+  std::string reason;
+  while (!buffer_.canTransform(model_frame_, frame, header.stamp, ros::Duration(0), &reason)) {
+    if (Clock::now() >= deadline || !ros::ok()) {
+      throw InputError(topic + ": header.frame_id", frame + " without a pose in " + model_frame_ + " (" + reason + ")",
+                       "a pose on /tf or /tf_static at the stamp");
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  try {
+    return to_isometry(buffer_.lookupTransform(model_frame_, frame, header.stamp).transform, "/tf: " + frame);
+  } catch (const tf2::TransformException& error) {
+    throw InputError(topic + ": header.frame_id", frame + " (" + error.what() + ")", "a pose on /tf or /tf_static");
+  }
+}
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,102 @@
+#include "tissue_stiffness/nodes/surface_view.hpp"
+
+#include <sensor_msgs/point_cloud2_iterator.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr double kRedSigmas = 3.0;
+
+std_msgs::ColorRGBA colour(double sigmas) {
+  std_msgs::ColorRGBA out;
+  out.a = 1.0F;
+  if (!std::isfinite(sigmas)) {
+    out.r = out.g = out.b = 0.6F;
+    return out;
+  }
+  const double heat = std::min(std::abs(sigmas) / kRedSigmas, 1.0);
+  out.r = static_cast<float>(std::min(2.0 * heat, 1.0));
+  out.g = static_cast<float>(std::min(2.0 - 2.0 * heat, 1.0));
+  out.b = 0.1F;
+  return out;
+}
+
+/// Corner triples of a facet: itself, or four for one with mid nodes (corners 0-2, mid nodes of 01, 12, 20).
+std::vector<std::array<int, 3>> triangles(Eigen::Index facet_nodes) {
+  if (facet_nodes == 6) return {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
+  return {{0, 1, 2}};
+}
+
+double at(const Eigen::VectorXd& values, int node) {
+  return node < values.size() ? values[node] : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
+
+visualization_msgs::Marker surface_marker(const TetMesh& mesh, const Eigen::Matrix3Xd& displacement, const Misfit& misfit,
+                                          const std_msgs::Header& header) {
+  visualization_msgs::Marker marker;
+  marker.header = header;
+  marker.ns = "tracked_surface";
+  marker.type = visualization_msgs::Marker::TRIANGLE_LIST;
+  marker.action = visualization_msgs::Marker::ADD;
+  marker.pose.orientation.w = 1.0;
+  marker.scale.x = marker.scale.y = marker.scale.z = 1.0;
+  marker.color.a = 1.0F;
+  const auto parts = triangles(mesh.facets.rows());
+  const std::size_t corners = 3 * parts.size() * static_cast<std::size_t>(mesh.facet_count());
+  marker.points.reserve(corners);
+  marker.colors.reserve(corners);
+  for (int facet = 0; facet < mesh.facet_count(); ++facet) {
+    for (const auto& part : parts) {
+      for (const int corner : part) {
+        const int node = mesh.facets(corner, facet);
+        const Eigen::Vector3d position = mesh.nodes.col(node) + displacement.col(node);
+        geometry_msgs::Point point;
+        point.x = position.x();
+        point.y = position.y();
+        point.z = position.z();
+        marker.points.push_back(point);
+        marker.colors.push_back(colour(at(misfit.node_sigmas, node)));
+      }
+    }
+  }
+  return marker;
+}
+
+sensor_msgs::PointCloud2 surface_cloud(const TetMesh& mesh, const Eigen::Matrix3Xd& displacement, const Misfit& misfit,
+                                       const std_msgs::Header& header) {
+  const std::set<int> surface(mesh.facets.data(), mesh.facets.data() + mesh.facets.size());
+  sensor_msgs::PointCloud2 cloud;
+  cloud.header = header;
+  cloud.height = 1;
+  cloud.is_dense = 1;
+  sensor_msgs::PointCloud2Modifier modifier(cloud);
+  constexpr auto real = sensor_msgs::PointField::FLOAT32;
+  modifier.setPointCloud2Fields(9, "x", 1, real, "y", 1, real, "z", 1, real, "dx", 1, real, "dy", 1, real, "dz", 1, real,
+                                "misfit", 1, real, "misfit_sigma", 1, real, "vertex", 1, sensor_msgs::PointField::INT32);
+  modifier.resize(surface.size());
+  sensor_msgs::PointCloud2Iterator<float> value(cloud, "x");
+  sensor_msgs::PointCloud2Iterator<std::int32_t> vertex(cloud, "vertex");
+  for (const int node : surface) {
+    const Eigen::Vector3f moved = displacement.col(node).cast<float>();
+    const Eigen::Vector3f position = (mesh.nodes.col(node) + displacement.col(node)).cast<float>();
+    for (int axis = 0; axis < 3; ++axis) {
+      value[axis] = position[axis];
+      value[3 + axis] = moved[axis];
+    }
+    value[6] = static_cast<float>(at(misfit.node_error, node));
+    value[7] = static_cast<float>(at(misfit.node_sigmas, node));
+    *vertex = node;
+    ++value;
+    ++vertex;
+  }
+  return cloud;
+}
+
+}  // namespace tissue_stiffness
