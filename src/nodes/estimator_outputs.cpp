@@ -8,13 +8,26 @@
 namespace tissue_stiffness {
 
 EstimatorOutputs::EstimatorOutputs(ros::NodeHandle node, std::string model_frame)
-    : model_frame_(std::move(model_frame)),
+    : node_(node),
+      model_frame_(std::move(model_frame)),
       stiffness_(node.advertise<StiffnessEstimate>("stiffness", 100, true)),
       misfit_(node.advertise<MisfitMessage>("misfit", 100)),
       surface_(node.advertise<visualization_msgs::Marker>("tracked_surface", 10)),
       points_(node.advertise<sensor_msgs::PointCloud2>("tracked_points", 10)) {}
 
-void EstimatorOutputs::publish(const Estimator& estimator, const StepResult& result, const Frame&,
+void EstimatorOutputs::prepare(const ModelSettings& settings, const TetMesh& mesh) {
+  outlines_.clear();
+  int contours = 0;
+  for (std::size_t i = 0; i < settings.observations.size(); ++i) {
+    if (settings.observations[i].kind != ObservationSettings::Kind::contour) continue;
+    const int source = static_cast<int>(i);
+    outlines_.emplace(source, ModelOutline(settings, settings.observations[i], mesh));
+    const std::string topic = ++contours == 1 ? "predicted_contour" : "predicted_contour_" + std::to_string(contours);
+    if (outline_topics_.count(source) == 0) outline_topics_[source] = node_.advertise<ContourMessage>(topic, 10);
+  }
+}
+
+void EstimatorOutputs::publish(const Estimator& estimator, const StepResult& result, const Frame& frame,
                                const ros::Time& stamp) const {
   std_msgs::Header header;
   header.stamp = stamp;
@@ -26,6 +39,18 @@ void EstimatorOutputs::publish(const Estimator& estimator, const StepResult& res
   }
   if (points_.getNumSubscribers() > 0) {
     points_.publish(surface_cloud(estimator.mesh(), estimator.displacement(), result.misfit, header));
+  }
+  publish_outline(estimator, frame, header);
+}
+
+void EstimatorOutputs::publish_outline(const Estimator& estimator, const Frame& frame,
+                                       const std_msgs::Header& header) const {
+  for (const Observation& observation : frame.observations) {
+    const auto outline = outlines_.find(observation.source);
+    if (outline == outlines_.end() || outline_topics_.at(observation.source).getNumSubscribers() == 0) continue;
+    const Eigen::Matrix3Xd positions = estimator.mesh().nodes + estimator.displacement();
+    outline_topics_.at(observation.source)
+        .publish(to_message(outline->second.seen_by(*observation.camera, positions), header));
   }
 }
 
