@@ -1,0 +1,261 @@
+#include "tissue_stiffness/tools/bag_reader.hpp"
+
+#include <tf2_msgs/TFMessage.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "tissue_stiffness/nodes/estimator_inputs.hpp"
+#include "tissue_stiffness/nodes/sensor_conversions.hpp"
+#include "tissue_stiffness/types/error.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+using Kind = ObservationSettings::Kind;
+
+constexpr double kReorderSpan = 0.5;         // [s] a message may lag behind the newest stamp
+constexpr std::size_t kReorderFrames = 256;  // the same, in frames: bounds the memory
+constexpr double kPoseMemory = 60.0;         // [s] of /tf kept; more than any frame lags behind
+
+std::string plain(const std::string& frame) {
+  return !frame.empty() && frame[0] == '/' ? frame.substr(1) : frame;
+}
+
+template <typename Message>
+boost::shared_ptr<const Message> read_as(const rosbag::MessageInstance& message, const std::string& file) {
+  const boost::shared_ptr<const Message> read = message.instantiate<Message>();
+  if (read) return read;
+  throw InputError(file + ": topic " + message.getTopic(), message.getDataType() + " of another version",
+                   std::string(ros::message_traits::datatype<Message>()) + " " + ros::message_traits::md5sum<Message>());
+}
+
+}  // namespace
+
+BagReader::BagReader(const std::string& file, const ModelSettings& settings, std::string model_frame)
+    : file_(file),
+      settings_(settings),
+      model_frame_(std::move(model_frame)),
+      load_inputs_(load_topics(settings)),
+      poses_(ros::Duration(kPoseMemory)) {
+  try {
+    open();
+    check_topics();
+    read_static_poses();
+    view_.addQuery(bag_, rosbag::TopicQuery(topics()));
+    next_message_ = view_.begin();
+    while (!front_is_complete() && read_message()) {
+    }
+  } catch (const rosbag::BagException& error) {
+    throw InputError(file_, error.what(), "a bag that `rosbag check` accepts");
+  }
+  if (pending_.empty()) throw InputError(file_, "no message on the model's topics", "at least one frame");
+}
+
+void BagReader::open() {
+  try {
+    bag_.open(file_, rosbag::bagmode::Read);
+  } catch (const rosbag::BagUnindexedException&) {
+    throw InputError(file_, "a bag without its index", "a closed bag (`rosbag reindex` repairs it)");
+  } catch (const rosbag::BagIOException&) {
+    throw InputError(file_, "no readable file", "a rosbag");
+  } catch (const rosbag::BagException& error) {
+    throw InputError(file_, error.what(), "a rosbag, version 2.0");
+  }
+}
+
+void BagReader::check_topics() {
+  for (const ObservationSettings& observation : settings_.observations) {
+    const bool image = observation.kind == Kind::contour;
+    require_topic(observation.topic, image ? "sensor_msgs/Image" : "sensor_msgs/PointCloud2");
+    if (image) require_topic(observation.camera_info, "sensor_msgs/CameraInfo");
+    rosbag::View messages(bag_, rosbag::TopicQuery(observation.topic));
+    frame_count_ = std::max<std::size_t>(frame_count_, messages.size());
+  }
+  for (const LoadInput& input : load_inputs_) {
+    require_topic(input.topic,
+                  input.kind == LoadInput::Kind::pressure ? "sensor_msgs/FluidPressure" : "geometry_msgs/WrenchStamped");
+  }
+}
+
+void BagReader::require_topic(const std::string& topic, const std::string& type) {
+  rosbag::View all(bag_);
+  std::string fitting, found;
+  for (const rosbag::ConnectionInfo* connection : all.getConnections()) {
+    if (connection->topic == topic) found = connection->datatype;
+    if (connection->datatype == type) fitting += (fitting.empty() ? "" : ", ") + connection->topic;
+  }
+  if (found == type) return;
+  const std::string there = fitting.empty() ? type + ", of which this bag has none" : type + ": " + fitting;
+  throw InputError(file_ + ": topic " + topic, found.empty() ? "nothing" : found, there);
+}
+
+std::vector<std::string> BagReader::topics() const {
+  std::vector<std::string> out{"/tf"};
+  for (const ObservationSettings& observation : settings_.observations) {
+    out.push_back(observation.topic);
+    if (observation.kind == Kind::contour) out.push_back(observation.camera_info);
+  }
+  for (const LoadInput& input : load_inputs_) out.push_back(input.topic);
+  return out;
+}
+
+// Ahead of everything else: a latched message may have been recorded after the first frames.
+void BagReader::read_static_poses() {
+  rosbag::View messages(bag_, rosbag::TopicQuery("/tf_static"));
+  for (const rosbag::MessageInstance& message : messages) add_poses(message, true);
+}
+
+void BagReader::add_poses(const rosbag::MessageInstance& message, bool is_static) {
+  for (geometry_msgs::TransformStamped pose : read_as<tf2_msgs::TFMessage>(message, file_)->transforms) {
+    to_isometry(pose.transform, message.getTopic() + ": " + pose.child_frame_id);  // tf2 only logs what is wrong
+    pose.header.frame_id = plain(pose.header.frame_id);
+    pose.child_frame_id = plain(pose.child_frame_id);
+    poses_.setTransform(pose, file_, is_static);
+  }
+}
+
+bool BagReader::read_message() {
+  if (next_message_ == view_.end()) return false;
+  const rosbag::MessageInstance message = *next_message_++;
+  const std::string& topic = message.getTopic();
+  if (topic == "/tf") add_poses(message, false);
+  for (std::size_t i = 0; i < settings_.observations.size(); ++i) {
+    const ObservationSettings& observation = settings_.observations[i];
+    const int source = static_cast<int>(i);
+    if (topic == observation.topic && observation.kind == Kind::contour) {
+      const auto image = read_as<sensor_msgs::Image>(message, file_);
+      require_stamp(image->header, topic);
+      add_measurement(image->header.stamp, {source, nullptr, image});
+    } else if (topic == observation.topic) {
+      const auto cloud = read_as<sensor_msgs::PointCloud2>(message, file_);
+      require_stamp(cloud->header, topic);
+      add_measurement(cloud->header.stamp, {source, cloud, nullptr});
+    } else if (topic == observation.camera_info) {
+      const auto info = read_as<sensor_msgs::CameraInfo>(message, file_);
+      cameras_[topic][info->header.stamp] = info;
+    }
+  }
+  for (const LoadInput& input : load_inputs_) {
+    if (topic == input.topic) add_load(message, input);
+  }
+  return true;
+}
+
+void BagReader::add_measurement(const ros::Time& stamp, Measurement measurement) {
+  note_stamp(stamp);
+  if (stamp <= last_returned_) {
+    ++late_;
+  } else {
+    pending_[stamp].push_back(std::move(measurement));
+  }
+}
+
+void BagReader::add_load(const rosbag::MessageInstance& message, const LoadInput& input) {
+  if (input.kind == LoadInput::Kind::pressure) {
+    const auto pressure = read_as<sensor_msgs::FluidPressure>(message, file_);
+    require_stamp(pressure->header, input.topic);
+    note_stamp(pressure->header.stamp);
+    loads_.push_back(to_load(*pressure, input.topic));
+    return;
+  }
+  const auto wrench = read_as<geometry_msgs::WrenchStamped>(message, file_);
+  require_stamp(wrench->header, input.topic);
+  std::string reason;
+  const auto model_from_sensor = pose(wrench->header, reason);
+  if (!model_from_sensor) throw InputError(file_ + ": " + input.topic, reason, "a frame with a pose in " + model_frame_);
+  note_stamp(wrench->header.stamp);
+  loads_.push_back(to_load(*wrench, *model_from_sensor, input.topic));
+}
+
+void BagReader::note_stamp(const ros::Time& stamp) {
+  if (last_returned_.isZero()) first_stamp_ = std::min(first_stamp_, stamp);
+  newest_ = std::max(newest_, stamp);
+}
+
+bool BagReader::front_is_complete() const {
+  if (pending_.empty()) return false;
+  return pending_.size() > kReorderFrames || (newest_ - pending_.begin()->first).toSec() > kReorderSpan;
+}
+
+std::optional<Instant> BagReader::next() {
+  try {
+    while (!front_is_complete() && read_message()) {
+    }
+  } catch (const rosbag::BagException& error) {
+    throw InputError(file_, error.what(), "a bag that `rosbag check` accepts");
+  }
+  if (pending_.empty()) return std::nullopt;
+  const auto front = pending_.extract(pending_.begin());
+  last_returned_ = front.key();
+  Instant instant;
+  instant.frame.time = last_returned_.toSec();
+  instant.loads.swap(loads_);
+  for (const Measurement& measurement : front.mapped()) convert(measurement, instant);
+  return instant;
+}
+
+void BagReader::convert(const Measurement& measurement, Instant& instant) {
+  if (measurement.image) return segment(measurement, instant);
+  const auto model_from_sensor = pose(measurement.cloud->header, instant.reason);
+  if (!model_from_sensor) return;
+  const ObservationSettings& settings = settings_.observations[static_cast<std::size_t>(measurement.source)];
+  instant.frame.observations.push_back(
+      to_observation(*measurement.cloud, settings, measurement.source, vertex_count_, *model_from_sensor));
+}
+
+void BagReader::segment(const Measurement& measurement, Instant& instant) {
+  const ObservationSettings& settings = settings_.observations[static_cast<std::size_t>(measurement.source)];
+  const std_msgs::Header& header = measurement.image->header;
+  const auto model_from_sensor = pose(header, instant.reason);
+  if (!model_from_sensor) return;
+  auto camera = std::make_shared<Camera>(to_camera(*camera_info(settings.camera_info, header.stamp), settings.projection,
+                                                   *model_from_sensor, settings.camera_info));
+  std::unique_ptr<Segmenter>& segmenter = segmenters_[measurement.source];
+  if (!segmenter) segmenter = make_segmenter(settings.segmentation);
+  const cv::Mat image = to_image(measurement.image, settings.topic);
+  if (image.cols != camera->width || image.rows != camera->height) {
+    throw InputError(
+        settings.topic, std::to_string(image.cols) + " x " + std::to_string(image.rows) + " pixels",
+        std::to_string(camera->width) + " x " + std::to_string(camera->height) + " as in " + settings.camera_info);
+  }
+  const auto start = std::chrono::steady_clock::now();
+  Segmentation found = segmenter->segment(image, header.stamp.toSec());
+  instant.segment_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (!found.found()) {
+    instant.reason = settings.topic + ": " + found.reason;
+    return;
+  }
+  Observation out;
+  out.source = measurement.source;
+  out.kind = ObservationKind::contour;
+  out.time = header.stamp.toSec();
+  out.contour = std::make_shared<Contour>(std::move(found.contour));
+  out.camera = std::move(camera);
+  instant.frame.observations.push_back(std::move(out));
+}
+
+// The message of the image's own stamp; otherwise the last one before, or the first one after it.
+sensor_msgs::CameraInfoConstPtr BagReader::camera_info(const std::string& topic, const ros::Time& stamp) const {
+  const auto known = cameras_.find(topic);
+  if (known == cameras_.end()) {
+    throw InputError(file_ + ": topic " + topic, "nothing within 0.5 s of the first image", "CameraInfo with each image");
+  }
+  const auto after = known->second.upper_bound(stamp);
+  return after == known->second.begin() ? after->second : std::prev(after)->second;
+}
+
+std::optional<Eigen::Isometry3d> BagReader::pose(const std_msgs::Header& header, std::string& reason) const {
+  const std::string frame = plain(header.frame_id);
+  if (frame == model_frame_) return Eigen::Isometry3d::Identity();
+  try {
+    if (frame.empty()) throw tf2::InvalidArgumentException("the message's frame_id is empty");
+    return to_isometry(poses_.lookupTransform(model_frame_, frame, header.stamp).transform, "/tf: " + frame);
+  } catch (const tf2::TransformException& error) {
+    reason = "no pose of frame '" + frame + "' in '" + model_frame_ + "': " + error.what();
+    return std::nullopt;
+  }
+}
+
+}  // namespace tissue_stiffness

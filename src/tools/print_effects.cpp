@@ -1,0 +1,69 @@
+#include "tissue_stiffness/tools/print_effects.hpp"
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <string>
+
+#include "tissue_stiffness/effects/registry.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+std::string bound(double value) {
+  if (!std::isfinite(value) || std::abs(value) == std::numeric_limits<double>::max()) return value < 0.0 ? "-inf" : "inf";
+  std::ostringstream out;
+  out << (std::abs(value) == std::numeric_limits<double>::min() ? 0.0 : value);
+  return out.str();
+}
+
+std::string range(const ParameterSpec& spec) {
+  return "[" + bound(spec.lower) + ", " + bound(spec.upper) + "]";
+}
+
+std::string default_of(const ParameterSpec& spec) {
+  return spec.presence == ParameterSpec::Default::required ? "required" : bound(spec.value);
+}
+
+std::string name_of(const ParameterSpec& spec) {
+  return spec.name + (spec.components > 1 ? " [x, y, z]" : "");
+}
+
+/// A cell of a table must not hold the table's own mark.
+std::string cell(std::string text) {
+  for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, "\\");
+  return text;
+}
+
+}  // namespace
+
+void print_effects(std::ostream& out) {
+  for (const EffectSpec& effect : effect_specs()) {
+    out << effect.name << ": " << effect.summary << "\n";
+    out << "  formula   " << effect.formula << "\n";
+    for (const ParameterSpec& spec : effect.parameters) {
+      out << "  parameter " << name_of(spec) << " (" << spec.symbol << ") [" << spec.unit << "] in " << range(spec) << ", "
+          << (spec.presence == ParameterSpec::Default::required ? "required" : "default " + bound(spec.value)) << "\n";
+    }
+    for (const auto& [key, meaning] : effect.keys) out << "  key       " << key << ": " << meaning << "\n";
+    out << "  source    " << effect.source << "\n\n";
+  }
+}
+
+void print_effects_markdown(std::ostream& out) {
+  out << "# The library of effects\n\nWritten by `effects --markdown`; every row comes from the effect's own "
+         "specification.\n";
+  for (const EffectSpec& effect : effect_specs()) {
+    out << "\n## `" << effect.name << "`\n\n"
+        << effect.summary << ".\n\nFormula: `" << effect.formula << "`. Source: " << effect.source << ".\n";
+    if (!effect.parameters.empty()) out << "\n| parameter | symbol | unit | allowed | default |\n|---|---|---|---|---|\n";
+    for (const ParameterSpec& spec : effect.parameters) {
+      out << "| `" << name_of(spec) << "` | " << cell(spec.symbol) << " | " << cell(spec.unit) << " | " << range(spec)
+          << " | " << default_of(spec) << " |\n";
+    }
+    if (!effect.keys.empty()) out << "\n| key | takes |\n|---|---|\n";
+    for (const auto& [key, meaning] : effect.keys) out << "| `" << key << "` | " << cell(meaning) << " |\n";
+  }
+}
+
+}  // namespace tissue_stiffness
