@@ -4,6 +4,8 @@ if(TISSUE_STIFFNESS_TETGEN)
   find_path(TETGEN_INCLUDE_DIR tetgen.h REQUIRED)
   find_library(TETGEN_LIBRARY NAMES tet REQUIRED)
   set(TETGEN_LIBRARIES ${TETGEN_LIBRARY})
+  set_source_files_properties(src/meshing/tetgen_mesher.cpp PROPERTIES
+    COMPILE_DEFINITIONS TISSUE_STIFFNESS_TETGEN)
 endif()
 
 find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)

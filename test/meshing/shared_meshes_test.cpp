@@ -57,5 +57,23 @@ TEST(SharedMeshRegions, CavityOfTheVentricleIsACapOfItsWall) {
   }
 }
 
+TEST(SiliconeBeam, FineSurfaceGivesMeshOfTheSizeAskedFor) {
+  MeshSettings settings;
+  settings.file = std::string(TISSUE_STIFFNESS_SHARED) + "/cases/silicone_beam_gravity_a/beam.stl";
+  if (!std::ifstream(settings.file)) GTEST_SKIP() << settings.file << " is not there";
+  settings.scale = 0.001;
+  settings.max_edge_length = 0.01;
+  const TetMesh mesh = build_mesh(settings);
+  EXPECT_GT(mesh.tet_count(), 300);
+  EXPECT_LT(mesh.tet_count(), 2500);
+  EXPECT_NEAR(mesh_volume(mesh), 9e-5, 1e-15);
+  EXPECT_TRUE(mesh.nodes.rowwise().minCoeff().isZero(1e-12));
+  EXPECT_TRUE(mesh.nodes.rowwise().maxCoeff().isApprox(Eigen::Vector3d(0.03, 0.03, 0.1), 1e-9));
+  const auto regions = resolve_regions({{"clamp", BoxShape{{-1, -1, -1e-6}, {1, 1, 1e-6}}}}, mesh);
+  double area = 0.0;
+  for (const int f : regions.at("clamp").facets) area += facet_area_vector(mesh, f).norm();
+  EXPECT_NEAR(area, 9e-4, 1e-12);
+}
+
 }  // namespace
 }  // namespace tissue_stiffness

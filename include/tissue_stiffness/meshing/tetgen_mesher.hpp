@@ -1,0 +1,19 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+
+#include "tissue_stiffness/meshing/mesh_io.hpp"
+#include "tissue_stiffness/meshing/planar_facets.hpp"
+
+namespace tissue_stiffness {
+
+/// 4-node tetrahedra that fill a surface, through TetGen's library (H. Si 2015, TetGen, a Delaunay-based quality
+/// tetrahedral mesh generator). Space inside an odd number of the surface's shells is body, the rest is cavity.
+///
+/// `max_edge_length` > 0: edges of about that length [m], and plane parts of the surface are triangulated anew; 0: the
+/// surface keeps its triangles, and the inside follows them. `keep_triangles`: the surface's triangles are kept in either
+/// case. Throws InputError naming `where` and the place for a surface that crosses itself, and for a build without TetGen.
+TetFile fill_surface(const TriangleSurface& surface, double max_edge_length, bool keep_triangles, const std::string& where);
+
+}  // namespace tissue_stiffness
