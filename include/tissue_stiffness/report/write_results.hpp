@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+
+#include "tissue_stiffness/report/results.hpp"
+
+namespace tissue_stiffness {
+
+/// `results.json`: parameters.{effect.parameter}.{unit,mean,std,interval95}, identifiable.{...}.{verdict,reason}, state,
+/// frames (used), skipped[].{time,reason}, rms_error [m], noise_rms [m], relative_error, nis.{mean_per_dof,p_value},
+/// seconds_per_frame.{median,p99}. A number that does not exist is null. Everything but seconds_per_frame is the same for
+/// the same input.
+std::string results_json(const Results& results);
+
+/// `estimates.csv` (RFC 4180): a header with units, then one row a frame. A number that does not exist is an empty field.
+/// The same for the same input.
+std::string estimates_csv(const Results& results);
+
+/// `report.html`: one page that needs no network and no script; light and dark.
+std::string report_html(const Results& results);
+
+/// Makes the folder when it is missing and writes the three files. Throws InputError when a file cannot be written.
+void write_results(const Results& results, const std::string& directory);
+
+/// Throws InputError naming the file when it cannot be written.
+void write_text(const std::string& file, const std::string& text);
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,186 @@
+#include <algorithm>
+#include <cmath>
+
+#include "tissue_stiffness/report/frame_charts.hpp"
+#include "tissue_stiffness/report/style.hpp"
+#include "tissue_stiffness/report/text.hpp"
+#include "tissue_stiffness/report/write_results.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+/// Words for a state, and the colour that goes with them.
+struct StateWords {
+  std::string badge, colour, sentence;
+};
+StateWords words(EstimateState state) {
+  switch (state) {
+    case EstimateState::converged:
+      return {"converged", "good", "More frames of this kind would change little."};
+    case EstimateState::converging:
+      return {"converging", "warn", "The interval is still shrinking: more frames would narrow it."};
+    case EstimateState::drifting:
+      return {"drifting", "warn", "The estimate keeps moving by more than its interval: the model may lack an effect."};
+    case EstimateState::model_invalid:
+      return {"model invalid", "bad", "The model does not explain the measurement: do not trust the value."};
+    case EstimateState::no_data:
+      break;
+  }
+  return {"no data", "bad", "No frame could be used: the values below are the prior."};
+}
+
+std::string badge(const std::string& colour, const std::string& text) {
+  return "<span class=\"badge " + colour + "\">" + escape_html(text) + "</span>";
+}
+
+std::string answer_line(const ParameterEstimate& p) {
+  const ShownUnit unit = shown_unit(p.mean, p.unit);
+  const auto show = [&](double value) { return escape_html(rounded(unit.scale * value, unit.scale * p.std)); };
+  const std::string suffix = unit.name.empty() ? "" : " " + escape_html(unit.name);
+  return "<p class=\"answer\"><span class=\"name\">" + escape_html(parameter_title(p.name)) + "</span><b>" + show(p.mean) +
+         suffix + "</b> <span class=\"interval\">95 %: " + show(p.lower95) + " to " + show(p.upper95) + suffix +
+         "</span></p>";
+}
+
+std::string identifiability_badge(const IdentifiabilityRecord& record) {
+  if (record.verdict == "absolute") return badge("good", "determined");
+  return badge(record.verdict == "none" ? "bad" : "warn", record.verdict == "none" ? "not determined" : "only a ratio");
+}
+
+std::string answer(const Results& results) {
+  std::string text = "<section><h1>" + escape_html(results.model) +
+                     (results.recording.empty() ? "" : " · " + escape_html(results.recording)) + "</h1>";
+  for (std::size_t i = 0; i < std::min<std::size_t>(3, results.parameters.size()); ++i) {
+    const ParameterEstimate& p = results.parameters[i];
+    text += answer_line(p);
+    const auto found = results.identifiable.find(p.name);
+    if (found != results.identifiable.end() && found->second.verdict != "absolute") {
+      text += "<p>" + identifiability_badge(found->second) + " " + escape_html(found->second.reason) + "</p>";
+    }
+  }
+  if (results.parameters.empty()) text += "<p>The model has no unknown parameter.</p>";
+  const StateWords state = words(results.state);
+  return text + "<p>" + badge(state.colour, state.badge) + " " + state.sentence + "</p></section>\n";
+}
+
+std::string fact(const std::string& name, const std::string& value, const std::string& remark) {
+  return "<div><dt>" + name + "</dt><dd>" + escape_html(value) + "<small>" + escape_html(remark) + "</small></dd></div>";
+}
+
+std::string with_unit(double value, const std::string& unit) {
+  const ShownUnit shown = shown_unit(value, unit);
+  return std::isfinite(value) ? short_number(shown.scale * value, 3) + " " + shown.name : "-";
+}
+
+std::string facts(const Results& r) {
+  const std::string noise = std::isfinite(r.noise_rms) ? "noise " + with_unit(r.noise_rms, "m") : "";
+  return "<section><dl class=\"facts\">" + fact("Error of the model", with_unit(r.rms_error, "m"), noise) +
+         fact("Error / motion", std::isfinite(r.relative_error) ? short_number(100.0 * r.relative_error, 3) + " %" : "-",
+              "") +
+         fact("Squared innovation", short_number(r.nis_mean_per_dof, 3), "per row; 1 if noise explains it") +
+         fact("Frames used", std::to_string(r.used()), std::to_string(r.skipped()) + " skipped") +
+         fact("Time a frame", with_unit(r.frame_seconds_quantile(0.5), "s"),
+              "99 % within " + with_unit(r.frame_seconds_quantile(0.99), "s")) +
+         "</dl></section>\n";
+}
+
+std::string parameter_row(const ParameterEstimate& p, const Results& results) {
+  const ShownUnit unit = shown_unit(p.mean, p.unit);
+  const double std = unit.scale * p.std;
+  const auto cell = [](const std::string& text) { return "<td class=\"n\">" + escape_html(text) + "</td>"; };
+  std::string row = "<tr><td>" + escape_html(p.name) + "</td>" + cell(rounded(unit.scale * p.mean, std)) +
+                    cell(short_number(std, 2)) + cell(rounded(unit.scale * p.lower95, std)) +
+                    cell(rounded(unit.scale * p.upper95, std)) + "<td>" + escape_html(unit.name) + "</td><td>";
+  const auto found = results.identifiable.find(p.name);
+  if (found == results.identifiable.end()) return row + "</td></tr>";
+  return row + identifiability_badge(found->second) + " <span class=\"soft\">" + escape_html(found->second.reason) +
+         "</span></td></tr>";
+}
+
+std::string parameter_table(const Results& results) {
+  if (results.parameters.empty()) return "";
+  std::string rows;
+  for (const ParameterEstimate& p : results.parameters) rows += parameter_row(p, results);
+  return "<section><h2>Parameters</h2><div class=\"scroll\"><table><tr><th>parameter</th><th class=\"n\">mean</th>"
+         "<th class=\"n\">std</th><th class=\"n\">95 % from</th><th class=\"n\">to</th><th>unit</th><th>do the data "
+         "determine "
+         "it?</th></tr>" +
+         rows + "</table></div></section>\n";
+}
+
+/// Reasons why frames were skipped, each with its count and first time, the most frequent first.
+std::string skipped_table(const Results& results) {
+  struct Reason {
+    std::string text;
+    int count;
+    double first;
+  };
+  std::vector<Reason> reasons;
+  for (const FrameRecord& frame : results.frames) {
+    if (frame.used) continue;
+    const auto same = std::find_if(reasons.begin(), reasons.end(), [&](const Reason& r) { return r.text == frame.reason; });
+    if (same == reasons.end()) {
+      reasons.push_back({frame.reason, 1, frame.time - results.frames.front().time});
+    } else {
+      ++same->count;
+    }
+  }
+  if (reasons.empty()) return "";
+  std::stable_sort(reasons.begin(), reasons.end(), [](const Reason& a, const Reason& b) { return a.count > b.count; });
+  std::string rows;
+  for (const Reason& reason : reasons) {
+    rows += "<tr><td>" + escape_html(reason.text) + "</td><td class=\"n\">" + std::to_string(reason.count) +
+            "</td><td class=\"n\">" + short_number(reason.first, 4) + " s</td></tr>";
+  }
+  return "<section><h2>Skipped frames</h2><div class=\"scroll\"><table><tr><th>reason</th><th class=\"n\">frames</th>"
+         "<th class=\"n\">first at</th></tr>" +
+         rows + "</table></div></section>\n";
+}
+
+std::string timing_table(const Results& results) {
+  if (results.stage_seconds.empty()) return "";
+  double total = 0.0;
+  for (const auto& stage : results.stage_seconds) total += stage.second;
+  std::string rows;
+  for (const auto& [name, seconds] : results.stage_seconds) {
+    const std::string share = total > 0.0 ? short_number(std::round(100.0 * seconds / total), 3) + " %" : "-";
+    rows += "<tr><td>" + escape_html(name) + "</td><td class=\"n\">" + with_unit(seconds, "s") + "</td><td class=\"n\">" +
+            share + "</td></tr>";
+  }
+  return "<section><h2>Where the time went</h2><div class=\"scroll\"><table><tr><th>stage</th><th class=\"n\">whole "
+         "run</th>"
+         "<th class=\"n\">share</th></tr>" +
+         rows + "</table></div></section>\n";
+}
+
+std::string details(const Results& results) {
+  std::string text;
+  if (!results.description.empty()) {
+    text += "<section><h2>What the estimator chose</h2><ul>";
+    for (const std::string& line : results.description) text += "<li>" + escape_html(line) + "</li>";
+    text += "</ul></section>\n";
+  }
+  text += timing_table(results);
+  if (!results.model_text.empty()) {
+    text += "<section><details open><summary>Model file</summary><pre>" + escape_html(results.model_text) +
+            "</pre></details></section>\n";
+  }
+  std::string versions;
+  for (const auto& [name, version] : results.versions) versions += (versions.empty() ? "" : " · ") + name + " " + version;
+  return text + "<section><h2>How to make this again</h2><pre>" + escape_html(results.command_line) +
+         "</pre><p class=\"soft\">" + escape_html(versions) + "</p></section>\n";
+}
+
+}  // namespace
+
+std::string report_html(const Results& results) {
+  return "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
+         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
+         "'unsafe-inline'\">\n<title>" +
+         escape_html(results.model) + " - tissue stiffness</title>\n<style>" + report_style +
+         "</style></head>\n<body><main>\n" + answer(results) + facts(results) + frame_charts(results) +
+         parameter_table(results) + skipped_table(results) + details(results) + "</main></body></html>\n";
+}
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,54 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tissue_stiffness/report/write_results.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+using nlohmann::json;
+
+json number(double value) {
+  return std::isfinite(value) ? json(value) : json(nullptr);
+}
+
+json parameter_json(const ParameterEstimate& p) {
+  return {{"unit", p.unit},
+          {"mean", number(p.mean)},
+          {"std", number(p.std)},
+          {"interval95", json::array({number(p.lower95), number(p.upper95)})}};
+}
+
+}  // namespace
+
+std::string results_json(const Results& results) {
+  json parameters = json::object(), identifiable = json::object(), versions = json::object();
+  for (const ParameterEstimate& p : results.parameters) parameters[p.name] = parameter_json(p);
+  for (const auto& [name, record] : results.identifiable) {
+    identifiable[name] = {{"verdict", record.verdict}, {"reason", record.reason}};
+  }
+  for (const auto& [name, version] : results.versions) versions[name] = version;
+  json skipped = json::array();
+  for (const FrameRecord& frame : results.frames) {
+    if (!frame.used) skipped.push_back({{"time", number(frame.time)}, {"reason", frame.reason}});
+  }
+  const json root = {
+      {"model", results.model},
+      {"recording", results.recording},
+      {"state", to_string(results.state)},
+      {"parameters", parameters},
+      {"identifiable", identifiable},
+      {"frames", results.used()},
+      {"skipped", skipped},
+      {"rms_error", number(results.rms_error)},
+      {"noise_rms", number(results.noise_rms)},
+      {"relative_error", number(results.relative_error)},
+      {"nis", {{"mean_per_dof", number(results.nis_mean_per_dof)}, {"p_value", number(results.nis_p_value)}}},
+      {"seconds_per_frame",
+       {{"median", number(results.frame_seconds_quantile(0.5))}, {"p99", number(results.frame_seconds_quantile(0.99))}}},
+      {"versions", versions},
+  };
+  return root.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace tissue_stiffness
