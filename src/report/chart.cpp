@@ -162,7 +162,7 @@ std::string Chart::html() const {
 std::vector<double> linear_ticks(double low, double high, int count) {
   const double rough = (high - low) / count, power = std::pow(10.0, std::floor(std::log10(rough)));
   const double multiple = rough / power;
-  const double step = power * (multiple <= 1.0 ? 1.0 : multiple <= 2.0 ? 2.0 : multiple <= 5.0 ? 5.0 : 10.0);
+  const double step = power * (multiple < 1.5 ? 1.0 : multiple < 3.5 ? 2.0 : multiple < 7.5 ? 5.0 : 10.0);
   std::vector<double> ticks;
   for (double k = std::ceil(low / step - 1e-9); k <= high / step + 1e-9; k += 1.0) ticks.push_back(k * step);
   return ticks;

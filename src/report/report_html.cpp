@@ -47,11 +47,20 @@ std::string identifiability_badge(const IdentifiabilityRecord& record) {
   return badge(record.verdict == "none" ? "bad" : "warn", record.verdict == "none" ? "not determined" : "only a ratio");
 }
 
+/// Young's moduli first, three at most; the table has all.
+std::vector<ParameterEstimate> headline(std::vector<ParameterEstimate> parameters) {
+  std::stable_partition(parameters.begin(), parameters.end(),
+                        [](const ParameterEstimate& p) { return p.name.find(".young_modulus") != std::string::npos; });
+  if (parameters.size() > 3) parameters.resize(3);
+  return parameters;
+}
+
 std::string answer(const Results& results) {
   std::string text = "<section><h1>" + escape_html(results.model) +
                      (results.recording.empty() ? "" : " · " + escape_html(results.recording)) + "</h1>";
-  for (std::size_t i = 0; i < std::min<std::size_t>(3, results.parameters.size()); ++i) {
-    const ParameterEstimate& p = results.parameters[i];
+  const StateWords state = words(results.state);
+  text += "<p>" + badge(state.colour, state.badge) + " " + state.sentence + "</p>";
+  for (const ParameterEstimate& p : headline(results.parameters)) {
     text += answer_line(p);
     const auto found = results.identifiable.find(p.name);
     if (found != results.identifiable.end() && found->second.verdict != "absolute") {
@@ -59,8 +68,7 @@ std::string answer(const Results& results) {
     }
   }
   if (results.parameters.empty()) text += "<p>The model has no unknown parameter.</p>";
-  const StateWords state = words(results.state);
-  return text + "<p>" + badge(state.colour, state.badge) + " " + state.sentence + "</p></section>\n";
+  return text + "</section>\n";
 }
 
 std::string fact(const std::string& name, const std::string& value, const std::string& remark) {
@@ -90,7 +98,8 @@ std::string parameter_row(const ParameterEstimate& p, const Results& results) {
   const auto cell = [](const std::string& text) { return "<td class=\"n\">" + escape_html(text) + "</td>"; };
   std::string row = "<tr><td>" + escape_html(p.name) + "</td>" + cell(rounded(unit.scale * p.mean, std)) +
                     cell(short_number(std, 2)) + cell(rounded(unit.scale * p.lower95, std)) +
-                    cell(rounded(unit.scale * p.upper95, std)) + "<td>" + escape_html(unit.name) + "</td><td>";
+                    cell(rounded(unit.scale * p.upper95, std)) + "<td>" + escape_html(unit.name) +
+                    "</td><td class=\"why\">";
   const auto found = results.identifiable.find(p.name);
   if (found == results.identifiable.end()) return row + "</td></tr>";
   return row + identifiability_badge(found->second) + " <span class=\"soft\">" + escape_html(found->second.reason) +
@@ -130,7 +139,7 @@ std::string skipped_table(const Results& results) {
   std::string rows;
   for (const Reason& reason : reasons) {
     rows += "<tr><td>" + escape_html(reason.text) + "</td><td class=\"n\">" + std::to_string(reason.count) +
-            "</td><td class=\"n\">" + short_number(reason.first, 4) + " s</td></tr>";
+            "</td><td class=\"n\">" + short_number(reason.first, 3) + " s</td></tr>";
   }
   return "<section><h2>Skipped frames</h2><div class=\"scroll\"><table><tr><th>reason</th><th class=\"n\">frames</th>"
          "<th class=\"n\">first at</th></tr>" +
@@ -143,7 +152,7 @@ std::string timing_table(const Results& results) {
   for (const auto& stage : results.stage_seconds) total += stage.second;
   std::string rows;
   for (const auto& [name, seconds] : results.stage_seconds) {
-    const std::string share = total > 0.0 ? short_number(std::round(100.0 * seconds / total), 3) + " %" : "-";
+    const std::string share = total > 0.0 ? short_number(100.0 * seconds / total, 2) + " %" : "-";
     rows += "<tr><td>" + escape_html(name) + "</td><td class=\"n\">" + with_unit(seconds, "s") + "</td><td class=\"n\">" +
             share + "</td></tr>";
   }

@@ -33,6 +33,7 @@ th, td { text-align: left; padding: .35rem .9rem .35rem 0; border-bottom: 1px so
 th { color: var(--soft); font-weight: 600; font-size: .85rem; }
 tr:last-child td { border-bottom: 0; }
 .n { text-align: right; white-space: nowrap; }
+.why { min-width: 15rem; }
 figure { margin: 0 0 1.2rem; } figure:last-child { margin-bottom: 0; }
 figcaption { font-weight: 600; }
 .legend { font-size: .85rem; font-weight: 400; color: var(--soft); display: flex; flex-wrap: wrap; gap: .1rem 1.1rem; }

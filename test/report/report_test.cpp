@@ -174,6 +174,15 @@ TEST(ReportHtml, SaysWhenThereIsNothing) {
   EXPECT_NE(report_html(results).find("do not trust"), std::string::npos);
 }
 
+TEST(ReportHtml, WarnsBeforeTheNumberAndPutsYoungsModulusFirst) {
+  Results results = example(20);
+  std::swap(results.parameters[0], results.parameters[1]);
+  results.state = EstimateState::drifting;
+  const std::string page = report_html(results);
+  EXPECT_LT(page.find("may lack an effect"), page.find("412.3 kPa"));
+  EXPECT_LT(page.find("412.3 kPa"), page.find("2.00 1/s"));
+}
+
 TEST(ReportHtml, LongRunsStaySmallAndKeepTheirPeaks) {
   Results results = example(100000);
   results.frames[54321].misfit_rms = 0.5;
