@@ -1,0 +1,35 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <iosfwd>
+#include <string>
+
+namespace tissue_stiffness {
+
+/// Progress of long work: a bar with rate and time left on a terminal, a plain line every 5 s elsewhere.
+class Progress {
+ public:
+  enum class Style { bar, lines, quiet };
+
+  Progress(std::ostream& out, Style style, std::string what);
+
+  /// bar when standard error is a terminal, lines otherwise.
+  static Style style_of_stderr(bool quiet);
+
+  void show(std::size_t done, std::size_t total);
+  /// Ends the bar's line.
+  void finish();
+
+ private:
+  void draw(std::size_t done, std::size_t total, double elapsed);
+
+  std::ostream& out_;
+  Style style_;
+  std::string what_;
+  std::chrono::steady_clock::time_point start_;
+  double last_shown_ = 0.0;
+  bool drawn_ = false;
+};
+
+}  // namespace tissue_stiffness

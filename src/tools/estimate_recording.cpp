@@ -1,0 +1,199 @@
+#include "tissue_stiffness/tools/estimate_recording.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <deque>
+#include <fstream>
+#include <iterator>
+#include <optional>
+
+#include "tissue_stiffness/estimation/estimator.hpp"
+#include "tissue_stiffness/filter/consistency.hpp"
+#include "tissue_stiffness/meshing/build_mesh.hpp"
+#include "tissue_stiffness/tools/bag_reader.hpp"
+#include "tissue_stiffness/types/error.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::string read_text(const std::string& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// The recording with the mesh: reads ahead to the first contour when the mesh is made from it.
+class Recording {
+ public:
+  Recording(const std::string& file, const ModelSettings& settings)
+      : reader_(file, settings), mesh_(make_mesh(file, settings)) {
+    reader_.set_vertex_count(mesh_.corner_count);
+  }
+
+  std::optional<Instant> next() {
+    if (ahead_.empty()) return reader_.next();
+    Instant instant = std::move(ahead_.front());
+    ahead_.pop_front();
+    return instant;
+  }
+  const BagReader& reader() const { return reader_; }
+  const TetMesh& mesh() const { return mesh_; }
+
+ private:
+  TetMesh make_mesh(const std::string& file, const ModelSettings& settings) {
+    if (settings.mesh.source == MeshSettings::Source::file) return build_mesh(settings.mesh);
+    std::string reason = "no contour observed by the model";
+    while (std::optional<Instant> instant = reader_.next()) {
+      if (!instant->reason.empty()) reason = instant->reason;
+      ahead_.push_back(std::move(*instant));
+      for (const Observation& observation : ahead_.back().frame.observations) {
+        if (observation.contour) return build_mesh(settings.mesh, *observation.contour, *observation.camera);
+      }
+    }
+    throw InputError(file, "no outline to make the mesh from (" + reason + ")", "an image that shows the body");
+  }
+
+  BagReader reader_;
+  std::deque<Instant> ahead_;
+  TetMesh mesh_;
+};
+
+FrameRecord record_of(const Instant& instant, const StepResult& step) {
+  FrameRecord record;
+  record.time = instant.frame.time;
+  record.used = step.used;
+  record.reason = step.reason;
+  record.state = step.estimate.state;
+  record.parameters = step.estimate.parameters;
+  if (!step.used) return record;
+  record.misfit_rms = step.misfit.rms;
+  record.misfit_sigma = step.misfit.rms_sigma;
+  record.nis = step.misfit.nis;
+  record.dof = step.misfit.dof;
+  record.outliers = step.misfit.outliers;
+  return record;
+}
+
+/// Sum of the squared noise that the model file states, over rows.
+struct NoiseSum {
+  double sum = 0.0;
+  double rows = 0.0;
+  void add(const Frame& frame, const ModelSettings& settings) {
+    for (const Observation& observation : frame.observations) {
+      const double noise = settings.observations[static_cast<std::size_t>(observation.source)].noise;
+      const double count =
+          static_cast<double>(observation.contour ? observation.contour->size() : observation.points.cols());
+      sum += count * noise * noise;
+      rows += count;
+    }
+  }
+};
+
+/// One run: frames in, records out.
+class Run {
+ public:
+  Run(const ModelSettings& settings, Recording& recording)
+      : settings_(settings), recording_(recording), estimator_(settings, recording.mesh()) {
+    estimator_.set_first_stamp(recording.reader().first_stamp());
+  }
+
+  /// Whether the frame was used; otherwise `reason` says why not.
+  bool step(const Instant& instant, std::string& reason) {
+    for (const LoadSample& sample : instant.loads) estimator_.add_load(sample);
+    const auto start = Clock::now();
+    StepResult result;
+    if (instant.frame.observations.empty()) {
+      result.reason = instant.reason;
+      result.estimate = estimator_.estimate();
+    } else {
+      result = estimator_.step(instant.frame);
+    }
+    run_.results.frames.push_back(record_of(instant, result));
+    if (!result.used) {
+      reason = result.reason;
+      return false;
+    }
+    run_.results.frame_seconds.push_back(since(start) + instant.segment_seconds);
+    if (instant.segment_seconds > 0.0) run_.stage_samples["segment"].push_back(instant.segment_seconds);
+    for (const auto& [stage, seconds] : result.seconds) run_.stage_samples[stage].push_back(seconds);
+    nis_.add(result.misfit.nis, result.misfit.dof);
+    noise_.add(instant.frame, settings_);
+    return true;
+  }
+
+  EstimationRun finish() {
+    Results& results = run_.results;
+    results.parameters = estimator_.estimate().parameters;
+    results.state = estimator_.estimate().state;
+    for (const auto& [name, found] : estimator_.identifiability()) {
+      results.identifiable[name] = {found.verdict, found.reason};
+    }
+    results.nis_mean_per_dof = nis_.mean_per_dof();
+    results.nis_p_value = nis_.p_value();
+    results.noise_rms = std::sqrt(noise_.sum / noise_.rows);
+    results.description = estimator_.description();
+    for (const auto& [stage, samples] : run_.stage_samples) {
+      double sum = 0.0;
+      for (const double s : samples) sum += s;
+      results.stage_seconds.emplace_back(stage, sum);
+    }
+    add_free_run();
+    run_.late = recording_.reader().late();
+    return std::move(run_);
+  }
+
+ private:
+  void add_free_run() {
+    double error = 0.0, motion = 0.0, count = 0.0;
+    for (const Misfit& misfit : estimator_.free_run()) {
+      error += misfit.count * misfit.rms * misfit.rms;
+      motion += misfit.count * misfit.motion_rms * misfit.motion_rms;
+      count += misfit.count;
+    }
+    run_.results.rms_error = std::sqrt(error / count);
+    run_.results.relative_error = std::sqrt(error / motion);
+  }
+
+  const ModelSettings& settings_;
+  Recording& recording_;
+  Estimator estimator_;
+  EstimationRun run_;
+  ConsistencySum nis_;
+  NoiseSum noise_;
+};
+
+}  // namespace
+
+EstimationRun estimate_recording(const std::string& model_file, const std::string& recording_file, std::size_t max_frames,
+                                 const ProgressCallback& progress) {
+  const ModelSettings settings = load_model(model_file);
+  Recording recording(recording_file, settings);
+  const std::size_t all = recording.reader().frame_count();
+  const std::size_t total = max_frames > 0 ? std::min(max_frames, all) : all;
+  Run run(settings, recording);
+  const auto start = Clock::now();
+  std::size_t done = 0;
+  std::string reason;
+  bool used = false;
+  while (max_frames == 0 || done < max_frames) {
+    const std::optional<Instant> instant = recording.next();
+    if (!instant) break;
+    used = run.step(*instant, reason) || used;
+    progress(++done, std::max(total, done));
+  }
+  if (!used) throw InputError(recording_file, "no usable frame (" + reason + ")", "at least one");
+  const double seconds = since(start);
+  EstimationRun result = run.finish();
+  result.seconds = seconds;
+  result.results.model = model_file;
+  result.results.recording = recording_file;
+  result.results.model_text = read_text(model_file);
+  return result;
+}
+
+}  // namespace tissue_stiffness

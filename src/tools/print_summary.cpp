@@ -1,0 +1,66 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ostream>
+#include <vector>
+
+#include "tissue_stiffness/report/text.hpp"
+#include "tissue_stiffness/tools/estimate_recording.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+double quantile(std::vector<double> values, double p) {
+  std::sort(values.begin(), values.end());
+  const double rank = std::ceil(p * static_cast<double>(values.size())) - 1.0;
+  return values[static_cast<std::size_t>(std::max(0.0, rank))];
+}
+
+template <typename... Arguments>
+void print_line(std::ostream& out, const char* format, Arguments... arguments) {
+  char line[256];
+  std::snprintf(line, sizeof line, format, arguments...);
+  out << line << "\n";
+}
+
+void print_parameters(const Results& results, std::ostream& out) {
+  print_line(out, "%-32s %12s  %-28s %-5s %s", "parameter", "estimate", "95 % interval", "unit", "identifiable");
+  for (const ParameterEstimate& p : results.parameters) {
+    const ShownUnit unit = shown_unit(p.mean, p.unit);
+    const double spread = unit.scale * p.std;
+    const std::string interval = rounded(unit.scale * p.lower95, spread) + " .. " + rounded(unit.scale * p.upper95, spread);
+    const auto verdict = results.identifiable.find(p.name);
+    print_line(out, "%-32s %12s  %-28s %-5s %s", p.name.c_str(), rounded(unit.scale * p.mean, spread).c_str(),
+               interval.c_str(), unit.name.c_str(),
+               verdict == results.identifiable.end() ? "-" : verdict->second.verdict.c_str());
+  }
+}
+
+void print_stages(const EstimationRun& run, std::ostream& out) {
+  print_line(out, "%-12s %12s %12s %12s", "stage", "median [ms]", "p99 [ms]", "total [s]");
+  for (const char* stage : {"segment", "predict", "observe", "update", "revisit"}) {
+    const auto samples = run.stage_samples.find(stage);
+    if (samples == run.stage_samples.end()) continue;
+    double sum = 0.0;
+    for (const double seconds : samples->second) sum += seconds;
+    print_line(out, "%-12s %12.3f %12.3f %12.3f", stage, 1e3 * quantile(samples->second, 0.5),
+               1e3 * quantile(samples->second, 0.99), sum);
+  }
+}
+
+}  // namespace
+
+void print_summary(const EstimationRun& run, std::ostream& out) {
+  const Results& results = run.results;
+  print_parameters(results, out);
+  print_line(out, "state         %s", to_string(results.state).c_str());
+  print_line(out, "frames        %d used, %d skipped, %d late messages; %.3g frames/s", results.used(), results.skipped(),
+             run.late, static_cast<double>(results.frames.size()) / run.seconds);
+  print_line(out, "rms error     %s mm, %.3g of the noise; %.3g %% of the motion",
+             short_number(1e3 * results.rms_error, 4).c_str(), results.rms_error / results.noise_rms,
+             100.0 * results.relative_error);
+  print_line(out, "NIS           %.3g a degree of freedom, p = %.2g", results.nis_mean_per_dof, results.nis_p_value);
+  print_stages(run, out);
+}
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,56 @@
+#include "tissue_stiffness/tools/progress.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <ostream>
+#include <utility>
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr double kBarInterval = 0.1;  // [s]
+constexpr double kLineInterval = 5.0;
+constexpr std::size_t kBarWidth = 30;
+
+}  // namespace
+
+Progress::Progress(std::ostream& out, Style style, std::string what)
+    : out_(out), style_(style), what_(std::move(what)), start_(std::chrono::steady_clock::now()) {}
+
+Progress::Style Progress::style_of_stderr(bool quiet) {
+  if (quiet) return Style::quiet;
+  return isatty(STDERR_FILENO) != 0 ? Style::bar : Style::lines;
+}
+
+void Progress::show(std::size_t done, std::size_t total) {
+  if (style_ == Style::quiet) return;
+  const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  const bool last = done == total && style_ == Style::bar;
+  if (!last && elapsed - last_shown_ < (style_ == Style::bar ? kBarInterval : kLineInterval)) return;
+  last_shown_ = elapsed;
+  draw(done, total, elapsed);
+}
+
+void Progress::draw(std::size_t done, std::size_t total, double elapsed) {
+  const double rate = elapsed > 0.0 ? static_cast<double>(done) / elapsed : 0.0;
+  const double left = rate > 0.0 ? static_cast<double>(total - std::min(done, total)) / rate : 0.0;
+  char numbers[96];
+  std::snprintf(numbers, sizeof numbers, "%zu/%zu, %.3g/s, %.0f s left", done, total, rate, left);
+  if (style_ == Style::lines) {
+    out_ << what_ << ": " << numbers << std::endl;
+    return;
+  }
+  const std::size_t filled = total > 0 ? std::min(kBarWidth, kBarWidth * done / total) : kBarWidth;
+  out_ << "\r" << what_ << " [" << std::string(filled, '#') << std::string(kBarWidth - filled, ' ') << "] " << numbers
+       << "\033[K" << std::flush;
+  drawn_ = true;
+}
+
+void Progress::finish() {
+  if (drawn_) out_ << std::endl;
+  drawn_ = false;
+}
+
+}  // namespace tissue_stiffness
