@@ -1,0 +1,13 @@
+#include "tissue_stiffness/segmentation/segmenter.hpp"
+
+#include "tissue_stiffness/segmentation/cavity.hpp"
+#include "tissue_stiffness/segmentation/silhouette.hpp"
+
+namespace tissue_stiffness {
+
+std::unique_ptr<Segmenter> make_segmenter(const SegmentationSettings& settings) {
+  if (settings.kind == SegmentationSettings::Kind::cavity) return std::make_unique<CavitySegmenter>(settings);
+  return std::make_unique<SilhouetteSegmenter>(settings);
+}
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,120 @@
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+#include "tissue_stiffness/segmentation/outline.hpp"
+#include "tissue_stiffness/segmentation/silhouette.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr int working_width = 320;  // [pixel] the search needs no more resolution
+constexpr int thresholds = 24;
+constexpr int shading_width = 4;                             // [pixel] a fall that lasts longer to both sides is no edge
+constexpr double smallest_area = 0.003, largest_area = 0.8;  // of the image
+
+using Border = std::vector<cv::Point>;
+
+/// Mean gradient along the border; pixels at the image's edge count as none.
+double border_gradient(const Border& border, const cv::Mat& gradient) {
+  double sum = 0.0;
+  for (const cv::Point& p : border) {
+    const bool at_edge = p.x < 2 || p.y < 2 || p.x >= gradient.cols - 2 || p.y >= gradient.rows - 2;
+    if (!at_edge) sum += gradient.at<float>(p);
+  }
+  return sum / static_cast<double>(border.size());
+}
+
+/// Shared area over joint area of a border's inside and a mask.
+double overlap(const Border& border, const cv::Mat& mask) {
+  cv::Mat inside = cv::Mat::zeros(mask.size(), CV_8U);
+  cv::fillPoly(inside, std::vector<Border>{border}, 255);
+  return cv::countNonZero(inside & mask) / std::max(1.0, static_cast<double>(cv::countNonZero(inside | mask)));
+}
+
+cv::Mat mask_of(const Eigen::Matrix2Xd& outline, double scale, cv::Size size) {
+  Border border;
+  for (Eigen::Index i = 0; i < outline.cols(); ++i) {
+    border.emplace_back(cvRound((outline(0, i) + 0.5) * scale - 0.5), cvRound((outline(1, i) + 0.5) * scale - 0.5));
+  }
+  cv::Mat mask = cv::Mat::zeros(size, CV_8U);
+  if (!border.empty()) cv::fillPoly(mask, std::vector<Border>{border}, 255);
+  return mask;
+}
+
+cv::Mat gradient_magnitude(const cv::Mat& image) {
+  cv::Mat du, dv, magnitude;
+  cv::Sobel(image, du, CV_32F, 1, 0, 3, 0.125);
+  cv::Sobel(image, dv, CV_32F, 0, 1, 3, 0.125);
+  cv::magnitude(du, dv, magnitude);
+  return magnitude;
+}
+
+}  // namespace
+
+Eigen::Matrix2Xd sharpest_region(const cv::Mat& grey, const std::optional<Eigen::Vector2d>& seed,
+                                 const Eigen::Matrix2Xd& previous) {
+  const double scale = std::min(1.0, static_cast<double>(working_width) / grey.cols);
+  cv::Mat small;
+  cv::resize(grey, small, {}, scale, scale, cv::INTER_AREA);
+  cv::GaussianBlur(small, small, {}, 1.5);
+  const cv::Mat gradient = gradient_magnitude(small), before = mask_of(previous, scale, small.size());
+  double lowest = 0.0, highest = 0.0;
+  cv::minMaxLoc(small, &lowest, &highest);
+
+  Border best;
+  double best_score = 0.0;
+  for (int k = 1; k < thresholds; ++k) {
+    cv::Mat mask = small > lowest + (highest - lowest) * k / thresholds;
+    std::vector<Border> borders;
+    cv::findContours(mask, borders, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
+    for (const Border& border : borders) {
+      const double area = cv::contourArea(border) / static_cast<double>(small.total());
+      if (area < smallest_area || area > largest_area) continue;
+      if (seed) {
+        const Eigen::Vector2d s = (seed->array() + 0.5) * scale - 0.5;
+        const cv::Point2f place(static_cast<float>(s.x()), static_cast<float>(s.y()));
+        if (cv::pointPolygonTest(border, place, false) < 0) continue;
+      }
+      double score = border_gradient(border, gradient);
+      if (previous.cols() > 0) score *= 0.2 + 0.8 * overlap(border, before);
+      if (score > best_score) best_score = score, best = border;
+    }
+  }
+  Eigen::Matrix2Xd result(2, static_cast<Eigen::Index>(best.size()));
+  for (Eigen::Index i = 0; i < result.cols(); ++i) {
+    const cv::Point& p = best[static_cast<std::size_t>(i)];
+    result.col(i) << (p.x + 0.5) / scale - 0.5, (p.y + 0.5) / scale - 0.5;
+  }
+  return result;
+}
+
+SharpOutline sharpest_outline(const cv::Mat& grey, const Eigen::Matrix2Xd& outline, int inward, int outward, double scale,
+                              double stiffness) {
+  const Eigen::Matrix2Xd normals = outward_normals(outline, 2.0);
+  const Eigen::Index rows = inward + outward + 1, n = outline.cols();
+  Eigen::MatrixXd sharpness(rows, n);
+  Eigen::VectorXd value(rows + 2 * (shading_width + 1)), fall(rows + 2 * shading_width);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index t = 0; t < value.size(); ++t) {
+      const Eigen::Vector2d p = outline.col(i) + static_cast<double>(t - inward - shading_width - 1) * normals.col(i);
+      value(t) = sample(grey, p.x(), p.y());
+    }
+    fall = (value.head(fall.size()) - value.tail(fall.size())).cwiseMax(0.0);
+    // A fall that goes on for several pixels on either side is shading, not an edge.
+    sharpness.col(i) = fall.segment(shading_width, rows) - fall.head(rows).cwiseMax(fall.tail(rows));
+  }
+  sharpness = sharpness.cwiseMax(0.0);
+  const Eigen::ArrayXXd squared = sharpness.array().square();
+  const Eigen::MatrixXd cost = -(squared / (squared + scale * scale)).matrix();
+  const Eigen::VectorXi path = closed_minimum_path(cost, stiffness, 3);
+  SharpOutline moved{outline, 0.0};
+  for (Eigen::Index i = 0; i < n; ++i) {
+    moved.points.col(i) += (path(i) - inward) * normals.col(i);
+    moved.score -= cost(path(i), i) / static_cast<double>(n);
+  }
+  return moved;
+}
+
+}  // namespace tissue_stiffness
