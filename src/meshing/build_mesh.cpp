@@ -1,13 +1,27 @@
 #include "tissue_stiffness/meshing/build_mesh.hpp"
 
+#include "tissue_stiffness/meshing/bodies.hpp"
 #include "tissue_stiffness/meshing/file_ending.hpp"
 #include "tissue_stiffness/meshing/mesh_io.hpp"
 #include "tissue_stiffness/meshing/tet_file_check.hpp"
 #include "tissue_stiffness/meshing/tetgen_mesher.hpp"
 #include "tissue_stiffness/meshing/triangle_surface.hpp"
+#include "tissue_stiffness/meshing/viewing_rays.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
+namespace {
+
+TetMesh fill(const TriangleSurface& surface, const MeshSettings& settings, bool keep_triangles, const std::string& where) {
+  return check_tet_file(fill_surface(surface, settings.max_edge_length, keep_triangles, where), 1.0, settings.order, where);
+}
+
+void require_positive(const std::string& key, double value) {
+  if (value > 0.0) return;
+  throw InputError("mesh." + key, std::to_string(value) + " m", "above 0 m for a mesh from a contour");
+}
+
+}  // namespace
 
 TetMesh build_mesh(const MeshSettings& settings) {
   if (is_tet_file(settings.file)) return load_tet_mesh(settings.file, settings.scale, settings.order);
@@ -16,7 +30,22 @@ TetMesh build_mesh(const MeshSettings& settings) {
     throw InputError(where, "ending '" + file_ending(settings.file) + "'", ".vtk, .node, .ele, .msh, .stl, .ply or .obj");
   }
   const TriangleSurface surface = load_surface(settings.file, settings.scale);
-  return check_tet_file(fill_surface(surface, settings.max_edge_length, false, where), 1.0, settings.order, where);
+  return fill(surface, settings, false, where);
+}
+
+TetMesh build_mesh(const MeshSettings& settings, const Contour& contour, const Camera& camera) {
+  if (settings.source == MeshSettings::Source::file) return build_mesh(settings);
+  check_outline(contour);
+  require_positive("max_edge_length", settings.max_edge_length);
+  if (settings.source == MeshSettings::Source::extrude) {
+    require_positive("depth", settings.depth);
+    const TriangleSurface surface = extruded_surface(contour, camera, settings.depth, settings.max_edge_length);
+    return fill(surface, settings, false, "mesh.extrude");
+  }
+  const ProfileFit fit = fit_profile(viewing_rays(contour, camera), camera, settings.axis);
+  TetMesh mesh = fill(revolution_surface(fit.profile, settings.max_edge_length), settings, true, "mesh.revolve");
+  curve_boundary(mesh, fit.profile);
+  return mesh;
 }
 
 }  // namespace tissue_stiffness

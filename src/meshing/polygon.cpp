@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace tissue_stiffness {
 namespace {
@@ -75,6 +76,31 @@ std::optional<std::pair<int, int>> find_crossing(const Eigen::Matrix2Xd& outline
     }
   }
   return std::nullopt;
+}
+
+std::vector<Eigen::Vector3i> cut_ears(const Eigen::Matrix2Xd& outline) {
+  std::vector<int> left(static_cast<std::size_t>(outline.cols()));
+  std::iota(left.begin(), left.end(), 0);
+  std::vector<Eigen::Vector3i> triangles;
+  const auto is_ear = [&](int a, int b, int c) {
+    if (side_of(outline.col(a), outline.col(b), outline.col(c)) <= 0.0) return false;
+    return std::none_of(left.begin(), left.end(), [&](int p) {
+      if (p == a || p == b || p == c) return false;
+      return side_of(outline.col(a), outline.col(b), outline.col(p)) >= 0.0 &&
+             side_of(outline.col(b), outline.col(c), outline.col(p)) >= 0.0 &&
+             side_of(outline.col(c), outline.col(a), outline.col(p)) >= 0.0;
+    });
+  };
+  while (left.size() > 3) {
+    const std::size_t n = left.size();
+    std::size_t ear = 0;
+    while (ear < n && !is_ear(left[(ear + n - 1) % n], left[ear], left[(ear + 1) % n])) ++ear;
+    ear %= n;  // rounding can hide the last ears; any corner then closes the polygon
+    triangles.emplace_back(left[(ear + n - 1) % n], left[ear], left[(ear + 1) % n]);
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(ear));
+  }
+  triangles.emplace_back(left[0], left[1], left[2]);
+  return triangles;
 }
 
 }  // namespace tissue_stiffness

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <optional>
 #include <utility>
+#include <vector>
 
 namespace tissue_stiffness {
 
@@ -28,5 +29,8 @@ Eigen::Vector2d inner_point(const Eigen::Matrix2Xd& outline);
 
 /// The first two sides (i, j) of a closed polygon that cross or touch without being neighbours.
 std::optional<std::pair<int, int>> find_crossing(const Eigen::Matrix2Xd& outline);
+
+/// Triangles that fill a simple counter-clockwise polygon, by cutting ears (Meisters 1975): columns - 2 of them.
+std::vector<Eigen::Vector3i> cut_ears(const Eigen::Matrix2Xd& outline);
 
 }  // namespace tissue_stiffness
