@@ -98,7 +98,9 @@ void EstimatorNode::work() {
       build(*mesh);
       queue_.restart();
     } else {
+      diagnostics_.set("frames waiting", std::to_string(queue_.waiting() + 1));  // this one included
       process(*work);
+      diagnostics_.set("frames waiting", std::to_string(queue_.waiting()));
     }
   }
 }

@@ -128,6 +128,11 @@ void FrameQueue::stop() {
   changed_.notify_all();
 }
 
+std::size_t FrameQueue::waiting() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return frames_.size();
+}
+
 std::size_t FrameQueue::dropped() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return dropped_;

@@ -56,6 +56,7 @@ class FrameQueue {
   void restart();
   void stop();
 
+  std::size_t waiting() const;
   std::size_t dropped() const;
 
  private:

@@ -1,0 +1,165 @@
+#include "tissue_stiffness/nodes/frame_queue.hpp"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+namespace tissue_stiffness {
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+ros::Time at(double seconds) {
+  return ros::Time(1000.0 + seconds);
+}
+
+class FrameQueueTest : public testing::Test {
+ protected:
+  FrameQueue queue{Seconds(0.05), 3};
+
+  void frame(double seconds, const std::string& topic = "contour") {
+    queue.add_observation(topic, at(seconds), [] { return Observation(); });
+  }
+  void load(double seconds) {
+    queue.add_load("pressure", at(seconds), [seconds] {
+      return LoadSample{"pressure", seconds, Eigen::VectorXd::Zero(1)};
+    });
+  }
+  double take() {
+    const auto work = queue.take();
+    return (work->stamp - ros::Time(1000.0)).toSec();
+  }
+};
+
+TEST_F(FrameQueueTest, HandsFramesOutInOrderOfTime) {
+  frame(0.0);
+  frame(0.2);
+  frame(0.1);
+  EXPECT_NEAR(take(), 0.0, 1e-9);
+  EXPECT_NEAR(take(), 0.1, 1e-9);
+  EXPECT_NEAR(take(), 0.2, 1e-9);
+}
+
+TEST_F(FrameQueueTest, OneStampIsOneFrame) {
+  frame(0.0, "a");
+  frame(0.0, "b");
+  EXPECT_EQ(queue.take()->observations.size(), 2U);
+}
+
+TEST_F(FrameQueueTest, AFrameWaitsForTheLoadBehindIt) {
+  queue.expect("pressure");
+  load(0.0);
+  frame(0.1);
+  std::thread late([this] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    load(0.12);
+  });
+  const auto begin = std::chrono::steady_clock::now();
+  const auto work = queue.take();
+  late.join();
+  EXPECT_EQ(work->loads.size(), 2U);
+  EXPECT_LT(Seconds(std::chrono::steady_clock::now() - begin).count(), 0.045);
+}
+
+TEST_F(FrameQueueTest, AMissingLoadHoldsAFrameOnlyForAWhile) {
+  queue.expect("pressure");
+  frame(0.1);
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_TRUE(queue.take()->loads.empty());
+  EXPECT_GE(Seconds(std::chrono::steady_clock::now() - begin).count(), 0.045);
+}
+
+TEST_F(FrameQueueTest, TheNewestWinWhenTooManyWait) {
+  for (int i = 0; i < 5; ++i) frame(0.1 * i);
+  EXPECT_EQ(queue.waiting(), 3U);
+  EXPECT_EQ(queue.dropped(), 2U);
+  EXPECT_NEAR(take(), 0.2, 1e-9);
+}
+
+TEST_F(FrameQueueTest, TheFirstStampIsTheEarliestOfAnyTopic) {
+  load(0.05);
+  frame(0.1);
+  const auto work = queue.take();
+  EXPECT_TRUE(work->new_lap);
+  EXPECT_NEAR((work->first_stamp - at(0.05)).toSec(), 0.0, 1e-9);
+}
+
+TEST_F(FrameQueueTest, ALoopStartsANewLap) {
+  frame(0.0);
+  frame(0.01);
+  EXPECT_TRUE(queue.take()->new_lap);
+  EXPECT_FALSE(queue.take()->new_lap);
+  frame(0.0);  // a recording of 0.01 s that starts again
+  const auto work = queue.take();
+  EXPECT_TRUE(work->new_lap);
+  EXPECT_NEAR((work->first_stamp - at(0.0)).toSec(), 0.0, 1e-9);
+}
+
+TEST_F(FrameQueueTest, ALateFrameDoesNot) {
+  frame(0.0);
+  frame(0.3);
+  frame(0.2);
+  take();
+  take();
+  frame(0.1);
+  EXPECT_FALSE(queue.take()->new_lap);
+}
+
+TEST_F(FrameQueueTest, LoadsOfTheNextLapWaitForItsFrames) {
+  load(0.0);
+  frame(0.0);
+  load(1.0);
+  frame(1.0);
+  load(0.0);  // the load's topic starts again before the last frame was taken
+  load(0.1);
+  EXPECT_EQ(queue.take()->loads.size(), 2U);
+  EXPECT_TRUE(queue.take()->loads.empty());
+  frame(0.0);
+  const auto work = queue.take();
+  EXPECT_TRUE(work->new_lap);
+  EXPECT_EQ(work->loads.size(), 2U);
+}
+
+TEST_F(FrameQueueTest, ATopicThatMissedALapJoinsTheNewest) {
+  load(0.0);
+  frame(0.0);
+  load(1.0);
+  load(0.0);
+  load(1.0);
+  load(0.0);  // third lap of the load
+  take();
+  frame(-0.6);  // the frame's topic jumps for the first time
+  const auto work = queue.take();
+  EXPECT_TRUE(work->new_lap);
+  EXPECT_EQ(work->loads.size(), 1U);
+}
+
+TEST_F(FrameQueueTest, AMinuteOfSilenceStartsANewLap) {
+  frame(0.0);
+  take();
+  frame(59.0);
+  EXPECT_FALSE(queue.take()->new_lap);
+  frame(200.0);
+  EXPECT_TRUE(queue.take()->new_lap);
+}
+
+TEST_F(FrameQueueTest, RestartForgetsWhatWaits) {
+  frame(0.0);
+  take();
+  frame(0.1);
+  queue.restart();
+  EXPECT_EQ(queue.waiting(), 0U);
+  frame(0.2);
+  const auto work = queue.take();
+  EXPECT_TRUE(work->new_lap);
+  EXPECT_NEAR((work->first_stamp - at(0.2)).toSec(), 0.0, 1e-9);
+}
+
+TEST_F(FrameQueueTest, StopEndsTheWait) {
+  std::thread worker([this] { EXPECT_FALSE(queue.take()); });
+  queue.stop();
+  worker.join();
+}
+
+}  // namespace
+}  // namespace tissue_stiffness

@@ -1,0 +1,135 @@
+#include "tissue_stiffness/nodes/sensor_conversions.hpp"
+
+#include <gtest/gtest.h>
+#include <sensor_msgs/image_encodings.h>
+
+#include <limits>
+
+#include "expect_input_error.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+using Projection = ObservationSettings::Projection;
+
+sensor_msgs::CameraInfo camera_info() {
+  sensor_msgs::CameraInfo info;
+  info.width = 640;
+  info.height = 480;
+  info.distortion_model = "plumb_bob";
+  info.D = {0.1, -0.2, 0.001, 0.002, 0.05};
+  info.K = {500, 0, 320, 0, 510, 240, 0, 0, 1};
+  return info;
+}
+
+Camera convert(const sensor_msgs::CameraInfo& info) {
+  return to_camera(info, Projection::silhouette, Eigen::Isometry3d::Identity(), "/camera_info");
+}
+
+sensor_msgs::ImagePtr image(const std::string& encoding, int channels, std::uint8_t value) {
+  const auto out = sensor_msgs::ImagePtr(new sensor_msgs::Image);
+  out->encoding = encoding;
+  out->width = 4;
+  out->height = 3;
+  out->step = static_cast<std::uint32_t>(4 * channels);
+  out->data.assign(out->step * out->height, value);
+  return out;
+}
+
+TEST(CameraConversion, ReadsCalibration) {
+  const Camera camera = convert(camera_info());
+  EXPECT_EQ(camera.width, 640);
+  EXPECT_EQ(camera.fx, 500);
+  EXPECT_EQ(camera.fy, 510);
+  EXPECT_EQ(camera.cy, 240);
+  EXPECT_EQ(camera.distortion[4], 0.05);
+  EXPECT_EQ(camera.projection, Camera::Projection::pinhole);
+}
+
+TEST(CameraConversion, RefusesWhatItCannotUse) {
+  sensor_msgs::CameraInfo info = camera_info();
+  info.K[0] = 0;
+  expect_input_error([&] { convert(info); }, {"/camera_info: K", "calibrate"});
+  info = camera_info();
+  info.K[2] = std::numeric_limits<double>::infinity();
+  expect_input_error([&] { convert(info); }, {"/camera_info: K", "finite"});
+  info = camera_info();
+  info.distortion_model = "equidistant";
+  expect_input_error([&] { convert(info); }, {"equidistant", "plumb_bob"});
+  info = camera_info();
+  info.D.resize(3);
+  expect_input_error([&] { convert(info); }, {"D", "3 numbers"});
+  info = camera_info();
+  info.binning_x = 2;
+  expect_input_error([&] { convert(info); }, {"binning", "2"});
+  info = camera_info();
+  info.roi.x_offset = 10;
+  expect_input_error([&] { convert(info); }, {"roi", "full image"});
+  info = camera_info();
+  info.height = 0;
+  expect_input_error([&] { convert(info); }, {"640 x 0"});
+}
+
+TEST(ImageConversion, GivesGreyOrBgr) {
+  EXPECT_EQ(to_image(image("mono8", 1, 7), "/image").type(), CV_8UC1);
+  EXPECT_EQ(to_image(image("8UC1", 1, 7), "/image").type(), CV_8UC1);
+  EXPECT_EQ(to_image(image("bgr8", 3, 7), "/image").type(), CV_8UC3);
+  EXPECT_EQ(to_image(image("bgra8", 4, 7), "/image").type(), CV_8UC3);
+  const cv::Mat narrowed = to_image(image("16UC1", 2, 128), "/image");
+  EXPECT_EQ(narrowed.type(), CV_8UC1);
+  EXPECT_NEAR(narrowed.at<std::uint8_t>(1, 1), 128, 1);
+  sensor_msgs::ImagePtr red = image("rgb8", 3, 0);
+  red->data[0] = 255;
+  EXPECT_EQ(to_image(red, "/image").at<cv::Vec3b>(0, 0)[2], 255);
+}
+
+TEST(ImageConversion, RefusesWrongImages) {
+  expect_input_error([] { to_image(image("32FC1", 4, 1), "/image"); }, {"/image", "32FC1", "mono8"});
+  expect_input_error([] { to_image(image("holiday", 1, 1), "/image"); }, {"/image", "holiday"});
+  const sensor_msgs::ImagePtr cut = image("mono8", 1, 1);
+  cut->data.resize(5);
+  expect_input_error([&] { to_image(cut, "/image"); }, {"/image", "mono8"});
+  const sensor_msgs::ImagePtr empty = image("mono8", 1, 1);
+  empty->width = empty->height = empty->step = 0;
+  empty->data.clear();
+  expect_input_error([&] { to_image(empty, "/image"); }, {"/image"});
+}
+
+TEST(LoadConversion, TurnsAWrenchIntoTheModelFrame) {
+  geometry_msgs::WrenchStamped wrench;
+  wrench.wrench.force.x = 2.0;
+  wrench.wrench.torque.z = 0.5;
+  Eigen::Isometry3d pose = Eigen::Translation3d(5, 5, 5) * Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ());
+  const LoadSample sample = to_load(wrench, pose, "/tool/wrench");
+  ASSERT_EQ(sample.value.size(), 6);
+  EXPECT_NEAR(sample.value[1], 2.0, 1e-12);
+  EXPECT_NEAR(sample.value[5], 0.5, 1e-12);
+  wrench.wrench.force.y = std::numeric_limits<double>::quiet_NaN();
+  expect_input_error([&] { to_load(wrench, pose, "/tool/wrench"); }, {"/tool/wrench", "finite"});
+}
+
+TEST(LoadConversion, RefusesAPressureThatIsNotFinite) {
+  sensor_msgs::FluidPressure pressure;
+  pressure.fluid_pressure = 1200.0;
+  EXPECT_EQ(to_load(pressure, "/p").value[0], 1200.0);
+  pressure.fluid_pressure = std::numeric_limits<double>::quiet_NaN();
+  expect_input_error([&] { to_load(pressure, "/p"); }, {"/p: fluid_pressure", "finite"});
+}
+
+TEST(PoseConversion, RefusesWhatIsNoRotation) {
+  geometry_msgs::Transform transform;
+  expect_input_error([&] { to_isometry(transform, "/tf"); }, {"/tf: rotation", "length 1"});
+  transform.rotation.w = 1.0;
+  transform.translation.z = 0.25;
+  EXPECT_EQ(to_isometry(transform, "/tf").translation().z(), 0.25);
+}
+
+TEST(StampConversion, RefusesZero) {
+  std_msgs::Header header;
+  expect_input_error([&] { require_stamp(header, "/image"); }, {"/image: header.stamp"});
+  header.stamp = ros::Time(1, 0);
+  EXPECT_NO_THROW(require_stamp(header, "/image"));
+}
+
+}  // namespace
+}  // namespace tissue_stiffness
