@@ -13,16 +13,22 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kFar = 1.0;            // spreads between anchor and estimate that ask for a new anchor
-constexpr double kWide = 6.0;           // posterior standard deviations that the sigma points may span
-constexpr double kNewSpread = 2.0;      // posterior standard deviations that they span after a move
-constexpr double kFloor = 1e-3;         // of the prior's standard deviation: the smallest span
-constexpr double kLongestMove = 3.0;    // spreads that the anchor may move at once
-constexpr int kMostVisits = 8;          // moves of the anchor a frame
-constexpr int kVelocityFrames = 4;      // frames that the initial velocity is read from
-constexpr std::size_t kWindow = 4000;   // frames kept for replay; later ones only add information
-constexpr double kConverged = 0.05;     // relative standard deviation
-constexpr double kInvalidSigmas = 10.0; // rms error over noise at which the model says nothing about the body
+constexpr double kFar = 1.0;             // spreads between anchor and estimate that ask for a new anchor
+constexpr double kWide = 6.0;            // posterior standard deviations that the sigma points may span
+constexpr double kNewSpread = 2.0;       // posterior standard deviations that they span after a move
+constexpr double kFloor = 1e-3;          // of the prior's standard deviation: the smallest span
+constexpr double kBent = 0.2;            // of the misfit: nonlinearity over the span that asks for a smaller one
+constexpr double kLongestMove = 3.0;     // spreads that the anchor may move at once
+constexpr int kMostVisits = 6;           // moves of the anchor a frame
+constexpr std::size_t kEarly = 16;       // frames up to which the anchor may move at every frame
+constexpr double kRevisitGrowth = 1.1;   // of the recording between moves of the anchor later
+constexpr double kScanMisfit = 4.0;      // mean square error over sigma that asks for a scan of the parameters
+constexpr double kScanReach = 2.5;       // prior standard deviations scanned to either side
+constexpr int kScanPoints = 25;          // on either side
+constexpr int kVelocityFrames = 4;       // frames that the initial velocity is read from
+constexpr std::size_t kWindow = 4000;    // frames kept for replay; later ones only add information
+constexpr double kConverged = 0.05;      // relative standard deviation
+constexpr double kInvalidSigmas = 10.0;  // rms error over noise at which the model says nothing about the body
 
 class UnscentedScheme : public Scheme {
  public:
@@ -52,6 +58,8 @@ class UnscentedScheme : public Scheme {
     ensemble_.clear();
     filter_ = AnchoredFilter(model_->prior_mean(), model_->prior_std());
     complete_ = true;
+    last_revisit_ = 0;
+    last_scan_ = 1;
   }
 
  private:
@@ -106,23 +114,80 @@ class UnscentedScheme : public Scheme {
     return filter_.update(now.measured, predicted.rows, now.sigma.cwiseAbs2(), row_weights(now));
   }
 
+  bool bent() const { return filter_.nonlinearity() > kBent * filter_.misfit_scale(); }
+
   // Moves the sigma points to where the estimate went and runs the recording again, until nothing moves. True if moved.
   bool revisit() {
-    bool moved = false;
+    const std::size_t count = frames_.size();
+    if (count > kEarly && static_cast<double>(count) < kRevisitGrowth * static_cast<double>(last_revisit_)) return false;
+    bool moved = scan();
     const Eigen::VectorXd floor = kFloor * model_->prior_std();
-    for (int visit = 0; visit < kMostVisits && filter_.stale(kFar, kWide, floor); ++visit) {
-      const AnchoredFilter before = filter_;
-      const Eigen::VectorXd limit = kLongestMove * before.spread();
-      Eigen::VectorXd move = (before.mean() - before.anchor()).cwiseMax(-limit).cwiseMin(limit);
-      const Eigen::VectorXd std = before.covariance().diagonal().cwiseSqrt();
-      const Eigen::VectorXd spread = (kNewSpread * std).cwiseMin(before.spread()).cwiseMax(floor);
-      for (int cut = 0; cut < 5; ++cut, move *= 0.5) {
-        replay(before.anchor() + move, spread);
-        if (filter_.cost() <= before.cost() * (1.0 + 1e-3) + 1.0) break;
+    for (int visit = 0; visit < kMostVisits && (filter_.stale(kFar, kWide, floor) || bent()); ++visit) {
+      move_anchor(floor);
+      moved = true;
+    }
+    if (moved) last_revisit_ = count;
+    return moved;
+  }
+
+  void move_anchor(const Eigen::VectorXd& floor) {
+    const AnchoredFilter before = filter_;
+    const Eigen::VectorXd limit = kLongestMove * before.spread();
+    Eigen::VectorXd move = (before.mean() - before.anchor()).cwiseMax(-limit).cwiseMin(limit);
+    const Eigen::VectorXd std = before.covariance().diagonal().cwiseSqrt();
+    Eigen::VectorXd spread = (kNewSpread * std).cwiseMin(before.spread());
+    if (bent()) {
+      const double excess = before.nonlinearity() / (kBent * before.misfit_scale());
+      spread = spread.cwiseMin(0.8 * std::pow(excess, -0.25) * before.spread());
+    }
+    spread = spread.cwiseMax(floor);
+    for (int cut = 0; cut < 3; ++cut, move *= 0.25) {
+      replay(before.anchor() + move, spread);
+      if (filter_.cost() <= before.cost() * (1.0 + 1e-3) + 1.0) return;
+    }
+    replay(before.anchor(), spread);
+  }
+
+  // A free run that rings has local minima in every modulus. When the misfit is large, looks along each coordinate over the
+  // prior's range, whenever the recording has doubled; linear models only, whose runs cost next to nothing.
+  bool scan() {
+    if (model_->nonlinear() || frames_.size() < 2 * last_scan_ || filter_.misfit_scale() < kScanMisfit) return false;
+    last_scan_ = frames_.size();
+    const Eigen::VectorXd mean = model_->prior_mean(), std = model_->prior_std();
+    bool moved = false;
+    for (Eigen::Index i = 0; i < mean.size(); ++i) {
+      const double step = kScanReach / kScanPoints * std[i];
+      Eigen::VectorXd best = filter_.anchor();
+      double lowest = cost_at(best);
+      for (int k = -kScanPoints; k <= kScanPoints; ++k) {
+        Eigen::VectorXd w = filter_.anchor();
+        w[i] = mean[i] + k * step;
+        const double cost = cost_at(w);
+        if (cost >= lowest) continue;
+        lowest = cost;
+        best = w;
       }
+      if (best == filter_.anchor()) continue;
+      Eigen::VectorXd spread = filter_.spread();
+      spread[i] = std::min(spread[i], step);
+      replay(best, spread);
       moved = true;
     }
     return moved;
+  }
+
+  // Mean square error of the free run at w, each point's loss growing slower beyond the robust limit.
+  double cost_at(const Eigen::VectorXd& w) const {
+    const auto run = forward_->start(model_->theta(w), start());
+    double cost = 0.0;
+    for (const Frame& frame : frames_) {
+      run->advance(frame.time);
+      const Prediction p = predict_frame(operators_, frame, run->displacement());
+      const Eigen::ArrayXd e = ((p.measured - p.predicted).cwiseQuotient(p.sigma)).array();
+      const Eigen::ArrayXd weights = row_weights(p).array();
+      cost += (weights > 0.0).select(weights * e.square(), 0.0).sum();
+    }
+    return cost;
   }
 
   void replay(const Eigen::VectorXd& anchor, const Eigen::VectorXd& spread) {
@@ -167,6 +232,7 @@ class UnscentedScheme : public Scheme {
   AnchoredFilter filter_;
   std::vector<Frame> frames_, waiting_;
   bool complete_ = true;  ///< every frame since the start is in frames_
+  std::size_t last_revisit_ = 0, last_scan_ = 1;
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "tissue_stiffness/filter/anchored_filter.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 namespace tissue_stiffness {
@@ -21,7 +22,8 @@ void AnchoredFilter::move_anchor(const Eigen::VectorXd& anchor, const Eigen::Vec
   }
   information_ = Eigen::MatrixXd::Zero(p, p);
   gradient_ = Eigen::VectorXd::Zero(p);
-  data_cost_ = 0.0;
+  data_cost_ = bend_cost_ = 0.0;
+  rows_ = 0;
 }
 
 Eigen::MatrixXd AnchoredFilter::slopes(const Eigen::MatrixXd& y) const {
@@ -53,6 +55,7 @@ AnchoredFilter::Innovation AnchoredFilter::update(const Eigen::VectorXd& y, cons
     precision[r] = good ? weight[r] / (variance[r] + curvature[r]) : 0.0;
     if (good) {
       out.cost += weight[r] * e[r] * e[r] / variance[r];
+      bend_cost_ += weight[r] * curvature[r] / variance[r];
       ++out.dof;
     } else {
       e[r] = 0.0;
@@ -63,31 +66,37 @@ AnchoredFilter::Innovation AnchoredFilter::update(const Eigen::VectorXd& y, cons
   const Eigen::MatrixXd added = h.transpose() * weighted;
   const Eigen::VectorXd innovation = e - h * step;
   // e^T (H P H^T + R)^-1 e by Woodbury: only p x p is inverted.
-  Eigen::MatrixXd before = information_;
-  before.diagonal() += prior_information_;
+  const Eigen::MatrixXd before = misfit_scale() * total_information();
   const Eigen::VectorXd projected = weighted.transpose() * innovation;
   out.nis = innovation.dot(precision.cwiseProduct(innovation)) - projected.dot((before + added).ldlt().solve(projected));
 
   information_ += added;
   gradient_ += weighted.transpose() * e;
   data_cost_ += out.cost;
+  rows_ += out.dof;
   return out;
 }
 
-Eigen::VectorXd AnchoredFilter::mean() const {
-  Eigen::MatrixXd total = information_;
+double AnchoredFilter::misfit_scale() const { return rows_ > 0 ? std::max(1.0, data_cost_ / rows_) : 1.0; }
+
+Eigen::MatrixXd AnchoredFilter::total_information() const {
+  Eigen::MatrixXd total = information_ / misfit_scale();
   total.diagonal() += prior_information_;
-  return anchor_ + total.ldlt().solve(gradient_ + prior_information_.cwiseProduct(prior_mean_ - anchor_));
+  return total;
+}
+
+Eigen::VectorXd AnchoredFilter::mean() const {
+  return anchor_ + total_information().ldlt().solve(gradient_ / misfit_scale() +
+                                                    prior_information_.cwiseProduct(prior_mean_ - anchor_));
 }
 
 Eigen::MatrixXd AnchoredFilter::covariance() const {
-  Eigen::MatrixXd total = information_;
-  total.diagonal() += prior_information_;
-  return total.ldlt().solve(Eigen::MatrixXd::Identity(total.rows(), total.cols()));
+  const Eigen::Index p = anchor_.size();
+  return total_information().ldlt().solve(Eigen::MatrixXd::Identity(p, p));
 }
 
 double AnchoredFilter::cost() const {
-  return data_cost_ + (anchor_ - prior_mean_).cwiseAbs2().dot(prior_information_);
+  return data_cost_ + misfit_scale() * (anchor_ - prior_mean_).cwiseAbs2().dot(prior_information_);
 }
 
 bool AnchoredFilter::stale(double far, double wide, const Eigen::VectorXd& floor) const {
