@@ -11,7 +11,6 @@ namespace {
 
 constexpr int working_width = 320;  // [pixel] the search needs no more resolution
 constexpr int thresholds = 24;
-constexpr int shading_width = 4;                             // [pixel] a fall that lasts longer to both sides is no edge
 constexpr double smallest_area = 0.003, largest_area = 0.8;  // of the image
 
 using Border = std::vector<cv::Point>;
@@ -88,33 +87,6 @@ Eigen::Matrix2Xd sharpest_region(const cv::Mat& grey, const std::optional<Eigen:
     result.col(i) << (p.x + 0.5) / scale - 0.5, (p.y + 0.5) / scale - 0.5;
   }
   return result;
-}
-
-SharpOutline sharpest_outline(const cv::Mat& grey, const Eigen::Matrix2Xd& outline, int inward, int outward, double scale,
-                              double stiffness) {
-  const Eigen::Matrix2Xd normals = outward_normals(outline, 2.0);
-  const Eigen::Index rows = inward + outward + 1, n = outline.cols();
-  Eigen::MatrixXd sharpness(rows, n);
-  Eigen::VectorXd value(rows + 2 * (shading_width + 1)), fall(rows + 2 * shading_width);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    for (Eigen::Index t = 0; t < value.size(); ++t) {
-      const Eigen::Vector2d p = outline.col(i) + static_cast<double>(t - inward - shading_width - 1) * normals.col(i);
-      value(t) = sample(grey, p.x(), p.y());
-    }
-    fall = (value.head(fall.size()) - value.tail(fall.size())).cwiseMax(0.0);
-    // A fall that goes on for several pixels on either side is shading, not an edge.
-    sharpness.col(i) = fall.segment(shading_width, rows) - fall.head(rows).cwiseMax(fall.tail(rows));
-  }
-  sharpness = sharpness.cwiseMax(0.0);
-  const Eigen::ArrayXXd squared = sharpness.array().square();
-  const Eigen::MatrixXd cost = -(squared / (squared + scale * scale)).matrix();
-  const Eigen::VectorXi path = closed_minimum_path(cost, stiffness, 3);
-  SharpOutline moved{outline, 0.0};
-  for (Eigen::Index i = 0; i < n; ++i) {
-    moved.points.col(i) += (path(i) - inward) * normals.col(i);
-    moved.score -= cost(path(i), i) / static_cast<double>(n);
-  }
-  return moved;
 }
 
 }  // namespace tissue_stiffness

@@ -25,20 +25,18 @@ class StepEdge {
   /// `blur`: Gaussian sigma of the imaging blur; `reach`: half length of a profile; `search`: largest |d| [pixel].
   StepEdge(double blur, int reach, double search);
 
-  EdgeFit fit(const Eigen::VectorXd& profile) const;
+  /// One fit for each column of `profiles`.
+  std::vector<EdgeFit> fit(const Eigen::MatrixXd& profiles) const;
   double blur() const { return blur_; }
   int degrees_of_freedom() const { return static_cast<int>(times_.size()) - 5; }
 
  private:
-  struct Candidate {
-    double offset;
-    Eigen::MatrixXd basis;       ///< orthonormal basis of the four linear terms
-    Eigen::RowVectorXd step;     ///< profile -> a - c
-    Eigen::VectorXd derivative;  ///< dI/dd for a unit step, with the linear terms projected out
-  };
   double blur_;
   Eigen::VectorXd times_;
-  std::vector<Candidate> candidates_;
+  Eigen::VectorXd offsets_;  ///< the grid of d
+  Eigen::MatrixXd bases_;    ///< 4 rows for each d: orthonormal basis of the linear terms
+  Eigen::MatrixXd steps_;    ///< a row for each d: profile -> a - c
+  Eigen::VectorXd gains_;    ///< for each d: squared norm of dI/dd for a unit step, the linear terms projected out
 };
 
 /// Grey values along the normal at t = -reach ... reach, averaged over three parallel lines one pixel apart.

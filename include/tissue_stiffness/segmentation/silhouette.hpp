@@ -36,15 +36,10 @@ class SilhouetteSegmenter : public Segmenter {
 Eigen::Matrix2Xd sharpest_region(const cv::Mat& grey, const std::optional<Eigen::Vector2d>& seed,
                                  const Eigen::Matrix2Xd& previous);
 
-struct SharpOutline {
-  Eigen::Matrix2Xd points;
-  double score = 0.0;  ///< mean of s^2 / (s^2 + scale^2), s the sharpness of the fall at each point: 1 all sharp, 0 no edge
-};
-
-/// `outline` moved along its normals, at most `inward` and `outward` pixels, to the sharpest fall of grey value from inside
-/// to outside: falls as wide as shading are discounted, and clear edges (falls over two pixels well above `scale` grey
-/// values) count alike. `stiffness` resists bends.
-SharpOutline sharpest_outline(const cv::Mat& grey, const Eigen::Matrix2Xd& outline, int inward, int outward, double scale,
-                              double stiffness);
+/// The outline along the sharpest falls near that region, or near the ellipse of its moments (shading may hide a part of
+/// the body from any threshold), or near the previous outline: whichever is sharpest. Points `spacing` apart; none without
+/// a region.
+Eigen::Matrix2Xd find_outline(const cv::Mat& grey, const std::optional<Eigen::Vector2d>& seed,
+                              const Eigen::Matrix2Xd& previous, double spacing);
 
 }  // namespace tissue_stiffness
