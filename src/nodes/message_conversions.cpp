@@ -101,6 +101,9 @@ TetMesh to_mesh(const TetMeshMessage& message, const std::string& topic) {
   if (message.nodes_per_tet != 4 && message.nodes_per_tet != 10) {
     throw InputError(topic + ": nodes_per_tet", std::to_string(message.nodes_per_tet), "4 or 10");
   }
+  if (message.nodes.size() < 4) {
+    throw InputError(topic + ": nodes", std::to_string(message.nodes.size()) + " entries", "4 or more");
+  }
   TetMesh out;
   const int nodes = static_cast<int>(message.nodes.size());
   out.nodes.resize(3, nodes);

@@ -1,0 +1,106 @@
+// Guards the layers: an include points only up the table, ROS stays in the nodes and the tools.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What a layer may include, besides itself.
+const std::map<std::string, std::set<std::string>> kAllowed = [] {
+  std::map<std::string, std::set<std::string>> allowed{{"types", {}}};
+  const auto add = [&](const std::string& layer, const std::vector<std::string>& above) {
+    for (const std::string& name : above) {
+      allowed[layer].insert(name);
+      allowed[layer].insert(allowed.at(name).begin(), allowed.at(name).end());
+    }
+  };
+  add("settings", {"types"});
+  add("segmentation", {"settings"});
+  add("meshing", {"settings"});
+  add("fem", {"settings"});
+  add("effects", {"fem"});
+  add("forward", {"effects", "meshing"});
+  add("filter", {"types"});
+  add("estimation", {"forward", "filter"});
+  add("report", {"settings"});
+  add("nodes", {"estimation", "segmentation", "report"});
+  add("tools", {"nodes"});
+  return allowed;
+}();
+
+bool is_ros(const std::string& header) {
+  static const std::regex ros(
+      "^(ros|rosbag|tf2?|tf2_\\w+|\\w+_msgs|std_srvs|cv_bridge|image_transport|pcl_conversions|XmlRpc\\w*|"
+      "message_filters|diagnostic_updater)(/|\\.h).*|^tissue_stiffness/[A-Z]\\w*\\.h$");
+  return std::regex_match(header, ros);
+}
+
+/// What is wrong with an include of `header` in `layer`; empty when nothing is.
+std::string fault(const std::string& layer, const std::string& header) {
+  if (is_ros(header) && layer != "nodes" && layer != "tools") return "ROS outside nodes and tools";
+  std::smatch match;
+  static const std::regex own("^tissue_stiffness/([a-z_]+)/.*");
+  if (!std::regex_match(header, match, own) || match[1] == layer) return "";
+  if (kAllowed.count(match[1]) == 0) return "no such layer";
+  return kAllowed.at(layer).count(match[1]) == 1 ? "" : layer + " may not use " + match[1].str();
+}
+
+std::vector<std::string> includes(const fs::path& file) {
+  static const std::regex include("^\\s*#\\s*include\\s*[<\"]([^>\"]+)[>\"].*");
+  std::vector<std::string> out;
+  std::ifstream stream(file);
+  std::smatch match;
+  for (std::string line; std::getline(stream, line);) {
+    if (std::regex_match(line, match, include)) out.push_back(match[1]);
+  }
+  return out;
+}
+
+TEST(Layers, IncludesPointOnlyUpTheTable) {
+  int files = 0;
+  for (const char* top : {"include/tissue_stiffness", "src"}) {
+    for (const auto& [layer, above] : kAllowed) {
+      const fs::path folder = fs::path(TISSUE_STIFFNESS_SOURCE_DIR) / top / layer;
+      if (!fs::exists(folder)) continue;
+      for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+        if (!entry.is_regular_file()) continue;
+        ++files;
+        for (const std::string& header : includes(entry.path())) {
+          EXPECT_EQ(fault(layer, header), "") << entry.path() << " includes " << header;
+        }
+      }
+    }
+  }
+  EXPECT_GT(files, 50) << "the folders of the layers were not found";
+}
+
+TEST(Layers, EveryFolderIsALayer) {
+  for (const char* top : {"include/tissue_stiffness", "src"}) {
+    for (const auto& entry : fs::directory_iterator(fs::path(TISSUE_STIFFNESS_SOURCE_DIR) / top)) {
+      EXPECT_EQ(kAllowed.count(entry.path().filename().string()), 1U) << entry.path();
+    }
+  }
+}
+
+TEST(Layers, FaultsAreFound) {
+  EXPECT_NE(fault("fem", "ros/ros.h"), "");
+  EXPECT_NE(fault("forward", "sensor_msgs/Image.h"), "");
+  EXPECT_NE(fault("report", "tissue_stiffness/StiffnessEstimate.h"), "");
+  EXPECT_NE(fault("types", "tissue_stiffness/settings/value.hpp"), "");
+  EXPECT_NE(fault("filter", "tissue_stiffness/forward/model.hpp"), "");
+  EXPECT_NE(fault("nodes", "tissue_stiffness/tools/bag_reader.hpp"), "");
+  EXPECT_EQ(fault("tools", "tissue_stiffness/types/error.hpp"), "");
+  EXPECT_EQ(fault("nodes", "ros/ros.h"), "");
+  EXPECT_EQ(fault("fem", "Eigen/Core"), "");
+}
+
+}  // namespace
