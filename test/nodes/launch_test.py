@@ -64,6 +64,15 @@ class LaunchTest(unittest.TestCase):
                     self.assertIn(part, output)
                 self.assertEqual(len(output.strip().splitlines()), 1, output)
 
+    def test_a_wrong_effect_ends_the_estimator_once_the_mesh_is_there(self):
+        with tempfile.TemporaryDirectory() as folder:
+            wrong = os.path.join(folder, 'wrong.yaml')
+            with open(wrong, 'w') as file:
+                file.write(MODEL.replace('acceleration', 'aceleration'))
+            code, output = run('estimator_node', '_model:=' + wrong, '__name:=wrong_effect')
+            self.assertEqual(code, 2, output)
+            self.assertIn('acceleration', output)
+
     def test_a_missing_model_is_named(self):
         code, output = run('estimator_node', '_model:=/nowhere/model.yaml', '__name:=lost')
         self.assertEqual(code, 2, output)

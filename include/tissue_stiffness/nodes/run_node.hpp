@@ -11,8 +11,9 @@ namespace tissue_stiffness {
 /// Runs a node until shutdown. A wrong setting is one fatal line and exit code 2.
 template <typename Node>
 int run_node() {
+  const ros::NodeHandle node_handle;  // with the last handle ROS shuts down, and its log too
   try {
-    Node node(ros::NodeHandle(), ros::NodeHandle("~"));
+    Node node(node_handle, ros::NodeHandle("~"));
     ros::spin();
     return node.exit_code();
   } catch (const InputError& error) {
