@@ -35,6 +35,7 @@ WallPath trace_from(const cv::Mat& small, Pool pool) {
 
 Segmentation CavitySegmenter::segment(const cv::Mat& image, double stamp) {
   const cv::Mat grey = to_grey(image);
+  if (std::min(grey.cols, grey.rows) < smallest_image) return {{}, "the image is smaller than 32 x 32 pixels"};
   const double scale = std::min(1.0, static_cast<double>(working_width) / grey.cols);
   cv::Mat small;
   cv::resize(grey, small, {}, scale, scale, cv::INTER_AREA);

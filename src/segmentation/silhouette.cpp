@@ -93,6 +93,7 @@ SilhouetteSegmenter::SilhouetteSegmenter(const SegmentationSettings& settings) :
 
 Segmentation SilhouetteSegmenter::segment(const cv::Mat& image, double stamp) {
   const cv::Mat grey = to_grey(image);
+  if (std::min(grey.cols, grey.rows) < smallest_image) return {{}, "the image is smaller than 32 x 32 pixels"};
   Eigen::Matrix2Xd outline = find_outline(grey, seed_, previous_, spacing);
   if (outline.cols() == 0) return {{}, "no bright region of the expected size"};
   Eigen::VectorXd sigma;

@@ -144,6 +144,9 @@ TEST(silhouette, follows_motion_through_an_empty_frame) {
 
 TEST(silhouette, nothing_to_find) {
   const auto segmenter = silhouette();
+  for (const cv::Size tiny : {cv::Size(1, 1), cv::Size(7, 300), cv::Size(31, 31)}) {
+    EXPECT_FALSE(segmenter->segment(cv::Mat(tiny, CV_8U, cv::Scalar(90)), 0.0).found());
+  }
   for (const int grey : {0, 128, 255}) {
     const Segmentation found = segmenter->segment(cv::Mat(size, CV_8U, cv::Scalar(grey)), 0.0);
     EXPECT_TRUE(found.contour.empty());

@@ -15,7 +15,8 @@ namespace tissue_stiffness {
 /// 3. Edge: along each normal where mean echo power is half way between pool and wall (wall_edges).
 ///
 /// sigma joins the scatter between neighbours and the doubt about the half-power point. It is infinite where no thick wall
-/// lies outside: at the open base, across a valve, in drop-outs.
+/// lies outside: at the open base, across a valve, in drop-outs. Errors of neighbours are correlated over about a speckle's
+/// width and, for the common shift to half power, over a twentieth of the outline: sigma is the marginal one.
 class CavitySegmenter : public Segmenter {
  public:
   explicit CavitySegmenter(const SegmentationSettings& settings) : seed_(settings.seed), previous_(2, 0) {}

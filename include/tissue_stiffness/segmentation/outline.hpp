@@ -11,7 +11,9 @@ namespace tissue_stiffness {
 /// CV_8UC1, CV_8UC3 (BGR) -> grey CV_32FC1. Throws InputError on another type or an empty image.
 cv::Mat to_grey(const cv::Mat& image);
 
-/// Bilinear value of a CV_32FC1 image; coordinates beyond the border take the border's value.
+constexpr int smallest_image = 32;  ///< [pixel] width and height below which no outline is looked for
+
+/// Bilinear value of a CV_32FC1 image of at least 2 x 2 pixels; coordinates beyond the border take the border's value.
 float sample(const cv::Mat& grey, double u, double v);
 
 /// Twice-signed-area / 2 (shoelace) [pixel^2]; positive when the curve turns from u to v.
