@@ -1,0 +1,36 @@
+#pragma once
+
+#include <ros/time.h>
+#include <rosbag/bag.h>
+
+#include <Eigen/Core>
+#include <opencv2/core/mat.hpp>
+#include <string>
+
+#include "tissue_stiffness/types/camera.hpp"
+#include "tissue_stiffness/types/load_sample.hpp"
+
+namespace tissue_stiffness {
+
+/// Writes what sensors saw into a rosbag; a message's stamp is its record time.
+class RecordingWriter {
+ public:
+  /// Throws InputError when the file cannot be written.
+  explicit RecordingWriter(const std::string& file);
+
+  /// Points of the frame `model`; `ids` go into the integer field `id_name` unless that is empty.
+  void write_cloud(const std::string& topic, const ros::Time& stamp, const Eigen::Matrix3Xd& points,
+                   const Eigen::VectorXi& ids, const std::string& id_name);
+  void write_load(const LoadInput& input, const ros::Time& stamp, const Eigen::VectorXd& value);
+  /// An 8-bit grey image with its CameraInfo.
+  void write_image(const std::string& topic, const std::string& info_topic, const std::string& frame,
+                   const ros::Time& stamp, const Camera& camera, const cv::Mat& image);
+  /// A sensor's pose on /tf_static.
+  void write_pose(const std::string& frame, const ros::Time& stamp, const Eigen::Isometry3d& model_from_sensor);
+  void close() { bag_.close(); }
+
+ private:
+  rosbag::Bag bag_;
+};
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,106 @@
+#include "tissue_stiffness/meshing/refine.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "tissue_stiffness/meshing/elevate.hpp"
+#include "tissue_stiffness/meshing/surface.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+// Mid nodes at the ends of the inner octahedron's three diagonals, then the ring of four around each.
+constexpr std::array<std::array<int, 6>, 3> kDiagonals = {{{4, 9, 5, 6, 7, 8}, {5, 7, 4, 6, 9, 8}, {6, 8, 4, 5, 9, 7}}};
+
+/// Quadratic shape functions at barycentric coordinates (l0..l3), node order of TetMesh.
+Eigen::Matrix<double, 10, 1> quadratic_shape(const Eigen::Vector4d& l) {
+  Eigen::Matrix<double, 10, 1> shape;
+  for (int i = 0; i < 4; ++i) shape[i] = l[i] * (2.0 * l[i] - 1.0);
+  for (int e = 0; e < 6; ++e) shape[4 + e] = 4.0 * l[kTetEdges[e][0]] * l[kTetEdges[e][1]];
+  return shape;
+}
+
+/// Barycentric coordinates of the ten nodes.
+Eigen::Matrix<double, 4, 10> node_coordinates() {
+  Eigen::Matrix<double, 4, 10> out = Eigen::Matrix<double, 4, 10>::Zero();
+  for (int i = 0; i < 4; ++i) out(i, i) = 1.0;
+  for (int e = 0; e < 6; ++e) out(kTetEdges[e][0], 4 + e) = out(kTetEdges[e][1], 4 + e) = 0.5;
+  return out;
+}
+
+void orient(std::array<int, 4>& tet, const Eigen::Matrix<double, 3, 10>& x) {
+  const Eigen::Vector3d a = x.col(tet[1]) - x.col(tet[0]), b = x.col(tet[2]) - x.col(tet[0]),
+                        c = x.col(tet[3]) - x.col(tet[0]);
+  if (a.cross(b).dot(c) < 0.0) std::swap(tet[2], tet[3]);
+}
+
+/// The eight children in local numbers.
+std::array<std::array<int, 4>, 8> children(const Eigen::Matrix<double, 3, 10>& x) {
+  std::array<std::array<int, 4>, 8> out = {{{0, 4, 6, 7}, {4, 1, 5, 8}, {6, 5, 2, 9}, {7, 8, 9, 3}}};
+  const auto length = [&x](const std::array<int, 6>& d) { return (x.col(d[0]) - x.col(d[1])).squaredNorm(); };
+  const auto& diagonal = *std::min_element(kDiagonals.begin(), kDiagonals.end(),
+                                           [&](const auto& a, const auto& b) { return length(a) < length(b); });
+  for (std::size_t i = 0; i < 4; ++i) {
+    out[4 + i] = {diagonal[0], diagonal[1], diagonal[2 + i], diagonal[2 + (i + 1) % 4]};
+  }
+  for (auto& tet : out) orient(tet, x);
+  return out;
+}
+
+/// A 10-node mesh's children, and where their mid-edge nodes lie on the parent's quadratic geometry.
+struct Children {
+  std::vector<std::array<int, 4>> tets;
+  std::map<std::pair<int, int>, Eigen::Vector3d> middles;
+};
+
+Children cut(const TetMesh& mesh) {
+  static const Eigen::Matrix<double, 4, 10> coordinates = node_coordinates();
+  Children out;
+  for (int t = 0; t < mesh.tet_count(); ++t) {
+    Eigen::Matrix<double, 3, 10> x;
+    for (int i = 0; i < 10; ++i) x.col(i) = mesh.nodes.col(mesh.tets(i, t));
+    for (const auto& child : children(x)) {
+      std::array<int, 4> nodes;
+      for (std::size_t i = 0; i < 4; ++i) nodes[i] = mesh.tets(child[i], t);
+      out.tets.push_back(nodes);
+      for (const auto& edge : kTetEdges) {
+        const int a = child[static_cast<std::size_t>(edge[0])], b = child[static_cast<std::size_t>(edge[1])];
+        const std::pair<int, int> key = std::minmax(mesh.tets(a, t), mesh.tets(b, t));
+        if (out.middles.count(key) > 0) continue;
+        out.middles[key] = x * quadratic_shape(0.5 * (coordinates.col(a) + coordinates.col(b)));
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+TetMesh refine(const TetMesh& mesh) {
+  TetMesh parent = mesh;
+  elevate(parent);
+  const Children cuts = cut(parent);
+  TetMesh fine;
+  fine.nodes = parent.nodes;
+  fine.corner_count = parent.node_count();
+  fine.tets.resize(4, static_cast<Eigen::Index>(cuts.tets.size()));
+  for (std::size_t t = 0; t < cuts.tets.size(); ++t) {
+    for (int i = 0; i < 4; ++i) fine.tets(i, static_cast<Eigen::Index>(t)) = cuts.tets[t][static_cast<std::size_t>(i)];
+  }
+  if (mesh.quadratic()) {
+    elevate(fine);
+    for (int t = 0; t < fine.tet_count(); ++t) {
+      for (int e = 0; e < 6; ++e) {
+        const std::pair<int, int> key = std::minmax(fine.tets(kTetEdges[e][0], t), fine.tets(kTetEdges[e][1], t));
+        fine.nodes.col(fine.tets(4 + e, t)) = cuts.middles.at(key);
+      }
+    }
+  }
+  set_boundary_facets(fine, "refined mesh");
+  return fine;
+}
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,74 @@
+#include "tissue_stiffness/tools/load_signal.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "tissue_stiffness/effects/course.hpp"
+#include "tissue_stiffness/types/error.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Signal read_ramp(const Value& map) {
+  const double from = map.number_or("from", 0.0, -kInfinity, kInfinity, "");
+  const double to = map.at("to").as_number(-kInfinity, kInfinity, "");
+  const double start = map.at("start").as_number(0.0, kInfinity, "s");
+  const double end = map.at("end").as_number(start, kInfinity, "s");
+  return [=](double t) {
+    if (t >= end) return to;
+    return t <= start ? from : from + (to - from) * (t - start) / (end - start);
+  };
+}
+
+Signal read_sine(const Value& map) {
+  const double amplitude = map.at("amplitude").as_number(-kInfinity, kInfinity, "");
+  const double frequency = map.at("frequency").as_number(0.0, kInfinity, "Hz");
+  const double phase = map.number_or("phase", 0.0, -kInfinity, kInfinity, "rad");
+  return [=](double t) { return amplitude * std::sin(2.0 * M_PI * frequency * t + phase); };
+}
+
+Signal read_raised_cosine(const Value& map) {
+  const double amplitude = map.at("amplitude").as_number(-kInfinity, kInfinity, "");
+  const double frequency = map.at("frequency").as_number(0.0, kInfinity, "Hz");
+  return [=](double t) { return 0.5 * amplitude * (1.0 - std::cos(2.0 * M_PI * frequency * t)); };
+}
+
+Signal read_steps(const Value& map) {
+  std::vector<double> times, values;
+  for (const Value& item : map.at("times").items()) {
+    times.push_back(item.as_number(times.empty() ? 0.0 : times.back(), kInfinity, "s"));
+  }
+  for (const Value& item : map.at("values").items()) values.push_back(item.as_number(-kInfinity, kInfinity, ""));
+  if (times.empty() || times.size() != values.size()) {
+    throw InputError(map.path(), std::to_string(times.size()) + " times and " + std::to_string(values.size()) + " values",
+                     "as many values as times, at least one");
+  }
+  return [times, values](double t) {
+    const auto passed = std::upper_bound(times.begin(), times.end(), t) - times.begin();
+    return passed == 0 ? 0.0 : values[static_cast<std::size_t>(passed) - 1];
+  };
+}
+
+Signal read_csv(const Value& map, const std::string& directory) {
+  std::string file = map.at("file").as_text();
+  if (!file.empty() && file[0] != '/') file = directory + "/" + file;
+  const auto course = std::make_shared<const Course>(Course::from_csv(file, 1));
+  return [course](double t) { return course->value(t, 0); };
+}
+
+}  // namespace
+
+Signal read_signal(const Value& map, const std::string& directory) {
+  if (map.has("ramp")) return read_ramp(map.at("ramp"));
+  if (map.has("sine")) return read_sine(map.at("sine"));
+  if (map.has("raised_cosine")) return read_raised_cosine(map.at("raised_cosine"));
+  if (map.has("steps")) return read_steps(map.at("steps"));
+  if (map.has("csv")) return read_csv(map.at("csv"), directory);
+  throw InputError(map.path(), map.shown(), "one of ramp, sine, raised_cosine, steps, csv");
+}
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,96 @@
+#include "tissue_stiffness/tools/scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "tissue_stiffness/nodes/estimator_inputs.hpp"
+#include "tissue_stiffness/tools/read_image_scene.hpp"
+#include "tissue_stiffness/types/error.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kPositive = std::numeric_limits<double>::min();
+
+Eigen::VectorXd read_direction(const Value& term, LoadInput::Kind kind) {
+  if (kind == LoadInput::Kind::pressure) return Eigen::VectorXd::Ones(1);
+  Eigen::VectorXd wrench = Eigen::VectorXd::Zero(6);
+  wrench.head<3>() = term.at("direction").as_vector3("");
+  return wrench;
+}
+
+LoadScene read_load(const Value& map, const LoadInput& input, const std::string& directory) {
+  LoadScene load;
+  load.input = input;
+  load.rate = map.at("rate").as_number(kPositive, 1e5, "Hz");
+  load.noise = map.number_or("noise", 0.0, 0.0, kInfinity, input.kind == LoadInput::Kind::pressure ? "Pa" : "N");
+  for (const Value& term : map.at("terms").items()) {
+    load.terms.push_back({read_direction(term, input.kind), read_signal(term, directory)});
+  }
+  if (load.terms.empty()) throw InputError(map.at("terms").path(), "an empty list", "at least one term");
+  return load;
+}
+
+SensorScene read_sensor(const Value* map, const ObservationSettings& observation, const std::string& where) {
+  SensorScene sensor;
+  sensor.noise = observation.noise;
+  if (observation.kind == ObservationSettings::Kind::points) sensor.points = 500;
+  if (observation.kind == ObservationSettings::Kind::contour) {
+    if (map == nullptr) throw InputError(where, "nothing for " + observation.topic, "the camera of that topic");
+    sensor.image = read_image_scene(*map, observation);
+    return sensor;
+  }
+  if (map == nullptr) return sensor;
+  sensor.noise = map->number_or("noise", observation.noise, 0.0, kInfinity, "m");
+  if (observation.kind == ObservationSettings::Kind::points && map->has("count")) {
+    sensor.points = map->at("count").as_integer(1, 1000000);
+  }
+  if (observation.kind == ObservationSettings::Kind::vertices && map->has("ids")) {
+    for (const Value& id : map->at("ids").items())
+      sensor.vertices.push_back(id.as_integer(0, std::numeric_limits<int>::max()));
+  } else if (observation.kind == ObservationSettings::Kind::vertices && map->has("every")) {
+    sensor.every = map->at("every").as_integer(1, std::numeric_limits<int>::max());
+  }
+  return sensor;
+}
+
+}  // namespace
+
+Eigen::VectorXd LoadScene::value(double time) const {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(terms.front().direction.size());
+  for (const Term& term : terms) sum += term.signal(time) * term.direction;
+  return sum;
+}
+
+Scene load_scene(const std::string& file) {
+  const Value root = load_yaml(file);
+  const std::size_t slash = file.find_last_of('/');
+  const std::string directory = slash == std::string::npos ? "." : file.substr(0, slash);
+  const Value simulation = root.at("simulation");  // copied unread: the model, which says what to look for, is read first
+  root.at("simulation").mark_read_deep();
+  Scene scene;
+  scene.model = read_model(root, directory);
+  scene.duration = simulation.at("duration").as_number(kPositive, kInfinity, "s");
+  scene.rate = simulation.at("rate").as_number(kPositive, 1e6, "Hz");
+  scene.step = simulation.at("step").as_number(kPositive, kInfinity, "s");
+  scene.spectral_radius = simulation.number_or("spectral_radius", 1.0, 0.0, 1.0, "");
+  if (simulation.has("refine")) scene.refine = simulation.at("refine").as_integer(0, 4);
+  if (simulation.has("seed")) {
+    scene.seed = static_cast<std::uint64_t>(simulation.at("seed").as_integer(0, std::numeric_limits<int>::max()));
+  }
+  for (const LoadInput& input : load_topics(scene.model)) {
+    scene.loads.push_back(read_load(simulation.at("loads").at(input.topic), input, directory));
+  }
+  const Value none = Value::map({}, simulation.path());
+  const Value& sensors = simulation.has("sensors") ? simulation.at("sensors") : none;
+  for (const ObservationSettings& observation : scene.model.observations) {
+    const Value* map = sensors.has(observation.topic) ? &sensors.at(observation.topic) : nullptr;
+    scene.sensors.push_back(read_sensor(map, observation, simulation.path() + ": sensors"));
+  }
+  simulation.require_all_read();
+  return scene;
+}
+
+}  // namespace tissue_stiffness

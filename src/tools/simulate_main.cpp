@@ -1,0 +1,28 @@
+#include <cstdio>
+#include <string>
+
+#include "tissue_stiffness/tools/progress.hpp"
+#include "tissue_stiffness/tools/run_tool.hpp"
+#include "tissue_stiffness/tools/simulate_scene.hpp"
+
+int main(int argc, char** argv) {
+  using namespace tissue_stiffness;
+  CLI::App app("Makes a recording of a body whose properties are known: a model file with `simulation`.", "simulate");
+  std::string file, output, truth;
+  bool quiet = false;
+  app.add_option("SCENE", file, "scene file (YAML)")->required();
+  app.add_option("--output", output, "rosbag to write")->required();
+  app.add_option("--truth", truth, "file for the scene's numbers (YAML)");
+  app.add_flag("--quiet", quiet, "no progress and no summary");
+  return run_tool(app, argc, argv, [&] {
+    const Scene scene = load_scene(file);
+    Progress progress(std::cerr, Progress::style_of_stderr(quiet), "simulate");
+    const SimulationSummary summary =
+        simulate_scene(scene, output, [&](std::size_t done, std::size_t total) { progress.show(done, total); });
+    progress.finish();
+    if (!truth.empty()) write_truth(scene, summary, truth);
+    if (quiet) return;
+    std::printf("%s: %d frames, %d nodes, motion %.3g mm rms, %.3g mm at most\n", output.c_str(), summary.frames,
+                summary.nodes, 1e3 * summary.motion_rms, 1e3 * summary.motion_max);
+  });
+}

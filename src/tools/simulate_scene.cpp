@@ -1,0 +1,215 @@
+#include "tissue_stiffness/tools/simulate_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <random>
+#include <set>
+
+#include "tissue_stiffness/forward/closest_point.hpp"
+#include "tissue_stiffness/forward/full_model.hpp"
+#include "tissue_stiffness/forward/observation_operator.hpp"
+#include "tissue_stiffness/meshing/build_mesh.hpp"
+#include "tissue_stiffness/meshing/refine.hpp"
+#include "tissue_stiffness/tools/recording_writer.hpp"
+#include "tissue_stiffness/tools/render.hpp"
+#include "tissue_stiffness/types/error.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+using Kind = ObservationSettings::Kind;
+
+const ros::Time kFirstStamp(1700000000, 0);
+
+TetMesh refined_mesh(const Scene& scene) {
+  if (scene.model.mesh.source != MeshSettings::Source::file) {
+    throw InputError(scene.model.name + ": mesh", "a mesh from a contour", "file");
+  }
+  for (const RegionSettings& region : scene.model.regions) {
+    if (scene.refine > 0 && std::holds_alternative<VertexShape>(region.shape)) {
+      throw InputError(scene.model.name + ": regions." + region.name, "vertices with simulation.refine > 0",
+                       "box, sphere, ellipsoid or half_space: vertices do not cover a refined mesh");
+    }
+  }
+  TetMesh mesh = build_mesh(scene.model.mesh);
+  for (int i = 0; i < scene.refine; ++i) mesh = refine(mesh);
+  return mesh;
+}
+
+/// Vertices of the unrefined mesh that a sensor follows. Refinement keeps their numbers.
+Eigen::VectorXi followed_vertices(const Scene& scene, const SensorScene& sensor) {
+  std::vector<int> ids = sensor.vertices;
+  if (ids.empty()) {
+    const TetMesh mesh = build_mesh(scene.model.mesh);
+    std::set<int> surface;
+    for (Eigen::Index f = 0; f < mesh.facets.cols(); ++f) {
+      for (int i = 0; i < 3; ++i) surface.insert(mesh.facets(i, f));
+    }
+    int k = 0;
+    for (const int vertex : surface) {
+      if (k++ % sensor.every == 0) ids.push_back(vertex);
+    }
+  }
+  return Eigen::Map<Eigen::VectorXi>(ids.data(), static_cast<Eigen::Index>(ids.size()));
+}
+
+/// One sensor of the scene.
+class Sensor {
+ public:
+  Sensor(const Scene& scene, const Model& model, std::size_t number)
+      : model_(model),
+        observation_(scene.model.observations[number]),
+        scene_(scene.sensors[number]),
+        frame_("sensor_" + std::to_string(number)),
+        random_(scene.seed + 7919 * (number + 1)) {
+    if (scene_.image) {
+      const bool slice = observation_.projection == ObservationSettings::Projection::slice;
+      renderer_ = slice ? make_echo_renderer(model, observation_, *scene_.image, random_())
+                        : make_camera_renderer(model, *scene_.image, random_());
+    } else if (observation_.kind == Kind::vertices) {
+      ids_ = followed_vertices(scene, scene_);
+      operator_ = make_vertex_operator(model, observation_);
+    } else if (observation_.kind == Kind::markers) {
+      ids_ = Eigen::VectorXi::LinSpaced(observation_.rest.cols(), 0, static_cast<int>(observation_.rest.cols()) - 1);
+      operator_ = make_marker_operator(model, observation_);
+    }
+    if (operator_) operator_->check(seen());
+  }
+
+  void start(RecordingWriter& writer) const {
+    if (scene_.image) writer.write_pose(frame_, kFirstStamp, scene_.image->camera.model_from_sensor);
+  }
+
+  void record(const Eigen::VectorXd& u, int frame, const ros::Time& stamp, RecordingWriter& writer) {
+    if (scene_.image) {
+      const Eigen::Matrix3Xd x = model_.mesh().nodes + Eigen::Map<const Eigen::Matrix3Xd>(u.data(), 3, u.size() / 3);
+      writer.write_image(observation_.topic, observation_.camera_info, frame_, stamp, scene_.image->camera,
+                         renderer_->draw(x, frame));
+      return;
+    }
+    Eigen::Matrix3Xd points = operator_ ? tracked(u) : sampled(u);
+    for (Eigen::Index i = 0; i < points.size(); ++i) points.data()[i] += scene_.noise * normal_(random_);
+    const std::string id = observation_.kind == Kind::vertices  ? "vertex"
+                           : observation_.kind == Kind::markers ? "marker"
+                                                                : "";
+    writer.write_cloud(observation_.topic, stamp, points, ids_, id);
+  }
+
+ private:
+  Observation seen() const {
+    Observation observation;
+    observation.kind = observation_.kind == Kind::vertices ? ObservationKind::vertices : ObservationKind::markers;
+    observation.points = Eigen::Matrix3Xd::Zero(3, ids_.size());
+    observation.ids = ids_;
+    return observation;
+  }
+
+  Eigen::Matrix3Xd tracked(const Eigen::VectorXd& u) const {
+    const Prediction prediction = operator_->predict(seen(), u);
+    return Eigen::Map<const Eigen::Matrix3Xd>(prediction.predicted.data(), 3, ids_.size());
+  }
+
+  /// Points spread evenly over the surface.
+  Eigen::Matrix3Xd sampled(const Eigen::VectorXd& u) {
+    const Eigen::Matrix3Xd x = model_.mesh().nodes + Eigen::Map<const Eigen::Matrix3Xd>(u.data(), 3, u.size() / 3);
+    const SurfaceTriangles triangles = split_facets(model_.mesh());
+    std::vector<double> area;
+    for (Eigen::Index t = 0; t < triangles.nodes.cols(); ++t) {
+      const Eigen::Vector3i n = triangles.nodes.col(t);
+      area.push_back((x.col(n[1]) - x.col(n[0])).cross(x.col(n[2]) - x.col(n[0])).norm());
+    }
+    std::discrete_distribution<int> pick(area.begin(), area.end());
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    Eigen::Matrix3Xd points(3, scene_.points);
+    for (int i = 0; i < scene_.points; ++i) {
+      const Eigen::Vector3i n = triangles.nodes.col(pick(random_));
+      double r = unit(random_), s = unit(random_);
+      if (r + s > 1.0) r = 1.0 - r, s = 1.0 - s;
+      points.col(i) = (1.0 - r - s) * x.col(n[0]) + r * x.col(n[1]) + s * x.col(n[2]);
+    }
+    return points;
+  }
+
+  const Model& model_;
+  ObservationSettings observation_;
+  SensorScene scene_;
+  std::string frame_;
+  std::mt19937_64 random_;
+  std::normal_distribution<double> normal_;
+  Eigen::VectorXi ids_;
+  std::unique_ptr<ObservationOperator> operator_;
+  std::unique_ptr<Renderer> renderer_;
+};
+
+void require_known(const Scene& scene, const Model& model) {
+  if (model.free_parameters().empty()) return;
+  throw InputError(scene.model.name + ": " + model.free_parameters().front().name, "an estimated number",
+                   "known numbers only: a scene is the truth");
+}
+
+/// The loads act as they are; what is published may be noisy.
+void drive(const Scene& scene, Model& model) {
+  for (auto& entry : model.courses()) entry.second->shift(kFirstStamp.toSec());
+  for (const LoadScene& load : scene.loads) {
+    const auto count = static_cast<int>(std::ceil(scene.duration / scene.step)) + 1;
+    for (int k = 0; k <= count; ++k) {
+      const double time = k * scene.step;
+      model.courses().at(load.input.topic)->add(kFirstStamp.toSec() + time, load.value(time));
+    }
+  }
+}
+
+void publish_loads(const Scene& scene, RecordingWriter& writer) {
+  for (std::size_t i = 0; i < scene.loads.size(); ++i) {
+    const LoadScene& load = scene.loads[i];
+    std::mt19937_64 random(scene.seed + 104729 * (i + 1));
+    std::normal_distribution<double> normal;
+    const auto count = static_cast<int>(std::ceil(scene.duration * load.rate));
+    for (int k = 0; k <= count; ++k) {
+      Eigen::VectorXd value = load.value(k / load.rate);
+      for (Eigen::Index c = 0; c < std::min<Eigen::Index>(value.size(), 3); ++c) value[c] += load.noise * normal(random);
+      writer.write_load(load.input, kFirstStamp + ros::Duration(k / load.rate), value);
+    }
+  }
+}
+
+}  // namespace
+
+SimulationSummary simulate_scene(const Scene& scene, const std::string& recording,
+                                 const std::function<void(std::size_t, std::size_t)>& progress) {
+  Model model(scene.model, refined_mesh(scene));
+  require_known(scene, model);
+  drive(scene, model);
+  FullModel::Options options;
+  options.step = scene.step;
+  options.spectral_radius = scene.spectral_radius;
+  std::vector<std::unique_ptr<Sensor>> sensors;
+  for (std::size_t i = 0; i < scene.sensors.size(); ++i) sensors.push_back(std::make_unique<Sensor>(scene, model, i));
+  RecordingWriter writer(recording);
+  for (const auto& sensor : sensors) sensor->start(writer);
+  publish_loads(scene, writer);
+  const FullModel forward(model, options);
+  const auto trajectory = forward.start(model.theta(Eigen::VectorXd(0)), kFirstStamp.toSec() + scene.model.time.start);
+  SimulationSummary summary;
+  summary.nodes = model.mesh().node_count();
+  const auto total = static_cast<int>(std::floor(scene.duration * scene.rate + 1e-9));
+  double square = 0.0;
+  for (int k = 0; k < total; ++k) {
+    const ros::Time stamp = kFirstStamp + ros::Duration(k / scene.rate);
+    trajectory->advance(stamp.toSec());
+    const Eigen::VectorXd u = trajectory->displacement();
+    for (const auto& sensor : sensors) sensor->record(u, k, stamp, writer);
+    square += u.squaredNorm() / summary.nodes;
+    const Eigen::Map<const Eigen::Matrix3Xd> moved(u.data(), 3, u.size() / 3);
+    summary.motion_max = std::max(summary.motion_max, moved.colwise().norm().maxCoeff());
+    summary.frames = k + 1;
+    progress(static_cast<std::size_t>(k) + 1, static_cast<std::size_t>(total));
+  }
+  writer.close();
+  summary.motion_rms = std::sqrt(square / std::max(1, total));
+  return summary;
+}
+
+}  // namespace tissue_stiffness
