@@ -1,0 +1,128 @@
+"""The table of acceptance figures: see scripts/acceptance."""
+import argparse
+import json
+import os
+import subprocess
+import sys
+import time
+
+import yaml
+
+MODULUS = 'elasticity.young_modulus'
+STAGES = ('segment', 'predict', 'observe', 'update', 'revisit')
+TIME_LIMIT = 1800  # s a recording
+
+# folder, |E - truth| [%], allowed E [Pa], rms_error within [%] of the noise
+CASES = {
+    'case_01': ('cases', 1.5, None, 10),
+    'case_06': ('cases', 4, None, 10),
+    'silicone_beam_gravity_a': ('cases', None, (230e3, 300e3), None),
+    'silicone_beam_gravity_b': ('cases', None, (230e3, 300e3), None),
+    'ventricle_echo': ('recordings', 10, None, None),
+    'bar_release': ('recordings', 10, None, None),
+    'foam_ball': ('recordings', 15, (10e3, 30e3), None),
+    'tennis_ball': ('recordings', 15, (1e6, 5e6), None),
+}
+SAME_WITHIN = ('silicone_beam_gravity_a', 'silicone_beam_gravity_b', 5)  # [%]
+
+
+def read_truth(shared, folder, name):
+    path = os.path.join(shared, folder + '_truth', name + '.yaml')
+    if not os.path.exists(path):
+        return None
+    with open(path) as file:
+        return float(yaml.safe_load(file)['young_modulus'])
+
+
+def run(estimate, shared, folder, name, output):
+    """Results of one recording, or a text that says why there are none."""
+    source = os.path.join(shared, folder, name)
+    output = os.path.join(output, name)
+    command = [estimate, os.path.join(source, 'model.yaml'), os.path.join(source, 'recording.bag'), '--output', output]
+    start = time.monotonic()
+    try:
+        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=TIME_LIMIT)
+    except subprocess.TimeoutExpired:
+        return 'not done after %d s' % TIME_LIMIT
+    if done.returncode != 0:
+        return 'exit code %d: %s' % (done.returncode, (done.stderr.strip().splitlines() or [''])[-1])
+    with open(os.path.join(output, 'results.json')) as file:
+        results = json.load(file)
+    results['wall'] = time.monotonic() - start
+    results['stages'] = {}
+    for line in done.stdout.splitlines():
+        words = line.split()
+        if words and words[0] in STAGES:
+            results['stages'][words[0]] = '%s/%s' % (words[1], words[2])
+        if words and words[0] == 'frames':
+            results['rate'] = float(words[-2])
+    return results
+
+
+def failures(results, truth, bounds):
+    _, error, allowed, noise = bounds
+    modulus = results['parameters'][MODULUS]['mean']
+    found = []
+    if error is not None and abs(modulus / truth - 1) > error / 100:
+        found.append('more than %g %% off' % error)
+    if allowed and not allowed[0] <= modulus <= allowed[1]:
+        found.append('not in %g..%g kPa' % (allowed[0] / 1e3, allowed[1] / 1e3))
+    if noise is not None and abs(results['rms_error'] / results['noise_rms'] - 1) > noise / 100:
+        found.append('rms more than %g %% off the noise' % noise)
+    return found
+
+
+def row(name, results, truth, found):
+    entry = results['parameters'][MODULUS]
+    off = '%+.2f' % (100 * (entry['mean'] / truth - 1)) if truth else '-'
+    interval = '%.4g..%.4g' % tuple(x / 1e3 for x in entry['interval95'])
+    stages = '  '.join(results['stages'].get(stage, '-') for stage in STAGES)
+    return '%-24s %9.5g %9s %8s  %-18s %6.2f %9.3g %7.1f  %-9s %s' % (
+        name, entry['mean'] / 1e3, '%.5g' % (truth / 1e3) if truth else '-', off, interval,
+        results['rms_error'] / results['noise_rms'], results['rate'], results['wall'],
+        'FAIL' if found else 'pass', '; '.join(found) or stages)
+
+
+def main():
+    root = sys.argv[1]
+    parser = argparse.ArgumentParser(prog='acceptance')
+    parser.add_argument('--estimate', default=os.path.join(root, 'build/devel/lib/tissue_stiffness/estimate'))
+    parser.add_argument('--shared', default=os.path.join(root, '..', 'shared'))
+    parser.add_argument('--output', default=os.path.join(root, 'output', 'acceptance'))
+    parser.add_argument('names', nargs='*', metavar='NAME', help='of ' + ', '.join(CASES))
+    options = parser.parse_args(sys.argv[2:])
+    unknown = [name for name in options.names if name not in CASES]
+    if unknown:
+        parser.error('found %s; allowed: %s' % (unknown[0], ', '.join(CASES)))
+    if not os.path.exists(options.estimate):
+        parser.error('%s is missing: run scripts/build first' % options.estimate)
+    if not os.path.isdir(options.shared):
+        print('skipped: no shared recordings in ' + options.shared)
+        return 0
+    print('%-24s %9s %9s %8s  %-18s %6s %9s %7s  %-9s %s' % (
+        'recording', 'E [kPa]', 'truth', 'off [%]', '95 % [kPa]', 'rms/s', 'frames/s', 'wall s', 'verdict',
+        'median/p99 [ms]: ' + ', '.join(STAGES)))
+    failed, moduli = 0, {}
+    for name in options.names or CASES:
+        bounds = CASES[name]
+        truth = read_truth(options.shared, bounds[0], name)
+        results = run(options.estimate, options.shared, bounds[0], name, options.output)
+        if isinstance(results, str):
+            failed += 1
+            print('%-24s FAIL: %s' % (name, results), flush=True)
+            continue
+        moduli[name] = results['parameters'][MODULUS]['mean']
+        found = failures(results, truth, bounds)
+        failed += bool(found)
+        print(row(name, results, truth, found), flush=True)
+    first, second, limit = SAME_WITHIN
+    if first in moduli and second in moduli:
+        apart = 100 * abs(moduli[first] / moduli[second] - 1)
+        failed += apart > limit
+        print('%s and %s: %.2f %% apart, %s' % (first, second, apart, 'FAIL' if apart > limit else 'pass'))
+    print('%d failed' % failed if failed else 'all pass')
+    return 1 if failed else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())
