@@ -124,7 +124,7 @@ TriangleSurface extruded_surface(const Contour& contour, const Camera& camera, d
     throw InputError("contour for the mesh", "an outline whose fitted polygon crosses itself",
                      "an outline wider than its noise, or a smaller mesh.extrude.max_edge_length");
   }
-  if (signed_area(polygon) < 0.0) polygon = polygon.rowwise().reverse().eval();
+  if (polygon_area(polygon) < 0.0) polygon = polygon.rowwise().reverse().eval();
   const auto n = static_cast<int>(polygon.cols());
   TriangleSurface surface{Eigen::Matrix3Xd(3, 2 * n), Eigen::Matrix3Xi(3, 4 * n - 4)};
   for (int i = 0; i < n; ++i) {

@@ -177,7 +177,7 @@ class Merger {
       for (std::size_t i = 0; i < loop.size(); ++i) {
         outline.col(static_cast<Eigen::Index>(i)) = frame.flatten(result.vertices.col(loop[i]));
       }
-      if (signed_area(outline) < 0.0) facet.hole_points.push_back(frame.lift(inner_point(outline)));
+      if (polygon_area(outline) < 0.0) facet.hole_points.push_back(frame.lift(inner_point(outline)));
     }
   }
 

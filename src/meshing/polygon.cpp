@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace tissue_stiffness {
@@ -31,7 +32,7 @@ bool segments_meet(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eig
 
 }  // namespace
 
-double signed_area(const Eigen::Matrix2Xd& outline) {
+double polygon_area(const Eigen::Matrix2Xd& outline) {
   double doubled = 0.0;
   const Eigen::Index n = outline.cols();
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -82,22 +83,29 @@ std::vector<Eigen::Vector3i> cut_ears(const Eigen::Matrix2Xd& outline) {
   std::vector<int> left(static_cast<std::size_t>(outline.cols()));
   std::iota(left.begin(), left.end(), 0);
   std::vector<Eigen::Vector3i> triangles;
-  const auto is_ear = [&](int a, int b, int c) {
-    if (side_of(outline.col(a), outline.col(b), outline.col(c)) <= 0.0) return false;
-    return std::none_of(left.begin(), left.end(), [&](int p) {
-      if (p == a || p == b || p == c) return false;
-      return side_of(outline.col(a), outline.col(b), outline.col(p)) >= 0.0 &&
-             side_of(outline.col(b), outline.col(c), outline.col(p)) >= 0.0 &&
-             side_of(outline.col(c), outline.col(a), outline.col(p)) >= 0.0;
+  const auto ear_shape = [&](int a, int b, int c) {
+    const Eigen::Vector2d pa = outline.col(a), pb = outline.col(b), pc = outline.col(c);
+    const bool empty = std::none_of(left.begin(), left.end(), [&](int i) {
+      const Eigen::Vector2d p = outline.col(i);
+      return i != a && i != b && i != c && side_of(pa, pb, p) >= 0.0 && side_of(pb, pc, p) >= 0.0 &&
+             side_of(pc, pa, p) >= 0.0;
     });
+    const double sides = (pb - pa).squaredNorm() + (pc - pb).squaredNorm() + (pa - pc).squaredNorm();
+    return empty ? side_of(pa, pb, pc) / sides : -std::numeric_limits<double>::infinity();
   };
-  while (left.size() > 3) {
+  while (left.size() > 3) {  // the best-shaped ear first, so that points along a straight side do not stay for the end
     const std::size_t n = left.size();
-    std::size_t ear = 0;
-    while (ear < n && !is_ear(left[(ear + n - 1) % n], left[ear], left[(ear + 1) % n])) ++ear;
-    ear %= n;  // rounding can hide the last ears; any corner then closes the polygon
-    triangles.emplace_back(left[(ear + n - 1) % n], left[ear], left[(ear + 1) % n]);
-    left.erase(left.begin() + static_cast<std::ptrdiff_t>(ear));
+    std::size_t best = 0;
+    double best_shape = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < n; ++i) {
+      const double shape = ear_shape(left[(i + n - 1) % n], left[i], left[(i + 1) % n]);
+      if (shape > best_shape) {
+        best_shape = shape;
+        best = i;
+      }
+    }
+    triangles.emplace_back(left[(best + n - 1) % n], left[best], left[(best + 1) % n]);
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(best));
   }
   triangles.emplace_back(left[0], left[1], left[2]);
   return triangles;

@@ -22,7 +22,7 @@ class PlaneFrame {
 };
 
 /// Area of a closed polygon, positive when it runs counter-clockwise.
-double signed_area(const Eigen::Matrix2Xd& outline);
+double polygon_area(const Eigen::Matrix2Xd& outline);
 
 /// A point strictly inside a simple polygon of at least three points.
 Eigen::Vector2d inner_point(const Eigen::Matrix2Xd& outline);
