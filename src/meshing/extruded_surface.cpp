@@ -1,6 +1,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "tissue_stiffness/meshing/bodies.hpp"
@@ -137,7 +138,9 @@ TriangleSurface extruded_surface(const Contour& contour, const Camera& camera, d
     surface.triangles.col(2 * i + 1) << i, next + n, i + n;
   }
   int t = 2 * n;
-  for (const Eigen::Vector3i& ear : cut_ears(polygon)) {
+  std::vector<int> outline(static_cast<std::size_t>(n));
+  std::iota(outline.begin(), outline.end(), 0);
+  for (const Eigen::Vector3i& ear : cut_ears(polygon, {outline})) {
     surface.triangles.col(t++) << ear[0], ear[2], ear[1];
     surface.triangles.col(t++) = ear.array() + n;
   }

@@ -42,15 +42,17 @@ bool FileCursor::at_end() {
   return position_ == bytes_.size();
 }
 
-std::string FileCursor::peek() {
-  skip_space();
-  std::size_t end = position_;
+std::string FileCursor::peek() const {
+  std::size_t begin = position_;
+  while (begin < bytes_.size() && is_space(bytes_[begin])) ++begin;
+  std::size_t end = begin;
   while (end < bytes_.size() && !is_space(bytes_[end])) ++end;
-  return bytes_.substr(position_, end - position_);
+  return bytes_.substr(begin, end - begin);
 }
 
 std::string FileCursor::word() {
   const std::string text = peek();
+  skip_space();
   if (text.empty()) fail("the end of the file", "more data");
   position_ += text.size();
   return text;

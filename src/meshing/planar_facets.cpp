@@ -82,7 +82,7 @@ class Merger {
 
   PlanarFacets merge() const {
     PlanarFacets result;
-    result.facets.resize(patches_.sizes.size());
+    for (const Eigen::Vector3d& normal : patches_.normals) result.facets.push_back({{}, normal});
     std::vector<int> number(features_.size(), -1);
     result.vertices.resize(3, surface_.vertex_count());
     int count = 0;
@@ -92,7 +92,7 @@ class Merger {
       for (int side = 0; side < 3; ++side) {
         if (done(side, t) || !feature(side, t)) continue;
         std::vector<int> loop = trace(side, t, done);
-        if (loop.size() < 3) return triangles_as_facets(surface_);
+        if (loop.size() < 3) return unmerged();
         for (int& vertex : loop) {
           int& to = number[static_cast<std::size_t>(vertex)];
           if (to < 0) {
@@ -105,7 +105,6 @@ class Merger {
       }
     }
     result.vertices.conservativeResize(3, count);
-    for (std::size_t i = 0; i < result.facets.size(); ++i) add_hole_points(result, i);
     return result;
   }
 
@@ -167,18 +166,13 @@ class Merger {
     return step.norm() < 10.0 * tolerance_ / kMinSine ? Eigen::Vector3d(x + step) : x;
   }
 
-  // A patch's holes run clockwise.
-  void add_hole_points(PlanarFacets& result, std::size_t index) const {
-    PlanarFacets::Facet& facet = result.facets[index];
-    if (facet.loops.size() < 2) return;
-    const PlaneFrame frame(patches_.points[index], patches_.normals[index]);
-    for (const std::vector<int>& loop : facet.loops) {
-      Eigen::Matrix2Xd outline(2, static_cast<Eigen::Index>(loop.size()));
-      for (std::size_t i = 0; i < loop.size(); ++i) {
-        outline.col(static_cast<Eigen::Index>(i)) = frame.flatten(result.vertices.col(loop[i]));
-      }
-      if (polygon_area(outline) < 0.0) facet.hole_points.push_back(frame.lift(inner_point(outline)));
+  PlanarFacets unmerged() const {
+    PlanarFacets result{surface_.vertices, {}};
+    for (int t = 0; t < surface_.triangle_count(); ++t) {
+      const Eigen::Vector3i corners = surface_.triangles.col(t);
+      result.facets.push_back({{{corners[0], corners[1], corners[2]}}, triangle_area_vector(surface_, t).normalized()});
     }
+    return result;
   }
 
   const TriangleSurface& surface_;
@@ -189,17 +183,6 @@ class Merger {
 };
 
 }  // namespace
-
-PlanarFacets triangles_as_facets(const TriangleSurface& surface) {
-  PlanarFacets result;
-  result.vertices = surface.vertices;
-  result.facets.resize(static_cast<std::size_t>(surface.triangle_count()));
-  for (int t = 0; t < surface.triangle_count(); ++t) {
-    const Eigen::Vector3i corners = surface.triangles.col(t);
-    result.facets[static_cast<std::size_t>(t)].loops = {{corners[0], corners[1], corners[2]}};
-  }
-  return result;
-}
 
 void subdivide_edges(PlanarFacets& facets, double length) {
   std::map<std::pair<int, int>, std::vector<int>> inner;  // points from the lower end to the higher
@@ -236,6 +219,20 @@ void subdivide_edges(PlanarFacets& facets, double length) {
 
 PlanarFacets merge_coplanar(const TriangleSurface& surface, double tolerance) {
   return Merger(surface, tolerance).merge();
+}
+
+TriangleSurface triangulate(const PlanarFacets& facets) {
+  std::vector<Eigen::Vector3i> triangles;
+  for (const PlanarFacets::Facet& facet : facets.facets) {
+    const Eigen::Vector3d u = facet.normal.unitOrthogonal(), v = facet.normal.cross(u);
+    Eigen::Matrix2Xd points(2, facets.vertices.cols());
+    points << u.transpose() * facets.vertices, v.transpose() * facets.vertices;
+    const std::vector<Eigen::Vector3i> part = cut_ears(points, facet.loops);
+    triangles.insert(triangles.end(), part.begin(), part.end());
+  }
+  TriangleSurface surface{facets.vertices, Eigen::Matrix3Xi(3, static_cast<Eigen::Index>(triangles.size()))};
+  for (std::size_t t = 0; t < triangles.size(); ++t) surface.triangles.col(static_cast<Eigen::Index>(t)) = triangles[t];
+  return surface;
 }
 
 }  // namespace tissue_stiffness

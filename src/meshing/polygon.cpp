@@ -30,6 +30,68 @@ bool segments_meet(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eig
          (b_side == 0.0 && in_box(c, d, b));
 }
 
+// Twice the area over the squared sides, of the corner at left[i]; minus infinity when other corners lie in it.
+double ear_shape(const Eigen::Matrix2Xd& points, const std::vector<int>& left, std::size_t i) {
+  const std::size_t n = left.size();
+  const Eigen::Vector2d a = points.col(left[(i + n - 1) % n]), b = points.col(left[i]), c = points.col(left[(i + 1) % n]);
+  const double sides = (b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm();
+  const double shape = side_of(a, b, c) / sides;
+  if (!(shape > 0.0)) return -std::numeric_limits<double>::infinity();
+  for (const int other : left) {
+    const Eigen::Vector2d p = points.col(other);
+    if (p == a || p == b || p == c) continue;
+    if (side_of(a, b, p) >= 0.0 && side_of(b, c, p) >= 0.0 && side_of(c, a, p) >= 0.0) {
+      return -std::numeric_limits<double>::infinity();
+    }
+  }
+  return shape;
+}
+
+bool bridge_is_free(const Eigen::Matrix2Xd& points, const std::vector<std::vector<int>>& loops, int from, int to) {
+  for (const std::vector<int>& loop : loops) {
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const int a = loop[i], b = loop[(i + 1) % loop.size()];
+      if (a == from || b == from || a == to || b == to) continue;
+      if (segments_meet(points.col(from), points.col(to), points.col(a), points.col(b))) return false;
+    }
+  }
+  return true;
+}
+
+// One outline of all loops: each hole in turn is joined by the shortest bridge that crosses no side.
+std::vector<int> join_loops(const Eigen::Matrix2Xd& points, std::vector<std::vector<int>> loops) {
+  const auto area = [&points](const std::vector<int>& loop) {
+    Eigen::Matrix2Xd outline(2, static_cast<Eigen::Index>(loop.size()));
+    for (std::size_t i = 0; i < loop.size(); ++i) outline.col(static_cast<Eigen::Index>(i)) = points.col(loop[i]);
+    return polygon_area(outline);
+  };
+  std::iter_swap(loops.begin(), std::max_element(loops.begin(), loops.end(),
+                                                 [&](const auto& a, const auto& b) { return area(a) < area(b); }));
+  while (loops.size() > 1) {
+    double shortest = std::numeric_limits<double>::infinity();
+    std::size_t loop = 1, at = 0, start = 0;
+    for (std::size_t k = 1; k < loops.size(); ++k) {
+      for (std::size_t i = 0; i < loops[0].size(); ++i) {
+        for (std::size_t j = 0; j < loops[k].size(); ++j) {
+          const double length = (points.col(loops[0][i]) - points.col(loops[k][j])).norm();
+          if (length >= shortest || !bridge_is_free(points, loops, loops[0][i], loops[k][j])) continue;
+          shortest = length;
+          loop = k;
+          at = i;
+          start = j;
+        }
+      }
+    }
+    std::vector<int> hole = loops[loop];
+    std::rotate(hole.begin(), hole.begin() + static_cast<std::ptrdiff_t>(start), hole.end());
+    hole.push_back(hole.front());
+    hole.push_back(loops[0][at]);
+    loops[0].insert(loops[0].begin() + static_cast<std::ptrdiff_t>(at) + 1, hole.begin(), hole.end());
+    loops.erase(loops.begin() + static_cast<std::ptrdiff_t>(loop));
+  }
+  return loops[0];
+}
+
 }  // namespace
 
 double polygon_area(const Eigen::Matrix2Xd& outline) {
@@ -39,31 +101,6 @@ double polygon_area(const Eigen::Matrix2Xd& outline) {
     doubled += cross(outline.col(i) - outline.col(0), outline.col((i + 1) % n) - outline.col(0));
   }
   return 0.5 * doubled;
-}
-
-// O'Rourke, Computational Geometry in C, section 1.6: at a strictly convex vertex v with neighbours a and b, either the
-// triangle a v b is empty, or the vertex in it that is farthest from ab sees v.
-Eigen::Vector2d inner_point(const Eigen::Matrix2Xd& outline) {
-  const Eigen::Index n = outline.cols();
-  Eigen::Index v = 0;
-  for (Eigen::Index i = 1; i < n; ++i) {
-    if (outline(0, i) < outline(0, v) || (outline(0, i) == outline(0, v) && outline(1, i) < outline(1, v))) v = i;
-  }
-  const Eigen::Vector2d a = outline.col((v + n - 1) % n), b = outline.col((v + 1) % n), tip = outline.col(v);
-  const double turn = side_of(a, tip, b) > 0.0 ? 1.0 : -1.0;
-  double farthest = 0.0;
-  Eigen::Index inside = -1;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const Eigen::Vector2d p = outline.col(i);
-    if (p == a || p == b || p == tip) continue;
-    const double height = turn * side_of(b, a, p);  // above ab, on the tip's side
-    const bool in_triangle = turn * side_of(a, tip, p) >= 0.0 && turn * side_of(tip, b, p) >= 0.0 && height >= 0.0;
-    if (in_triangle && (inside < 0 || height > farthest)) {
-      farthest = height;
-      inside = i;
-    }
-  }
-  return inside < 0 ? Eigen::Vector2d((a + b + tip) / 3.0) : Eigen::Vector2d(0.5 * (tip + outline.col(inside)));
 }
 
 std::optional<std::pair<int, int>> find_crossing(const Eigen::Matrix2Xd& outline) {
@@ -79,26 +116,15 @@ std::optional<std::pair<int, int>> find_crossing(const Eigen::Matrix2Xd& outline
   return std::nullopt;
 }
 
-std::vector<Eigen::Vector3i> cut_ears(const Eigen::Matrix2Xd& outline) {
-  std::vector<int> left(static_cast<std::size_t>(outline.cols()));
-  std::iota(left.begin(), left.end(), 0);
+std::vector<Eigen::Vector3i> cut_ears(const Eigen::Matrix2Xd& points, const std::vector<std::vector<int>>& loops) {
+  std::vector<int> left = join_loops(points, loops);
   std::vector<Eigen::Vector3i> triangles;
-  const auto ear_shape = [&](int a, int b, int c) {
-    const Eigen::Vector2d pa = outline.col(a), pb = outline.col(b), pc = outline.col(c);
-    const bool empty = std::none_of(left.begin(), left.end(), [&](int i) {
-      const Eigen::Vector2d p = outline.col(i);
-      return i != a && i != b && i != c && side_of(pa, pb, p) >= 0.0 && side_of(pb, pc, p) >= 0.0 &&
-             side_of(pc, pa, p) >= 0.0;
-    });
-    const double sides = (pb - pa).squaredNorm() + (pc - pb).squaredNorm() + (pa - pc).squaredNorm();
-    return empty ? side_of(pa, pb, pc) / sides : -std::numeric_limits<double>::infinity();
-  };
-  while (left.size() > 3) {  // the best-shaped ear first, so that points along a straight side do not stay for the end
+  while (left.size() > 3) {
     const std::size_t n = left.size();
     std::size_t best = 0;
     double best_shape = -std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < n; ++i) {
-      const double shape = ear_shape(left[(i + n - 1) % n], left[i], left[(i + 1) % n]);
+      const double shape = ear_shape(points, left, i);
       if (shape > best_shape) {
         best_shape = shape;
         best = i;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tissue_stiffness/meshing/file_cursor.hpp"
+#include "tissue_stiffness/meshing/planar_facets.hpp"
 #include "tissue_stiffness/meshing/run_apart.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
@@ -25,7 +26,8 @@ namespace {
 
 // Vertices off a plane by less than this share of the body's size are rounding of 32-bit coordinates.
 constexpr double kPlaneShare = 2e-6;
-constexpr unsigned kMaxSeconds = 600;
+constexpr double kNeedleShare = 1e-9;  // area over the longest side squared
+constexpr unsigned kMaxSeconds = 120;
 
 // tetgenio frees these arrays itself.
 template <typename T>
@@ -33,29 +35,21 @@ T* new_array(std::size_t count) {
   return new T[count];
 }
 
-void set_facets(const PlanarFacets& plc, double unit, tetgenio& in) {
+void set_facets(const TriangleSurface& surface, double unit, tetgenio& in) {
   in.firstnumber = 0;
-  in.numberofpoints = static_cast<int>(plc.vertices.cols());
-  in.pointlist = new_array<REAL>(static_cast<std::size_t>(plc.vertices.size()));
-  Eigen::Map<Eigen::Matrix3Xd>(in.pointlist, 3, plc.vertices.cols()) = plc.vertices / unit;
-  in.numberoffacets = static_cast<int>(plc.facets.size());
-  in.facetlist = new_array<tetgenio::facet>(plc.facets.size());
-  for (std::size_t f = 0; f < plc.facets.size(); ++f) {
-    const PlanarFacets::Facet& from = plc.facets[f];
-    tetgenio::facet& to = in.facetlist[f];
-    tetgenio::init(&to);
-    to.numberofpolygons = static_cast<int>(from.loops.size());
-    to.polygonlist = new_array<tetgenio::polygon>(from.loops.size());
-    for (std::size_t p = 0; p < from.loops.size(); ++p) {
-      to.polygonlist[p].numberofvertices = static_cast<int>(from.loops[p].size());
-      to.polygonlist[p].vertexlist = new_array<int>(from.loops[p].size());
-      std::copy(from.loops[p].begin(), from.loops[p].end(), to.polygonlist[p].vertexlist);
-    }
-    to.numberofholes = static_cast<int>(from.hole_points.size());
-    to.holelist = from.hole_points.empty() ? nullptr : new_array<REAL>(3 * from.hole_points.size());
-    for (std::size_t h = 0; h < from.hole_points.size(); ++h) {
-      Eigen::Map<Eigen::Vector3d>(to.holelist + 3 * h) = from.hole_points[h] / unit;
-    }
+  in.numberofpoints = surface.vertex_count();
+  in.pointlist = new_array<REAL>(static_cast<std::size_t>(surface.vertices.size()));
+  Eigen::Map<Eigen::Matrix3Xd>(in.pointlist, 3, surface.vertices.cols()) = surface.vertices / unit;
+  in.numberoffacets = surface.triangle_count();
+  in.facetlist = new_array<tetgenio::facet>(static_cast<std::size_t>(surface.triangle_count()));
+  for (int t = 0; t < surface.triangle_count(); ++t) {
+    tetgenio::facet& facet = in.facetlist[t];
+    tetgenio::init(&facet);
+    facet.numberofpolygons = 1;
+    facet.polygonlist = new_array<tetgenio::polygon>(1);
+    facet.polygonlist[0].numberofvertices = 3;
+    facet.polygonlist[0].vertexlist = new_array<int>(3);
+    Eigen::Map<Eigen::Vector3i>(facet.polygonlist[0].vertexlist) = surface.triangles.col(t);
   }
 }
 
@@ -65,10 +59,23 @@ void run(std::string switches, tetgenio& in, tetgenio& out) {
   tetrahedralize(&behavior, &in, &out);
 }
 
+// TetGen's search for crossings does not end on triangles without area.
+void refuse_needles(const TriangleSurface& surface, const std::string& where) {
+  for (int t = 0; t < surface.triangle_count(); ++t) {
+    Eigen::Matrix3d x;
+    for (int i = 0; i < 3; ++i) x.col(i) = surface.vertices.col(surface.triangles(i, t));
+    const double longest =
+        std::max({(x.col(1) - x.col(0)).norm(), (x.col(2) - x.col(1)).norm(), (x.col(0) - x.col(2)).norm()});
+    if (triangle_area_vector(surface, t).norm() > kNeedleShare * longest * longest) continue;
+    throw InputError(where, "a triangle without area at " + format_point(x.rowwise().mean()),
+                     "triangles with an area, or a max_edge_length, which cuts plane parts anew");
+  }
+}
+
 // TetGen lists the facets that cross others.
 void refuse_crossings(const TriangleSurface& surface, double unit, const std::string& where) {
   tetgenio in, out;
-  set_facets(triangles_as_facets(surface), unit, in);
+  set_facets(surface, unit, in);
   run("pdQ", in, out);
   if (out.numberoftrifaces == 0) return;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
@@ -125,14 +132,20 @@ TetFile keep_body(const tetgenio& out, double unit, const TriangleSurface& surfa
   return result;
 }
 
+TriangleSurface coarsened(const TriangleSurface& surface, double tolerance, double edge_length) {
+  PlanarFacets facets = merge_coplanar(surface, tolerance);
+  subdivide_edges(facets, edge_length);
+  return triangulate(facets);
+}
+
 TetFile fill(const TriangleSurface& surface, double max_edge_length, bool keep_triangles, const std::string& where) {
   const double size = (surface.vertices.rowwise().maxCoeff() - surface.vertices.rowwise().minCoeff()).norm();
-  refuse_crossings(surface, size, where);
   const bool keep = keep_triangles || max_edge_length <= 0.0;
-  PlanarFacets plc = keep ? triangles_as_facets(surface) : merge_coplanar(surface, kPlaneShare * size);
-  if (!keep) subdivide_edges(plc, max_edge_length);
+  const TriangleSurface skin = keep ? surface : coarsened(surface, kPlaneShare * size, max_edge_length);
+  refuse_needles(skin, where);
+  refuse_crossings(skin, size, where);
   tetgenio in, out;
-  set_facets(plc, size, in);  // TetGen's tolerances and number formats suit bodies of unit size
+  set_facets(skin, size, in);  // TetGen's tolerances and number formats suit bodies of unit size
   run(switches(max_edge_length / size, keep), in, out);
   return keep_body(out, size, surface, where);
 }
@@ -178,6 +191,10 @@ std::string mesh_or_message(const TriangleSurface& surface, double edge, bool ke
 
 }  // namespace
 
+bool has_tetgen() {
+  return true;
+}
+
 // Apart, because TetGen 1.5's library frees its memory twice when it gives up.
 TetFile fill_surface(const TriangleSurface& surface, double max_edge_length, bool keep_triangles,
                      const std::string& where) {
@@ -192,6 +209,10 @@ TetFile fill_surface(const TriangleSurface& surface, double max_edge_length, boo
 }
 
 #else
+
+bool has_tetgen() {
+  return false;
+}
 
 TetFile fill_surface(const TriangleSurface&, double, bool, const std::string& where) {
   throw InputError(where, "a surface, but this build is without TetGen",

@@ -4,6 +4,7 @@
 
 #include "tissue_stiffness/meshing/build_mesh.hpp"
 #include "tissue_stiffness/meshing/surface.hpp"
+#include "tissue_stiffness/meshing/tetgen_mesher.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -58,6 +59,7 @@ TEST(SharedMeshRegions, CavityOfTheVentricleIsACapOfItsWall) {
 }
 
 TEST(SiliconeBeam, FineSurfaceGivesMeshOfTheSizeAskedFor) {
+  if (!has_tetgen()) GTEST_SKIP() << "this build is without TetGen";
   MeshSettings settings;
   settings.file = std::string(TISSUE_STIFFNESS_SHARED) + "/cases/silicone_beam_gravity_a/beam.stl";
   if (!std::ifstream(settings.file)) GTEST_SKIP() << settings.file << " is not there";

@@ -24,7 +24,7 @@ class FileCursor {
   std::size_t position() const { return position_; }
   bool at_end();                  ///< skips white space first
   std::string word();             ///< next word; fails at the end of the file
-  std::string peek();             ///< next word without moving, empty at the end
+  std::string peek() const;       ///< next word without moving, empty at the end
   std::string line();             ///< rest of the line, without its end
   void skip_comments(char mark);  ///< white space, and from `mark` to the end of its line
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "tissue_stiffness/meshing/mesh_io.hpp"
-#include "tissue_stiffness/meshing/planar_facets.hpp"
+#include "tissue_stiffness/meshing/triangle_surface.hpp"
 
 namespace tissue_stiffness {
 
@@ -15,5 +15,8 @@ namespace tissue_stiffness {
 /// surface keeps its triangles, and the inside follows them. `keep_triangles`: the surface's triangles are kept in either
 /// case. Throws InputError naming `where` and the place for a surface that crosses itself, and for a build without TetGen.
 TetFile fill_surface(const TriangleSurface& surface, double max_edge_length, bool keep_triangles, const std::string& where);
+
+/// Whether this build has TetGen (CMake option TISSUE_STIFFNESS_TETGEN).
+bool has_tetgen();
 
 }  // namespace tissue_stiffness

@@ -1,0 +1,44 @@
+#include "tissue_stiffness/meshing/refine.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tissue_stiffness/meshing/box_mesh.hpp"
+#include "tissue_stiffness/meshing/surface.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+TEST(Refine, CutsEachTetrahedronIntoEightOfTheSameVolume) {
+  for (const int order : {1, 2}) {
+    const TetMesh coarse = make_box_mesh({0.1, 0.02, 0.03}, 3, 2, 2, order);
+    const TetMesh fine = refine(coarse);
+    ASSERT_EQ(fine.tet_count(), 8 * coarse.tet_count());
+    EXPECT_EQ(fine.facet_count(), 4 * coarse.facet_count());
+    EXPECT_EQ(fine.quadratic(), coarse.quadratic());
+    EXPECT_NEAR(mesh_volume(fine), mesh_volume(coarse), 1e-18);
+    const double piece = mesh_volume(coarse) / coarse.tet_count() / 8.0;
+    for (int t = 0; t < fine.tet_count(); ++t) EXPECT_NEAR(tet_volume(fine, t), piece, 1e-6 * piece);
+  }
+}
+
+TEST(Refine, KeepsTheNumbersOfAllNodes) {
+  const TetMesh coarse = make_box_mesh({1.0, 1.0, 1.0}, 2, 2, 2, 2);
+  const TetMesh fine = refine(coarse);
+  EXPECT_EQ(fine.corner_count, coarse.node_count());
+  EXPECT_EQ(fine.nodes.leftCols(coarse.node_count()), coarse.nodes);
+}
+
+TEST(Refine, FollowsCurvedEdges) {
+  TetMesh coarse = make_box_mesh({1.0, 1.0, 1.0}, 2, 1, 1, 2);
+  const auto bend = [](const Eigen::Vector3d& x) { return Eigen::Vector3d(x.x(), x.y(), x.z() + 0.1 * x.x() * x.x()); };
+  for (int i = 0; i < coarse.node_count(); ++i) coarse.nodes.col(i) = bend(coarse.nodes.col(i));
+  const TetMesh fine = refine(coarse);
+  for (int i = 0; i < fine.node_count(); ++i) {  // a quadratic map is exact on a quadratic mesh
+    const Eigen::Vector3d x = fine.nodes.col(i);
+    const double rest = x.z() - 0.1 * x.x() * x.x();
+    EXPECT_NEAR(std::round(8.0 * rest), 8.0 * rest, 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace tissue_stiffness

@@ -1,0 +1,109 @@
+#include <cstdio>
+#include <fstream>
+
+#include "mesh_checks.hpp"
+#include "tissue_stiffness/meshing/box_mesh.hpp"
+#include "tissue_stiffness/meshing/build_mesh.hpp"
+#include "tissue_stiffness/meshing/mesh_io.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+TetMesh load(const std::string& name, int order = 2) {
+  return load_tet_mesh(mesh_file(name), 0.01, order);
+}
+
+// All files hold the same box of 2 x 1 x 1 (times the scale), in the numbering of make_box_mesh.
+class TetFiles : public testing::TestWithParam<std::string> {};
+
+TEST_P(TetFiles, HoldTheBox) {
+  for (const int order : {1, 2}) {
+    const TetMesh expected = make_box_mesh({0.02, 0.01, 0.01}, 2, 1, 1, order);
+    const TetMesh mesh = load(GetParam(), order);
+    expect_sound(mesh, 2e-6, 1e-18);
+    EXPECT_EQ(mesh.corner_count, expected.corner_count);
+    EXPECT_TRUE(mesh.nodes.leftCols(mesh.corner_count).isApprox(expected.nodes.leftCols(mesh.corner_count)));
+    EXPECT_EQ(mesh.tets, expected.tets);
+    EXPECT_EQ(mesh.facets, expected.facets);
+    EXPECT_EQ(mesh.facet_tet, expected.facet_tet);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, TetFiles,
+                         testing::Values("box.vtk", "box_10_node.vtk", "box_binary.vtk", "box_binary_5_1.vtk",
+                                         "box_from_0.node", "box_from_0.ele", "box_from_1.node", "box_2_2.msh",
+                                         "box_4_1.msh"));
+
+TEST(TetFileChecks, AFileThatInvertsAllIsReordered) {
+  expect_sound(load("box_all_inverted.vtk"), 2e-6, 1e-18);
+}
+
+struct Refused {
+  std::string file, part;
+};
+class RefusedTetFiles : public testing::TestWithParam<Refused> {};
+
+TEST_P(RefusedTetFiles, NameFileAndPlace) {
+  const std::string message = refusal([] { load(GetParam().file); });
+  expect_contains(message, GetParam().file);
+  expect_contains(message, GetParam().part);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Bad, RefusedTetFiles,
+    testing::Values(Refused{"box_one_inverted.vtk", "tetrahedron 7 at (0.0125, 0.0075, 0.005) m, which is inverted"},
+                    Refused{"box_unused_vertex.vtk", "vertex 12 at (0.05, 0.05, 0.05) m in no tetrahedron"},
+                    Refused{"box_nan.vtk", "vertex 0 with a coordinate that is not finite"},
+                    Refused{"box_coincident.vtk", "both at (0.01, "}, Refused{"box_hexahedron.vtk", "type 12 with 8 nodes"},
+                    Refused{"box_node_out_of_range.vtk", "node 99"}, Refused{"box_truncated.vtk", "bytes of cells"},
+                    Refused{"no_such_file.vtk", "no readable file"}, Refused{"cube.obj", "ending '.obj'"}));
+
+TEST(SaveMesh, ReadsBackBitForBit) {
+  for (const int order : {1, 2}) {
+    TetMesh mesh = make_box_mesh({0.1, 0.2, 0.3}, 2, 3, 1, order, {1.0 / 3.0, -2.0 / 7.0, 1e-9});
+    if (order == 2) mesh.nodes.col(mesh.corner_count + 3) += Eigen::Vector3d(1e-3, 1.0 / 3e3, 0.0);  // a curved edge
+    const std::string file = testing::TempDir() + "saved_mesh.vtk";
+    save_mesh(mesh, file);
+    const TetMesh again = load_tet_mesh(file, 1.0, order);
+    EXPECT_EQ(again.nodes, mesh.nodes);
+    EXPECT_EQ(again.tets, mesh.tets);
+    EXPECT_EQ(again.facets, mesh.facets);
+    EXPECT_EQ(again.corner_count, mesh.corner_count);
+    std::remove(file.c_str());
+  }
+}
+
+TEST(SaveMesh, SaysWhatItCannotWrite) {
+  const TetMesh mesh = make_box_mesh({1.0, 1.0, 1.0}, 1, 1, 1);
+  expect_contains(refusal([&] { save_mesh(mesh, "mesh.stl"); }), ".vtk");
+  expect_contains(refusal([&] { save_mesh(mesh, "/no/such/folder/mesh.vtk"); }), "/no/such/folder/mesh.vtk");
+}
+
+TEST(Regions, TakeTheirClosedBounds) {
+  const TetMesh mesh = make_box_mesh({2.0, 1.0, 1.0}, 2, 1, 1, 2);
+  const auto regions = resolve_regions({{"face", BoxShape{{0, 0, 0}, {0, 1, 1}}},
+                                        {"half", HalfSpaceShape{{1, 0, 0}, {1, 0, 0}}},
+                                        {"ball", SphereShape{{0, 0, 0}, 1.0}},
+                                        {"egg", EllipsoidShape{{1, 0.5, 0.5}, {10, 10, 10}}},
+                                        {"edge", VertexShape{{0, 3, 9}}}},
+                                       mesh);
+  EXPECT_EQ(regions.at("face").nodes.size(), 9u);
+  EXPECT_EQ(regions.at("face").facets.size(), 2u);
+  EXPECT_TRUE(regions.at("face").tets.empty());
+  EXPECT_EQ(regions.at("half").tets.size(), 6u);
+  EXPECT_EQ(regions.at("half").facets.size(), 10u);
+  EXPECT_EQ(regions.at("egg").nodes.size(), static_cast<std::size_t>(mesh.node_count()));
+  EXPECT_EQ(regions.at("egg").facets.size(), static_cast<std::size_t>(mesh.facet_count()));
+  for (const int node : regions.at("ball").nodes) EXPECT_LE(mesh.nodes.col(node).norm(), 1.0);
+  EXPECT_EQ(regions.at("edge").facets.size(), 1u);
+  EXPECT_EQ(regions.at("edge").nodes.size(), 6u) << "three corners and the mid nodes between them";
+}
+
+TEST(Regions, RefuseWhatIsNotThere) {
+  const TetMesh mesh = make_box_mesh({2.0, 1.0, 1.0}, 2, 1, 1, 1);
+  expect_contains(refusal([&] { resolve_regions({{"tip", SphereShape{{9, 9, 9}, 1.0}}}, mesh); }), "regions.tip");
+  expect_contains(refusal([&] { resolve_regions({{"list", VertexShape{{3, 12}}}}, mesh); }), "found 12; allowed: 0 to 11");
+}
+
+}  // namespace
+}  // namespace tissue_stiffness
