@@ -187,7 +187,9 @@ std::optional<Instant> BagReader::next() {
     throw InputError(file_, error.what(), "a bag that `rosbag check` accepts");
   }
   if (pending_.empty()) return std::nullopt;
-  const auto front = pending_.extract(pending_.begin());
+  auto front = pending_.extract(pending_.begin());
+  std::stable_sort(front.mapped().begin(), front.mapped().end(),
+                   [](const Measurement& a, const Measurement& b) { return a.source < b.source; });
   last_returned_ = front.key();
   Instant instant;
   instant.frame.time = last_returned_.toSec();

@@ -1,0 +1,183 @@
+#include "tissue_stiffness/tools/bag_reader.hpp"
+
+#include <geometry_msgs/WrenchStamped.h>
+#include <std_msgs/String.h>
+
+#include "tissue_stiffness/tools/recording_writer.hpp"
+#include "tissue_stiffness/types/error.hpp"
+#include "workbench.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+const ros::Time kStart(1000, 0);
+
+ros::Time at(double seconds) {
+  return kStart + ros::Duration(seconds);
+}
+
+class BagReaderTest : public Workbench {
+ protected:
+  void SetUp() override {
+    Workbench::SetUp();
+    settings_ = load_model(write_model("model.yaml", "{prior: 4e5, factor: 3}", vertices()));
+  }
+
+  static void write_vertex(RecordingWriter& writer, double seconds, double x,
+                           const std::string& topic = "/tissue/vertices") {
+    writer.write_cloud(topic, at(seconds), Eigen::Vector3d(x, 0, 0), Eigen::VectorXi::Constant(1, 3), "vertex");
+  }
+
+  BagReader open() const { return BagReader(path("recording.bag"), settings_); }
+
+  ModelSettings settings_;
+};
+
+TEST_F(BagReaderTest, GivesFramesInTheOrderOfTheirStamps) {
+  {  // recorded in the wrong order
+    rosbag::Bag bag(path("recording.bag"), rosbag::bagmode::Write);
+    for (const int k : {0, 2, 1, 3}) {
+      sensor_msgs::PointCloud2 cloud;
+      {
+        RecordingWriter writer(path("one.bag"));
+        write_vertex(writer, 0.1 * k, k);
+      }
+      rosbag::Bag one(path("one.bag"));
+      rosbag::View view(one);
+      cloud = *view.begin()->instantiate<sensor_msgs::PointCloud2>();
+      static double record_time = 0.0;
+      bag.write("/tissue/vertices", at(record_time += 0.01), cloud);
+    }
+  }
+  BagReader reader = open();
+  EXPECT_DOUBLE_EQ(reader.first_stamp(), 1000.0);
+  EXPECT_EQ(reader.frame_count(), 4U);
+  for (int k = 0; k < 4; ++k) {
+    const auto instant = reader.next();
+    ASSERT_TRUE(instant);
+    EXPECT_NEAR(instant->frame.time, 1000.0 + 0.1 * k, 1e-6);
+    ASSERT_EQ(instant->frame.observations.size(), 1U);
+    EXPECT_EQ(instant->frame.observations[0].ids[0], 3);
+    EXPECT_NEAR(instant->frame.observations[0].points(0, 0), k, 1e-6);
+  }
+  EXPECT_FALSE(reader.next());
+}
+
+TEST_F(BagReaderTest, MergesObservationsOfOneStampAndCountsLateOnes) {
+  settings_ = load_model(
+      write_model("two.yaml", "{prior: 4e5, factor: 3}", vertices() + "- vertices: {topic: /other, noise: 1e-3}\n"));
+  {
+    RecordingWriter writer(path("recording.bag"));
+    write_vertex(writer, 0.0, 1.0);
+    write_vertex(writer, 0.0, 2.0, "/other");
+    for (int k = 1; k < 10; ++k) write_vertex(writer, 0.2 * k, 1.0);
+  }
+  {
+    rosbag::Bag bag(path("recording.bag"), rosbag::bagmode::Append);
+    RecordingWriter writer(path("one.bag"));
+    write_vertex(writer, 0.1, 1.0);
+    writer.close();
+    rosbag::Bag one(path("one.bag"));
+    rosbag::View view(one);
+    bag.write("/tissue/vertices", at(5.0), *view.begin()->instantiate<sensor_msgs::PointCloud2>());
+  }
+  BagReader reader = open();
+  const auto first = reader.next();
+  ASSERT_TRUE(first);
+  ASSERT_EQ(first->frame.observations.size(), 2U);
+  EXPECT_EQ(first->frame.observations[1].source, 1);
+  int frames = 1;
+  while (reader.next()) ++frames;
+  EXPECT_EQ(frames, 10);
+  EXPECT_EQ(reader.late(), 1);
+}
+
+TEST_F(BagReaderTest, TurnsAWrenchIntoTheModelFrame) {
+  settings_ = load_model(write("model.yaml", read("model.yaml")
+                                                 .replace(read("model.yaml").find("observations"), 0,
+                                                          "- traction: {region: clamp, topic: /tool}\n")));
+  {
+    RecordingWriter writer(path("recording.bag"));
+    Eigen::Isometry3d quarter(Eigen::AngleAxisd(0.5 * M_PI, Eigen::Vector3d::UnitZ()));
+    writer.write_pose("tool_tip", at(0.0), quarter);
+    write_vertex(writer, 0.0, 1.0);
+  }
+  rosbag::Bag bag(path("recording.bag"), rosbag::bagmode::Append);
+  geometry_msgs::WrenchStamped wrench;
+  wrench.header.stamp = at(0.0);
+  wrench.header.frame_id = "/tool_tip";
+  wrench.wrench.force.x = 2.0;
+  bag.write("/tool", at(0.0), wrench);
+  bag.close();
+  BagReader reader = open();
+  const auto instant = reader.next();
+  ASSERT_TRUE(instant);
+  ASSERT_EQ(instant->loads.size(), 1U);
+  EXPECT_EQ(instant->loads[0].topic, "/tool");
+  EXPECT_TRUE(instant->loads[0].value.head<3>().isApprox(Eigen::Vector3d(0, 2, 0), 1e-12));
+}
+
+TEST_F(BagReaderTest, SkipsAFrameWhoseSensorHasNoPose) {
+  rosbag::Bag bag(path("recording.bag"), rosbag::bagmode::Write);
+  {
+    RecordingWriter writer(path("one.bag"));
+    write_vertex(writer, 0.0, 1.0);
+  }
+  rosbag::Bag one(path("one.bag"));
+  rosbag::View view(one);
+  sensor_msgs::PointCloud2 cloud = *view.begin()->instantiate<sensor_msgs::PointCloud2>();
+  cloud.header.frame_id = "unknown_sensor";
+  bag.write("/tissue/vertices", at(0.0), cloud);
+  bag.close();
+  BagReader reader = open();
+  const auto instant = reader.next();
+  ASSERT_TRUE(instant);
+  EXPECT_TRUE(instant->frame.observations.empty());
+  EXPECT_TRUE(says(instant->reason, {"unknown_sensor", "model"}));
+}
+
+TEST_F(BagReaderTest, RefusesWhatIsNoBag) {
+  EXPECT_TRUE(says(input_error([&] { open(); }), {"recording.bag", "no readable file"}));
+  write("recording.bag", "mesh: {file: mesh.vtk}\n");
+  EXPECT_TRUE(says(input_error([&] { open(); }), {"recording.bag", "a rosbag"}));
+  write("recording.bag", "");
+  EXPECT_TRUE(says(input_error([&] { open(); }), {"recording.bag", "a rosbag"}));
+}
+
+TEST_F(BagReaderTest, RefusesABagWithoutItsEnd) {
+  {
+    RecordingWriter writer(path("recording.bag"));
+    for (int k = 0; k < 100; ++k) write_vertex(writer, 0.1 * k, 1.0);
+  }
+  const std::string whole = read("recording.bag");
+  write("recording.bag", whole.substr(0, whole.size() / 2));
+  EXPECT_TRUE(says(input_error([&] { open(); }), {"recording.bag"}));
+}
+
+TEST_F(BagReaderTest, NamesTheTopicsThatWouldFit) {
+  {
+    RecordingWriter writer(path("recording.bag"));
+    write_vertex(writer, 0.0, 1.0, "/elsewhere/vertices");
+  }
+  EXPECT_TRUE(says(input_error([&] { open(); }), {"/tissue/vertices", "found nothing", "/elsewhere/vertices"}));
+}
+
+TEST_F(BagReaderTest, RefusesATopicOfAnotherType) {
+  rosbag::Bag bag(path("recording.bag"), rosbag::bagmode::Write);
+  bag.write("/tissue/vertices", at(0.0), std_msgs::String());
+  bag.close();
+  EXPECT_TRUE(says(input_error([&] { open(); }), {"/tissue/vertices", "std_msgs/String", "sensor_msgs/PointCloud2"}));
+}
+
+TEST_F(BagReaderTest, RefusesVerticesThatTheMeshDoesNotHave) {
+  {
+    RecordingWriter writer(path("recording.bag"));
+    write_vertex(writer, 0.0, 1.0);
+  }
+  BagReader reader = open();
+  reader.set_vertex_count(3);
+  EXPECT_TRUE(says(input_error([&] { reader.next(); }), {"/tissue/vertices", "vertex", "found 3", "0 to 2"}));
+}
+
+}  // namespace
+}  // namespace tissue_stiffness

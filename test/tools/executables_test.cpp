@@ -1,0 +1,94 @@
+// The tools as a user meets them: exit codes, one line on what is wrong, help.
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+
+#include "workbench.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+struct Outcome {
+  int code;
+  std::string text;  ///< standard output and error
+};
+
+Outcome call(const std::string& command) {
+  Outcome outcome{-1, ""};
+  FILE* pipe = popen((std::string(TISSUE_STIFFNESS_TOOLS) + "/" + command + " 2>&1").c_str(), "r");
+  if (pipe == nullptr) return outcome;
+  std::array<char, 4096> buffer;
+  while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe)) {
+    outcome.text.append(buffer.data(), count);
+  }
+  const int status = pclose(pipe);
+  if (WIFEXITED(status)) outcome.code = WEXITSTATUS(status);
+  return outcome;
+}
+
+/// Exit code 2 and one line with all the words.
+::testing::AssertionResult refuses(const std::string& command, const std::vector<std::string>& words) {
+  Outcome outcome = call(command);
+  if (outcome.code != 2) return ::testing::AssertionFailure() << "exit code " << outcome.code << ": " << outcome.text;
+  if (!outcome.text.empty() && outcome.text.back() == '\n') outcome.text.pop_back();
+  return says(outcome.text, words);
+}
+
+class Executables : public Workbench {};
+
+TEST_F(Executables, HelpThemselves) {
+  for (const std::string tool : {"estimate", "simulate", "effects"}) {
+    const Outcome help = call(tool + " --help");
+    EXPECT_EQ(help.code, 0) << help.text;
+    EXPECT_NE(help.text.find("Usage"), std::string::npos) << help.text;
+  }
+}
+
+TEST_F(Executables, RefuseWrongArguments) {
+  EXPECT_TRUE(refuses("estimate", {"estimate:", "required"}));
+  EXPECT_TRUE(refuses("estimate a.yaml b.bag --output " + path("out") + " --colour", {"--colour"}));
+  EXPECT_TRUE(refuses("estimate a.yaml b.bag --output " + path("out") + " --frames -3", {"frames"}));
+  EXPECT_TRUE(refuses("simulate", {"simulate:", "required"}));
+}
+
+TEST_F(Executables, NameFileKeyAndValueOfWrongInput) {
+  EXPECT_TRUE(refuses("estimate " + path("none.yaml") + " b.bag --output " + path("out"), {"none.yaml"}));
+  const std::string negative = write_model("model.yaml", "-5", vertices());
+  EXPECT_TRUE(refuses("estimate " + negative + " " + path("none.bag") + " --output " + path("out"), {"none.bag"}));
+  write("some.bag", "#ROSBAG V1.2\n");
+  EXPECT_TRUE(refuses("estimate " + negative + " " + path("some.bag") + " --output " + path("out"), {"some.bag"}));
+  EXPECT_TRUE(refuses("simulate " + negative + " --output " + path("out.bag"), {"model.yaml", "simulation"}));
+}
+
+TEST_F(Executables, GoFromSceneToResults) {
+  const std::string scene =
+      write_model("scene.yaml", "4e5", vertices(), "simulation: {duration: 0.2, rate: 60, step: 0.001}\n");
+  const Outcome simulated = call("simulate " + scene + " --output " + path("r.bag") + " --truth " + path("truth.yaml"));
+  ASSERT_EQ(simulated.code, 0) << simulated.text;
+  EXPECT_NE(simulated.text.find("12 frames"), std::string::npos) << simulated.text;
+  EXPECT_NE(read("truth.yaml").find("elasticity.young_modulus: 4"), std::string::npos) << read("truth.yaml");
+
+  const std::string model = write_model("model.yaml", "{prior: 8e5, factor: 3}", vertices());
+  const std::string estimate = "estimate " + model + " " + path("r.bag") + " --output ";
+  const Outcome estimated = call(estimate + path("out"));
+  ASSERT_EQ(estimated.code, 0) << estimated.text;
+  EXPECT_NE(estimated.text.find("elasticity.young_modulus"), std::string::npos) << estimated.text;
+  ASSERT_EQ(call(estimate + path("again") + " --quiet").text, "");
+  for (const std::string file : {"out/results.json", "out/estimates.csv", "out/report.html"})
+    EXPECT_NE(read(file), "") << file;
+  EXPECT_EQ(read("out/estimates.csv"), read("again/estimates.csv"));
+  EXPECT_TRUE(refuses("estimate " + scene + " " + path("r.bag") + " --output " + path("x"), {"scene.yaml", "simulation"}));
+  EXPECT_TRUE(refuses(estimate + "/proc/none", {"/proc/none"}));
+}
+
+TEST_F(Executables, PrintTheLibrary) {
+  const Outcome plain = call("effects"), page = call("effects --markdown");
+  for (const std::string word : {"elasticity", "young_modulus", "[Pa]", "Yang & Lin"}) {
+    EXPECT_NE(plain.text.find(word), std::string::npos) << word;
+  }
+  EXPECT_NE(page.text.find("| `young_modulus` | E | Pa |"), std::string::npos) << page.text;
+}
+
+}  // namespace
+}  // namespace tissue_stiffness

@@ -1,0 +1,88 @@
+// simulate, then estimate: the number that went in comes out.
+#include <cmath>
+
+#include "tissue_stiffness/report/write_results.hpp"
+#include "tissue_stiffness/tools/estimate_recording.hpp"
+#include "tissue_stiffness/tools/simulate_scene.hpp"
+#include "workbench.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+void nothing(std::size_t, std::size_t) {}
+
+class RoundTrip : public Workbench {
+ protected:
+  /// Simulates a bar of `modulus` that is let go under gravity, and estimates it from 2x off.
+  EstimationRun run(double modulus, const std::string& observations, const std::string& simulation) {
+    const std::string scene = write_model("scene.yaml", std::to_string(modulus), observations, simulation);
+    simulate_scene(load_scene(scene), path("recording.bag"), nothing);
+    model_ = write_model("model.yaml", "{prior: " + std::to_string(2.0 * modulus) + ", factor: 3}", observations);
+    return estimate_recording(model_, path("recording.bag"), 0, nothing);
+  }
+
+  std::string model_;
+};
+
+TEST_F(RoundTrip, FindsTheModulusFromVertices) {
+  const EstimationRun run = this->run(4e5, vertices(), "simulation: {duration: 0.4, rate: 60, step: 0.0005}\n");
+  ASSERT_EQ(run.results.parameters.size(), 1U);
+  EXPECT_NEAR(run.results.parameters[0].mean, 4e5, 0.01 * 4e5);
+  EXPECT_NEAR(run.results.rms_error, 2e-4, 0.1 * 2e-4);
+  EXPECT_EQ(run.results.used(), 24);
+  EXPECT_EQ(run.results.identifiable.at("elasticity.young_modulus").verdict, "absolute");
+}
+
+TEST_F(RoundTrip, FindsTheModulusFromMarkersAndPoints) {
+  const std::string sensors =
+      "- markers: {topic: /markers, noise: 2e-4, rest: [[0.1, 0.01, 0.03], [0.08, 0.03, 0.01]]}\n"
+      "- points: {topic: /points, noise: 5e-4}\n";
+  const EstimationRun run =
+      this->run(4e5, sensors, "simulation: {duration: 0.4, rate: 60, step: 0.0005, sensors: {/points: {count: 100}}}\n");
+  EXPECT_NEAR(run.results.parameters.at(0).mean, 4e5, 0.02 * 4e5);
+}
+
+TEST_F(RoundTrip, FindsTheModulusFromImages) {
+  const std::string camera =
+      "simulation: {duration: 0.4, rate: 50, step: 0.001, sensors: {/camera/image_raw: {size: [480, 240], "
+      "focal_length: 3000, position: [0.05, -1, 0.005], target: [0.05, 0, 0.005]}}}\n";
+  const EstimationRun run = this->run(8e5, contour(), camera);
+  EXPECT_NEAR(run.results.parameters.at(0).mean, 8e5, 0.05 * 8e5);
+  EXPECT_GT(run.stage_samples.count("segment"), 0U);
+}
+
+TEST_F(RoundTrip, GivesTheSameBytesForTheSameInput) {
+  const EstimationRun first = run(4e5, vertices(), "simulation: {duration: 0.2, rate: 60, step: 0.001}\n");
+  const EstimationRun second = estimate_recording(model_, path("recording.bag"), 0, nothing);
+  EXPECT_EQ(estimates_csv(first.results), estimates_csv(second.results));
+  const std::string bag = read("recording.bag");
+  simulate_scene(load_scene(path("scene.yaml")), path("recording.bag"), nothing);
+  EXPECT_EQ(bag, read("recording.bag"));
+}
+
+TEST_F(RoundTrip, StopsAfterTheFramesAskedFor) {
+  run(4e5, vertices(), "simulation: {duration: 0.2, rate: 60, step: 0.001}\n");
+  EXPECT_EQ(estimate_recording(model_, path("recording.bag"), 5, nothing).results.frames.size(), 5U);
+}
+
+TEST_F(RoundTrip, ASceneIsTheTruth) {
+  const std::string estimated = write_model("scene.yaml", "{prior: 4e5, factor: 3}", vertices(),
+                                            "simulation: {duration: 0.2, rate: 60, step: 0.001}\n");
+  EXPECT_TRUE(says(input_error([&] { simulate_scene(load_scene(estimated), path("recording.bag"), nothing); }),
+                   {"young_modulus", "an estimated number"}));
+}
+
+TEST_F(RoundTrip, ASceneHasNoUnknownKeys) {
+  const auto load = [&](const std::string& simulation) {
+    return input_error(
+        [&] { load_scene(write_model("scene.yaml", "4e5", vertices(), "simulation: " + simulation + "\n")); });
+  };
+  EXPECT_TRUE(says(load("{duration: 0.2, rate: 60, step: 0.001, refin: 1}"), {"refin", "did you mean `refine`"}));
+  EXPECT_TRUE(says(load("{duration: 0.2, rate: 60}"), {"step"}));
+  EXPECT_TRUE(says(load("{duration: -1, rate: 60, step: 0.001}"), {"duration", "found -1"}));
+  EXPECT_TRUE(
+      says(load("{duration: 1, rate: 60, step: 0.001, sensors: {/tissue/vertexes: {every: 2}}}"), {"/tissue/vertexes"}));
+}
+
+}  // namespace
+}  // namespace tissue_stiffness

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "tissue_stiffness/meshing/box_mesh.hpp"
+#include "tissue_stiffness/meshing/mesh_io.hpp"
+#include "tissue_stiffness/types/error.hpp"
+
+namespace tissue_stiffness {
+
+/// A folder of its own for each test, with the mesh of a cantilever: 10 x 2 x 2 cm, held at x = 0.
+class Workbench : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (std::filesystem::temp_directory_path() / "tissue_stiffness_XXXXXX").string();
+    ASSERT_NE(mkdtemp(name.data()), nullptr);
+    folder_ = name;
+    save_mesh(make_box_mesh({0.1, 0.02, 0.02}, 5, 1, 1, 1), path("bar.vtk"));
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::string path(const std::string& name) const { return folder_ + "/" + name; }
+
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(path(name)) << text;
+    return path(name);
+  }
+
+  std::string read(const std::string& name) const {
+    std::ifstream stream(path(name));
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+
+  /// Model of the bar under gravity; `modulus` and `observations` as in a model file, `more` further keys.
+  std::string write_model(const std::string& name, const std::string& modulus, const std::string& observations,
+                          const std::string& more = "") const {
+    return write(name,
+                 "mesh: {file: bar.vtk}\n"
+                 "regions: {clamp: {box: {min: [-1.0e-6, -1, -1], max: [1.0e-6, 1, 1]}}}\n"
+                 "effects:\n"
+                 "- inertia: {density: 1060}\n"
+                 "- elasticity: {law: linear, young_modulus: " +
+                     modulus +
+                     ", poisson_ratio: 0.45}\n"
+                     "- fixed: {region: clamp}\n"
+                     "- gravity: {acceleration: [0, 0, -9.81]}\n"
+                     "observations:\n" +
+                     observations + more);
+  }
+
+  static std::string vertices() { return "- vertices: {topic: /tissue/vertices, noise: 2e-4}\n"; }
+  static std::string contour() {
+    return "- contour: {image: /camera/image_raw, camera_info: /camera/camera_info, noise: 3e-4}\n";
+  }
+
+  std::string folder_;
+};
+
+/// The message of the InputError that `call` throws; empty when it throws none.
+template <typename Call>
+std::string input_error(Call call) {
+  try {
+    call();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// Whether a one-line message holds all the words.
+inline ::testing::AssertionResult says(const std::string& message, const std::vector<std::string>& words) {
+  if (message.find('\n') != std::string::npos) return ::testing::AssertionFailure() << "more than one line: " << message;
+  for (const std::string& word : words) {
+    if (message.find(word) == std::string::npos)
+      return ::testing::AssertionFailure() << "no '" << word << "' in: " << message;
+  }
+  return ::testing::AssertionSuccess();
+}
+
+}  // namespace tissue_stiffness
