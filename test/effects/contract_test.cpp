@@ -1,0 +1,266 @@
+// What every effect of the library owes: a new effect is tested here without a new test.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <random>
+#include <set>
+
+#include "../box_model.hpp"
+#include "tissue_stiffness/effects/registry.hpp"
+#include "tissue_stiffness/forward/full_model.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+using Arguments = std::map<std::string, std::string>;
+
+std::string text(double value) {
+  std::ostringstream stream;
+  stream.precision(17);
+  stream << std::scientific << value;
+  return stream.str();
+}
+
+// A value of the parameter as YAML, repeated for a vector.
+std::string text(const ParameterSpec& parameter, double value) {
+  if (parameter.components == 1) return text(value);
+  std::string list;
+  for (int i = 0; i < parameter.components; ++i) list += (i > 0 ? ", " : "[") + text(value);
+  return list + "]";
+}
+
+// Something inside the bounds and away from their ends.
+double example(const ParameterSpec& parameter) {
+  if (parameter.lower > 0.0) return std::sqrt(parameter.lower * parameter.upper);
+  return parameter.lower + 0.6 * (parameter.upper - parameter.lower);
+}
+
+// Arguments that the spec accepts; keys that are no parameters are filled by what they are called everywhere.
+Arguments example_arguments(const EffectSpec& spec, const std::string& law = "linear", const std::string& region = "tip") {
+  Arguments arguments;
+  for (const ParameterSpec& parameter : spec.parameters) {
+    if (parameter.presence == ParameterSpec::Default::required)
+      arguments[parameter.name] = text(parameter, example(parameter));
+  }
+  const Arguments known{{"law", law}, {"point", "[0.03, 0, 0]"}, {"normal", "[1, 0.2, 0.1]"}, {"topic", "/load"}};
+  for (const auto& key : spec.keys) {
+    if (key.first == "region" && spec.name != "elasticity") arguments["region"] = region;
+    if (known.count(key.first) == 1) arguments[key.first] = known.at(key.first);
+  }
+  return arguments;
+}
+
+std::string entry(const std::string& name, const Arguments& arguments) {
+  std::string list;
+  for (const auto& argument : arguments) list += (list.empty() ? "" : ", ") + argument.first + ": " + argument.second;
+  return name + ": {" + list + "}";
+}
+
+// A held bar that sags, with the effect in question in place of its namesake or behind the others.
+std::vector<std::string> bar_with(const std::string& name, const Arguments& arguments, const std::string& law = "linear") {
+  std::vector<std::string> effects;
+  if (name != "inertia") effects.push_back("inertia: {density: 1000}");
+  if (name != "elasticity") effects.push_back("elasticity: {law: " + law + ", young_modulus: 3.0e4, poisson_ratio: 0.4}");
+  effects.push_back("fixed: {region: clamp}");
+  effects.push_back("gravity: {acceleration: [0.5, 1, -2]}");
+  if (!name.empty()) effects.push_back(entry(name, arguments));
+  return effects;
+}
+
+std::string refused(const std::string& name, const Arguments& arguments) {
+  static const TetMesh mesh = bar_mesh(2);
+  return refusal([&] { const Model model(box_settings(bar_with(name, arguments)), mesh); });
+}
+
+TEST(EveryEffect, IsDescribedAndHasAFileOfItsName) {
+  std::set<std::string> names;
+  for (const EffectSpec& spec : effect_specs()) {
+    EXPECT_TRUE(names.insert(spec.name).second) << spec.name << " twice";
+    const std::string file = std::string(TISSUE_STIFFNESS_SOURCE_DIR) + "/src/effects/" + spec.name + ".cpp";
+    EXPECT_TRUE(std::ifstream(file).good()) << file;
+    EXPECT_FALSE(spec.summary.empty()) << spec.name;
+    EXPECT_FALSE(spec.formula.empty()) << spec.name;
+    EXPECT_FALSE(spec.source.empty()) << spec.name;
+    for (const auto& key : spec.keys) EXPECT_FALSE(key.second.empty()) << spec.name << "." << key.first;
+  }
+  EXPECT_GE(names.size(), 10U);
+}
+
+TEST(EveryEffect, HasUnitsAndBounds) {
+  for (const EffectSpec& spec : effect_specs()) {
+    for (const ParameterSpec& p : spec.parameters) {
+      const std::string name = spec.name + "." + p.name;
+      EXPECT_FALSE(p.name.empty() || p.symbol.empty() || p.unit.empty()) << name;
+      EXPECT_LT(p.lower, p.upper) << name;
+      EXPECT_TRUE(std::isfinite(p.lower) && std::isfinite(p.upper)) << name;
+      EXPECT_TRUE(p.components == 1 || p.components == 3) << name;
+      if (p.presence == ParameterSpec::Default::optional) {
+        EXPECT_TRUE(p.value >= p.lower && p.value <= p.upper) << name;
+      }
+    }
+  }
+}
+
+TEST(EveryEffect, IsBuiltFromItsSpec) {
+  for (const EffectSpec& spec : effect_specs()) {
+    EXPECT_EQ(refused(spec.name, example_arguments(spec)), "") << spec.name;
+  }
+}
+
+TEST(EveryEffect, RefusesAnUnknownKey) {
+  for (const EffectSpec& spec : effect_specs()) {
+    Arguments arguments = example_arguments(spec);
+    arguments["colour"] = "1";
+    EXPECT_NE(refused(spec.name, arguments).find(spec.name + ".colour"), std::string::npos) << spec.name;
+  }
+}
+
+TEST(EveryEffect, RefusesAMissingKey) {
+  for (const EffectSpec& spec : effect_specs()) {
+    for (const auto& argument : example_arguments(spec)) {
+      Arguments without = example_arguments(spec);
+      without.erase(argument.first);
+      const std::string message = refused(spec.name, without);
+      EXPECT_NE(message.find(argument.first), std::string::npos) << entry(spec.name, without) << " -> '" << message << "'";
+      EXPECT_NE(message.find(spec.name), std::string::npos) << message;
+    }
+  }
+}
+
+TEST(EveryEffect, RefusesAValueOutOfBounds) {
+  for (const EffectSpec& spec : effect_specs()) {
+    for (const ParameterSpec& p : spec.parameters) {
+      const double beyond = 0.1 * (p.upper - p.lower);
+      for (const double value : {p.lower - beyond, p.upper + beyond}) {
+        Arguments arguments = example_arguments(spec);
+        arguments[p.name] = text(p, value);
+        const std::string message = refused(spec.name, arguments);
+        EXPECT_NE(message.find(spec.name + "." + p.name), std::string::npos)
+            << entry(spec.name, arguments) << " -> '" << message << "'";
+        EXPECT_NE(message.find("allowed"), std::string::npos) << message;
+      }
+      Arguments arguments = example_arguments(spec);
+      arguments[p.name] = "soft";
+      EXPECT_NE(refused(spec.name, arguments).find(spec.name + "." + p.name), std::string::npos) << spec.name;
+    }
+  }
+}
+
+TEST(EveryEffect, RefusesARegionThatIsNotThere) {
+  int checked = 0;
+  for (const EffectSpec& spec : effect_specs()) {
+    for (const auto& key : spec.keys) {
+      if (key.first != "region") continue;
+      Arguments arguments = example_arguments(spec);
+      arguments["region"] = "tail";
+      const std::string message = refused(spec.name, arguments);
+      EXPECT_NE(message.find("tail"), std::string::npos) << spec.name;
+      EXPECT_NE(message.find("clamp"), std::string::npos) << "names no region that there is: " << message;
+      ++checked;
+    }
+  }
+  EXPECT_GE(checked, 4);
+}
+
+// Loads that are there from the start.
+void feed(Model& model) {
+  for (auto& course : model.courses()) {
+    course.second->add(0.0, Eigen::VectorXd::LinSpaced(course.second->components(), 1.0, 2.0));
+  }
+}
+
+// Strains of some tens of per cent, nothing symmetric about them.
+Eigen::VectorXd large_displacement(const TetMesh& mesh) {
+  std::mt19937 engine(11);
+  std::uniform_real_distribution<double> value(-3e-4, 3e-4);
+  Eigen::VectorXd u(3 * mesh.node_count());
+  for (int i = 0; i < mesh.node_count(); ++i) {
+    const Eigen::Vector3d x = mesh.nodes.col(i);
+    u.segment<3>(3 * i) = Eigen::Vector3d(0.2 * x.x(), 0.01 * std::sin(20.0 * x.x()), 2.0 * x.x() * x.x());
+    for (int k = 0; k < 3; ++k) u[3 * i + k] += value(engine);
+  }
+  return u;
+}
+
+// The surface is closed, so that a follower pressure's tangent is symmetric and must match to the last entry.
+TEST(EveryEffect, TangentEqualsFiniteDifferencesOfTheForce) {
+  const TetMesh mesh = bar_mesh(2);
+  const Eigen::VectorXd u = large_displacement(mesh), v = Eigen::VectorXd::Zero(u.size());
+  int nonlinear = 0;
+  for (const EffectSpec& spec : effect_specs()) {
+    Model model(box_settings(bar_with(spec.name, example_arguments(spec, "neo_hookean", "skin"), "neo_hookean")), mesh);
+    feed(model);
+    const Model::Part& part = model.parts().back();
+    const Eigen::VectorXd p = part.parameters(model.theta(model.prior_mean()));
+    const auto force = [&](const Eigen::VectorXd& at) {
+      Eigen::VectorXd f = Eigen::VectorXd::Zero(u.size());
+      part.effect->add_force({0.1, at, v}, p, f);
+      return f;
+    };
+    SparseMatrix tangent = model.fem().pattern();
+    part.effect->add_stiffness({0.1, u, v}, p, tangent);
+    if (!part.effect->nonlinear()) {
+      EXPECT_EQ(force(u).norm(), 0.0) << spec.name << " has a nonlinear force but does not say so";
+      EXPECT_EQ(tangent.norm(), 0.0) << spec.name;
+      continue;
+    }
+    ++nonlinear;
+    EXPECT_GT(force(u).norm(), 0.0) << spec.name << ": the example does nothing";
+    const double h = 1e-8;
+    Eigen::MatrixXd differences(u.size(), u.size());
+    for (Eigen::Index j = 0; j < u.size(); ++j) {
+      const Eigen::VectorXd step = h * Eigen::VectorXd::Unit(u.size(), j);
+      differences.col(j) = -(force(u + step) - force(u - step)) / (2.0 * h);
+    }
+    const double error = (Eigen::MatrixXd(tangent) - differences).cwiseAbs().maxCoeff() / differences.cwiseAbs().maxCoeff();
+    std::printf("%s: tangent against differences %.1e\n", spec.name.c_str(), error);
+    EXPECT_LT(error, 1e-6) << spec.name;
+  }
+  EXPECT_GE(nonlinear, 3);
+}
+
+bool can_be_absent(const EffectSpec& spec) {
+  for (const ParameterSpec& p : spec.parameters) {
+    if (!(p.absent >= p.lower && p.absent <= p.upper)) return false;
+  }
+  return !spec.parameters.empty();
+}
+
+Eigen::VectorXd swing(const std::vector<std::string>& effects, const TetMesh& mesh) {
+  Model model(box_settings(effects), mesh);
+  feed(model);
+  FullModel::Options options;
+  options.step = 0.002;
+  const auto run = FullModel(model, options).start(model.theta(model.prior_mean()), 0.0);
+  run->advance(0.02);
+  return run->displacement();
+}
+
+TEST(EveryEffect, AtItsAbsentValueTheModelWithoutItComesBackBitForBit) {
+  const TetMesh mesh = bar_mesh(3);
+  for (const std::string law : {"linear", "neo_hookean"}) {
+    const Eigen::VectorXd without = swing(bar_with("", {}, law), mesh);
+    EXPECT_GT(without.norm(), 1e-4);
+    int compared = 0;
+    for (const EffectSpec& spec : effect_specs()) {
+      if (!can_be_absent(spec)) continue;
+      Arguments absent = example_arguments(spec, law);
+      for (const ParameterSpec& p : spec.parameters) absent[p.name] = text(p, p.absent);
+      EXPECT_EQ(swing(bar_with(spec.name, absent, law), mesh), without) << spec.name << ", " << law;
+      EXPECT_NE(swing(bar_with(spec.name, example_arguments(spec, law), law), mesh), without)
+          << spec.name << " does nothing at all";
+      ++compared;
+    }
+    EXPECT_GE(compared, 6);
+  }
+}
+
+TEST(UnknownEffect, IsRefusedWithTheLibrary) {
+  const std::string message = refused("elasticty", {});
+  EXPECT_NE(message.find("elasticty"), std::string::npos);
+  EXPECT_NE(message.find("viscous_damping"), std::string::npos) << message;
+}
+
+}  // namespace
+}  // namespace tissue_stiffness
