@@ -1,5 +1,6 @@
 #include "tissue_stiffness/tools/print_effects.hpp"
 
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -29,6 +30,11 @@ std::string name_of(const ParameterSpec& spec) {
   return spec.name + (spec.components > 1 ? " [x, y, z]" : "");
 }
 
+std::string sentence(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text + ".";
+}
+
 /// A cell of a table must not hold the table's own mark.
 std::string cell(std::string text) {
   for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, "\\");
@@ -55,7 +61,7 @@ void print_effects_markdown(std::ostream& out) {
          "specification.\n";
   for (const EffectSpec& effect : effect_specs()) {
     out << "\n## `" << effect.name << "`\n\n"
-        << effect.summary << ".\n\nFormula: `" << effect.formula << "`. Source: " << effect.source << ".\n";
+        << sentence(effect.summary) << "\n\nFormula: `" << effect.formula << "`. Source: " << effect.source << ".\n";
     if (!effect.parameters.empty()) out << "\n| parameter | symbol | unit | allowed | default |\n|---|---|---|---|---|\n";
     for (const ParameterSpec& spec : effect.parameters) {
       out << "| `" << name_of(spec) << "` | " << cell(spec.symbol) << " | " << cell(spec.unit) << " | " << range(spec)

@@ -90,5 +90,11 @@ TEST_F(Executables, PrintTheLibrary) {
   EXPECT_NE(page.text.find("| `young_modulus` | E | Pa |"), std::string::npos) << page.text;
 }
 
+TEST_F(Executables, TheDocumentedLibraryIsTheLibrary) {
+  std::ifstream page(std::string(TISSUE_STIFFNESS_SOURCE_DIR) + "/doc/effects.md");
+  const std::string documented{std::istreambuf_iterator<char>(page), {}};
+  EXPECT_EQ(documented, call("effects --markdown").text) << "run `scripts/run effects --markdown > doc/effects.md`";
+}
+
 }  // namespace
 }  // namespace tissue_stiffness
