@@ -67,10 +67,10 @@ class ContactPlane : public Effect {
     const double stiffness = p[0] > 0.0 ? p[0] : default_stiffness_;
     for (int f = 0; f < mesh_.facet_count(); ++f) {
       const Eigen::Matrix3Xd x = facet_nodes(mesh_, f, &u);
-      const Eigen::RowVectorXd height = normal_.transpose() * (x.colwise() - point_);
+      const Eigen::RowVectorXd height = (normal_.transpose() * (x.colwise() - point_)).array() - p[1];
       if (height.minCoeff() > 0.5 * (height.maxCoeff() - height.minCoeff())) continue;  // cannot dip between nodes
       for (int q = 0; q < rule_.points(); ++q) {
-        const double gap = height * rule_.shape(q) - p[1];
+        const double gap = height * rule_.shape(q);
         if (gap >= 0.0) continue;
         act(f, q, gap, stiffness * rule_.weight(q) * rule_.normal(facet_nodes(mesh_, f), q).norm());
       }

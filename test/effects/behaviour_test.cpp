@@ -1,0 +1,192 @@
+// What each effect declares to do, against sums and decays by hand.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "../box_model.hpp"
+#include "tissue_stiffness/fem/newmark.hpp"
+#include "tissue_stiffness/forward/full_model.hpp"
+#include "tissue_stiffness/meshing/elevate.hpp"
+#include "tissue_stiffness/meshing/surface.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr double kVolume = 0.10 * 0.02 * 0.02, kDensity = 1000.0;
+const std::string kInertia = "inertia: {density: 1000}";
+const std::string kLinear = "elasticity: {law: linear, young_modulus: 3.0e4, poisson_ratio: 0.4}";
+const std::string kFinite = "elasticity: {law: neo_hookean, young_modulus: 3.0e4, poisson_ratio: 0.4}";
+
+Eigen::VectorXd zero(const Model& model) {
+  return Eigen::VectorXd::Zero(model.fem().dof_count());
+}
+Eigen::VectorXd prior(const Model& model) {
+  return model.theta(model.prior_mean());
+}
+
+Eigen::Vector3d resultant(const Eigen::VectorXd& force) {
+  return Eigen::Map<const Eigen::Matrix3Xd>(force.data(), 3, force.size() / 3).rowwise().sum();
+}
+
+Eigen::Vector3d moment(const TetMesh& mesh, const Eigen::VectorXd& u, const Eigen::VectorXd& force) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int i = 0; i < mesh.node_count(); ++i) {
+    sum += (mesh.nodes.col(i) + u.segment<3>(3 * i)).cross(force.segment<3>(3 * i));
+  }
+  return sum;
+}
+
+// Whole force at displacement u, less the elastic one.
+Eigen::VectorXd load(Model& model, double time, const Eigen::VectorXd& u) {
+  Eigen::VectorXd elastic = zero(model);
+  for (const Model::Part& part : model.parts()) {
+    if (part.label == "elasticity") part.effect->add_force({time, u, zero(model)}, part.parameters(prior(model)), elastic);
+  }
+  const ModelSystem system(model, prior(model));
+  return system.force(time, u, zero(model)) - elastic + model.stiffness(prior(model)) * u;
+}
+
+TEST(Gravity, WeighsTheBodyAndTheAddedMass) {
+  const TetMesh mesh = bar_mesh();
+  Model model(
+      box_settings({kInertia, kLinear, "added_mass: {region: tip, mass: 0.05}", "gravity: {acceleration: [1, -2, -9.81]}"}),
+      mesh);
+  const Eigen::Vector3d weight = (kDensity * kVolume + 0.05) * Eigen::Vector3d(1.0, -2.0, -9.81);
+  EXPECT_LT((resultant(load(model, 0.0, zero(model))) - weight).norm(), 1e-12 * weight.norm());
+}
+
+TEST(Gravity, LetsABodyWithAddedMassFallFreely) {
+  const TetMesh mesh = bar_mesh();
+  Model model(
+      box_settings({kInertia, kLinear, "added_mass: {region: tip, mass: 0.05}", "gravity: {acceleration: [0, 0, -9.81]}"}),
+      mesh);
+  FullModel::Options options;
+  options.step = 0.01;
+  const auto run = FullModel(model, options).start(prior(model), 0.0);
+  run->advance(0.1);
+  for (int i = 0; i < mesh.node_count(); ++i) {
+    EXPECT_NEAR(run->displacement()[3 * i + 2], -0.5 * 9.81 * 0.01, 1e-10);
+  }
+}
+
+TEST(AddedMass, SitsOnItsRegion) {
+  const TetMesh mesh = bar_mesh();
+  const Model bare(box_settings({kInertia, kLinear}), mesh);
+  const Model loaded(box_settings({kInertia, kLinear, "added_mass: {region: tip, mass: 0.05}"}), mesh);
+  const SparseMatrix extra = loaded.mass(prior(loaded)) - bare.mass(prior(bare));
+  for (int i = 0; i < mesh.node_count(); ++i) {
+    const double row = extra.row(3 * i).sum();
+    EXPECT_TRUE(row == 0.0 || mesh.nodes(0, i) > 0.1 - 1e-9);
+  }
+  // Rotary inertia about y of a thin square plate at x = 0.1: m (x^2 + (z^2 mean)).
+  Eigen::VectorXd spin = zero(loaded);
+  for (int i = 0; i < mesh.node_count(); ++i) {
+    spin.segment<3>(3 * i) = Eigen::Vector3d::UnitY().cross(mesh.nodes.col(i));
+  }
+  EXPECT_NEAR(spin.dot(extra * spin), 0.05 * (0.1 * 0.1 + 0.02 * 0.02 / 3.0), 1e-12);
+}
+
+Eigen::VectorXd one(double value) {
+  return Eigen::VectorXd::Constant(1, value);
+}
+
+TEST(Pressure, OnAPatchIsPressureTimesArea) {
+  const TetMesh mesh = bar_mesh();
+  Model model(box_settings({kInertia, kLinear, "pressure: {region: top, topic: /p, scale: 0.5}"}), mesh);
+  model.courses().at("/p")->add(0.0, one(0.0));
+  model.courses().at("/p")->add(1.0, one(800.0));
+  const Eigen::VectorXd force = load(model, 0.25, zero(model));
+  const Eigen::Vector3d expected(0.0, 0.0, -0.5 * 200.0 * 0.10 * 0.02);
+  EXPECT_LT((resultant(force) - expected).norm(), 1e-13 * expected.norm());
+  const Eigen::Vector3d arm(0.05, 0.01, 0.02);
+  EXPECT_LT((moment(mesh, zero(model), force) - arm.cross(expected)).norm(), 1e-13 * expected.norm());
+}
+
+TEST(Pressure, FollowsTheSurfaceWhenTheStrainIsFinite) {
+  const TetMesh mesh = bar_mesh();
+  Model model(box_settings({kInertia, kFinite, "pressure: {region: top, topic: /p}"}), mesh);
+  model.courses().at("/p")->add(0.0, one(300.0));
+  // Turned about y and stretched along the bar: the area is larger, the normal another one.
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.8, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  const Eigen::Matrix3d deformation = turn * Eigen::Vector3d(1.5, 0.9, 0.8).asDiagonal();
+  Eigen::VectorXd u = zero(model);
+  for (int i = 0; i < mesh.node_count(); ++i) u.segment<3>(3 * i) = deformation * mesh.nodes.col(i) - mesh.nodes.col(i);
+  const Eigen::Vector3d expected = -300.0 * (1.5 * 0.10) * (0.9 * 0.02) * (turn * Eigen::Vector3d::UnitZ());
+  EXPECT_LT((resultant(load(model, 0.0, u)) - expected).norm(), 1e-12 * expected.norm());
+}
+
+// The symmetric part of a follower's derivative is what the stiffness holds where the loaded surface has an edge.
+TEST(Pressure, TangentOnAPatchIsTheSymmetricPart) {
+  const TetMesh mesh = bar_mesh(2);
+  Model model(box_settings({kInertia, kFinite, "pressure: {region: top, topic: /p}"}), mesh);
+  model.courses().at("/p")->add(0.0, one(300.0));
+  const Model::Part& part = model.parts().back();
+  const Eigen::VectorXd u = 0.01 * Eigen::VectorXd::LinSpaced(zero(model).size(), 0.0, 30.0).array().sin();
+  const auto force = [&](const Eigen::VectorXd& at) {
+    Eigen::VectorXd f = zero(model);
+    part.effect->add_force({0.0, at, zero(model)}, part.parameters(prior(model)), f);
+    return f;
+  };
+  Eigen::MatrixXd d(u.size(), u.size());
+  for (Eigen::Index j = 0; j < u.size(); ++j) {
+    const Eigen::VectorXd h = 1e-6 * Eigen::VectorXd::Unit(u.size(), j);
+    d.col(j) = -(force(u + h) - force(u - h)) / 2e-6;
+  }
+  SparseMatrix tangent = model.fem().pattern();
+  part.effect->add_stiffness({0.0, u, zero(model)}, part.parameters(prior(model)), tangent);
+  const Eigen::MatrixXd symmetric = 0.5 * (d + d.transpose());
+  EXPECT_LT((Eigen::MatrixXd(tangent) - symmetric).norm(), 1e-8 * symmetric.norm());
+  EXPECT_GT((d - symmetric).norm(), 1e-3 * symmetric.norm());
+}
+
+// A box with a hole of one cell in its middle.
+TetMesh hollow_box() {
+  TetMesh mesh = make_box_mesh({0.03, 0.03, 0.03}, 3, 3, 3, 1);
+  Eigen::MatrixXi kept(4, mesh.tet_count());
+  Eigen::Index count = 0;
+  for (int t = 0; t < mesh.tet_count(); ++t) {
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    for (int k = 0; k < 4; ++k) centre += 0.25 * mesh.nodes.col(mesh.tets(k, t));
+    if ((centre - Eigen::Vector3d::Constant(0.015)).cwiseAbs().maxCoeff() > 0.005) kept.col(count++) = mesh.tets.col(t);
+  }
+  mesh.tets = kept.leftCols(count);
+  set_boundary_facets(mesh, "hollow box");
+  elevate(mesh);
+  return mesh;
+}
+
+TEST(Pressure, InAClosedCavityHasNoResultant) {
+  const TetMesh mesh = hollow_box();
+  for (const std::string& law : {kLinear, kFinite}) {
+    ModelSettings settings = box_settings({kInertia, law, "pressure: {region: cavity, topic: /p}"});
+    settings.regions = {{"cavity", BoxShape{Eigen::Vector3d::Constant(0.009), Eigen::Vector3d::Constant(0.021)}}};
+    Model model(settings, mesh);
+    model.courses().at("/p")->add(0.0, one(500.0));
+    const Eigen::VectorXd u = 3e-4 * Eigen::VectorXd::LinSpaced(zero(model).size(), 0.0, 90.0).array().sin();
+    const Eigen::VectorXd at = law == kFinite ? u : zero(model);
+    const Eigen::VectorXd force = load(model, 0.0, at);
+    const double face = 500.0 * 0.01 * 0.01;
+    EXPECT_GT(force.cwiseAbs().sum(), 5.9 * face);  // it pushes on six faces
+    EXPECT_LT(resultant(force).norm(), 1e-10 * face);
+    EXPECT_LT(moment(mesh, at, force).norm(), 1e-10 * face);
+    const Eigen::VectorXd outwards = Eigen::Map<const Eigen::VectorXd>(mesh.nodes.data(), mesh.nodes.size());
+    EXPECT_GT(force.dot(outwards), 0.0);  // a pressure above zero widens the cavity
+  }
+}
+
+TEST(Traction, ResultantIsTheMeasuredForce) {
+  const TetMesh mesh = bar_mesh();
+  Model model(box_settings({kInertia, kLinear, "traction: {region: tip, topic: /w, scale: 2}"}), mesh);
+  Eigen::VectorXd wrench(6);
+  wrench << 0.3, -0.2, 0.5, 9.0, 9.0, 9.0;
+  model.courses().at("/w")->add(0.0, wrench);
+  const Eigen::VectorXd force = load(model, 0.0, zero(model));
+  const Eigen::Vector3d expected = 2.0 * wrench.head<3>();
+  EXPECT_LT((resultant(force) - expected).norm(), 1e-13);
+  const Eigen::Vector3d centre(0.1, 0.01, 0.01);  // spread evenly: no torque about the patch's centre
+  EXPECT_LT((moment(mesh, zero(model), force) - centre.cross(expected)).norm(), 1e-13);
+}
+
+}  // namespace
+}  // namespace tissue_stiffness
