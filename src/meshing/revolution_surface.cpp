@@ -39,11 +39,13 @@ struct Ring {
   int vertex(int i) const { return first + i % count; }
 };
 
-// Triangles between two rings, always cutting the way that turns less.
+// Triangles between two rings, always along the diagonal that turns less.
 void stitch(const Ring& upper, const Ring& lower, std::vector<Eigen::Vector3i>& triangles) {
   int i = 0, j = 0;
   while (i < upper.count || j < lower.count) {
-    if (j == lower.count || (i < upper.count && upper.turn(i + 1) < lower.turn(j + 1))) {
+    const double along_upper = std::abs(upper.turn(i + 1) - lower.turn(j));
+    const double along_lower = std::abs(lower.turn(j + 1) - upper.turn(i));
+    if (j == lower.count || (i < upper.count && along_upper < along_lower)) {
       triangles.emplace_back(upper.vertex(i), lower.vertex(j), upper.vertex(i + 1));
       ++i;
     } else {
