@@ -37,7 +37,8 @@ class AddedMass : public Effect {
         for (std::size_t b = 0; b < local.size(); ++b) {
           for (std::size_t a = 0; a < local.size(); ++a) {
             const double n = rule.shape(q)[static_cast<Eigen::Index>(a)] * rule.shape(q)[static_cast<Eigen::Index>(b)];
-            context.fem.add_block(unit_mass_, mesh.facet_tet[f], local[a], local[b], area * n * Eigen::Matrix3d::Identity());
+            context.fem.add_block(unit_mass_, mesh.facet_tet[f], local[a], local[b],
+                                  area * n * Eigen::Matrix3d::Identity());
           }
         }
       }

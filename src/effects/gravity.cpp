@@ -25,6 +25,8 @@ EffectSpec gravity_spec() {
   return spec;
 }
 
-std::unique_ptr<Effect> make_gravity(const Value&, const EffectContext&) { return std::make_unique<Gravity>(); }
+std::unique_ptr<Effect> make_gravity(const Value&, const EffectContext&) {
+  return std::make_unique<Gravity>();
+}
 
 }  // namespace tissue_stiffness::effects

@@ -23,6 +23,8 @@ EffectSpec mass_damping_spec() {
   return spec;
 }
 
-std::unique_ptr<Effect> make_mass_damping(const Value&, const EffectContext&) { return std::make_unique<MassDamping>(); }
+std::unique_ptr<Effect> make_mass_damping(const Value&, const EffectContext&) {
+  return std::make_unique<MassDamping>();
+}
 
 }  // namespace tissue_stiffness::effects

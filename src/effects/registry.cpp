@@ -18,15 +18,16 @@ const std::vector<Maker>& makers() {
 
 std::size_t index_of(const EffectSettings& settings) {
   const auto& specs = effect_specs();
-  const auto at =
-      std::find_if(specs.begin(), specs.end(), [&](const EffectSpec& s) { return s.name == settings.name; });
+  const auto at = std::find_if(specs.begin(), specs.end(), [&](const EffectSpec& s) { return s.name == settings.name; });
   if (at != specs.end()) return static_cast<std::size_t>(at - specs.begin());
   std::string names;
   for (const auto& spec : specs) names += (names.empty() ? "" : ", ") + spec.name;
   throw InputError(settings.arguments.path(), "effect '" + settings.name + "'", names);
 }
 
-Quantity default_value(const ParameterSpec& spec) { return {Quantity::Kind::known, spec.value, 0.0}; }
+Quantity default_value(const ParameterSpec& spec) {
+  return {Quantity::Kind::known, spec.value, 0.0};
+}
 
 void read_vector(const Value& value, const ParameterSpec& spec, std::vector<Quantity>& out) {
   const std::vector<Value>& items = value.items();
@@ -47,7 +48,9 @@ const std::vector<EffectSpec>& effect_specs() {
   return list;
 }
 
-const EffectSpec& effect_spec(const EffectSettings& settings) { return effect_specs()[index_of(settings)]; }
+const EffectSpec& effect_spec(const EffectSettings& settings) {
+  return effect_specs()[index_of(settings)];
+}
 
 std::vector<Quantity> read_parameters(const EffectSettings& settings) {
   std::vector<Quantity> out;

@@ -18,17 +18,39 @@ Estimator::Estimator(const ModelSettings& settings, const TetMesh& mesh)
 Estimator::~Estimator() = default;
 Estimator::Estimator(Estimator&&) noexcept = default;
 
-const std::vector<LoadInput>& Estimator::load_inputs() const { return implementation_->scheme->model().load_inputs(); }
-void Estimator::set_first_stamp(double time) { implementation_->scheme->set_first_stamp(time); }
-void Estimator::add_load(const LoadSample& sample) { implementation_->scheme->add_load(sample); }
-StepResult Estimator::step(const Frame& frame) { return implementation_->scheme->step(frame); }
-void Estimator::reset() { implementation_->scheme->reset(); }
-const TetMesh& Estimator::mesh() const { return implementation_->scheme->model().mesh(); }
-const Estimate& Estimator::estimate() const { return implementation_->scheme->estimate(); }
-const Eigen::Matrix3Xd& Estimator::displacement() const { return implementation_->scheme->displacement(); }
-const Prediction& Estimator::prediction() const { return implementation_->scheme->prediction(); }
-std::vector<std::string> Estimator::description() const { return implementation_->scheme->description(); }
-std::vector<Misfit> Estimator::free_run() const { return implementation_->scheme->free_run(); }
+const std::vector<LoadInput>& Estimator::load_inputs() const {
+  return implementation_->scheme->model().load_inputs();
+}
+void Estimator::set_first_stamp(double time) {
+  implementation_->scheme->set_first_stamp(time);
+}
+void Estimator::add_load(const LoadSample& sample) {
+  implementation_->scheme->add_load(sample);
+}
+StepResult Estimator::step(const Frame& frame) {
+  return implementation_->scheme->step(frame);
+}
+void Estimator::reset() {
+  implementation_->scheme->reset();
+}
+const TetMesh& Estimator::mesh() const {
+  return implementation_->scheme->model().mesh();
+}
+const Estimate& Estimator::estimate() const {
+  return implementation_->scheme->estimate();
+}
+const Eigen::Matrix3Xd& Estimator::displacement() const {
+  return implementation_->scheme->displacement();
+}
+const Prediction& Estimator::prediction() const {
+  return implementation_->scheme->prediction();
+}
+std::vector<std::string> Estimator::description() const {
+  return implementation_->scheme->description();
+}
+std::vector<Misfit> Estimator::free_run() const {
+  return implementation_->scheme->free_run();
+}
 
 std::map<std::string, Identifiability> Estimator::identifiability() const {
   return identify(implementation_->scheme->model(), implementation_->scheme->parameter_covariance());

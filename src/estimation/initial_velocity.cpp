@@ -28,7 +28,8 @@ Eigen::Vector3d centre(const Observation& observation, const Eigen::Vector3d& bo
   const Camera& camera = *observation.camera;
   const Eigen::Vector2d pixel = centroid(observation.contour->points);
   const Eigen::Vector2d ray((pixel.x() - camera.cx) / camera.fx, (pixel.y() - camera.cy) / camera.fy);
-  if (camera.projection == Camera::Projection::slice) return camera.model_from_sensor * Eigen::Vector3d(ray.x(), ray.y(), 0);
+  if (camera.projection == Camera::Projection::slice)
+    return camera.model_from_sensor * Eigen::Vector3d(ray.x(), ray.y(), 0);
   const double depth = (camera.model_from_sensor.inverse() * body_centre).z();
   return camera.model_from_sensor * Eigen::Vector3d(depth * ray.x(), depth * ray.y(), depth);
 }

@@ -1,5 +1,5 @@
-// Yang & Lin (2016) as printed: parameter-only unscented filter (eq. 9-23); the state of each key frame by finite differences
-// (eq. 24, 25); Algorithm 1, once through the frames as they come.
+// Yang & Lin (2016) as printed: parameter-only unscented filter (eq. 9-23); the state of each key frame by finite
+// differences (eq. 24, 25); Algorithm 1, once through the frames as they come.
 #include <cmath>
 #include <deque>
 
@@ -15,9 +15,9 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kHold = 1e4;       // stiffness with which an observed vertex holds the interpolated field, over K's diagonal
+constexpr double kHold = 1e4;  // stiffness with which an observed vertex holds the interpolated field, over K's diagonal
 constexpr int kStepsPerFrame = 4;
-constexpr double kTolerance = 1e-9; // [m]
+constexpr double kTolerance = 1e-9;  // [m]
 
 class PaperScheme : public Scheme {
  public:
@@ -94,8 +94,8 @@ class PaperScheme : public Scheme {
     DynamicState x;
     x.time = t1;
     x.displacement = fields_[1];
-    x.velocity = (fields_[1] - fields_[0]) / (t1 - t0);                                     // eq. 24
-    x.acceleration = (fields_[2] - 2.0 * fields_[1] + fields_[0]) / (step * step);          // eq. 25
+    x.velocity = (fields_[1] - fields_[0]) / (t1 - t0);                             // eq. 24
+    x.acceleration = (fields_[2] - 2.0 * fields_[1] + fields_[0]) / (step * step);  // eq. 25
     for (int k = 0; k < kStepsPerFrame; ++k) newmark.step(x, (t2 - t1) / kStepsPerFrame);
     return x;
   }

@@ -26,8 +26,8 @@ std::vector<QuadraturePoint> mass_rule() {
   std::vector<QuadraturePoint> rule;
   const auto vertex_orbit = [&rule](double a, double w) {
     const double b = 1.0 - 3.0 * a;
-    for (const Eigen::Vector3d& p : {Eigen::Vector3d(a, a, a), Eigen::Vector3d(b, a, a), Eigen::Vector3d(a, b, a),
-                                     Eigen::Vector3d(a, a, b)}) {
+    for (const Eigen::Vector3d& p :
+         {Eigen::Vector3d(a, a, a), Eigen::Vector3d(b, a, a), Eigen::Vector3d(a, b, a), Eigen::Vector3d(a, a, b)}) {
       rule.push_back({p, w / 6.0});
     }
   };

@@ -101,8 +101,7 @@ void NeoHookean::add_force(const Lame& lame, const Eigen::VectorXd& u, Eigen::Ve
 }
 
 void NeoHookean::add_stiffness(const Lame& lame, const Eigen::VectorXd& u, SparseMatrix& k) const {
-  fem_.nodes_per_element() == 10 ? stiffness<10>(fem_, elements_, lame, u, k)
-                                 : stiffness<4>(fem_, elements_, lame, u, k);
+  fem_.nodes_per_element() == 10 ? stiffness<10>(fem_, elements_, lame, u, k) : stiffness<4>(fem_, elements_, lame, u, k);
 }
 
 double NeoHookean::energy(const Lame& lame, const Eigen::VectorXd& u) const {

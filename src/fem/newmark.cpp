@@ -10,8 +10,8 @@ namespace {
 
 constexpr int kMaxIterations = 40;
 constexpr int kMaxHalvings = 10;
-constexpr double kSlow = 0.4;           // a contraction worse than this asks for a fresh factor
-constexpr double kSameStep = 1e-3;      // relative change of the step that a factor survives
+constexpr double kSlow = 0.4;       // a contraction worse than this asks for a fresh factor
+constexpr double kSameStep = 1e-3;  // relative change of the step that a factor survives
 
 void zero_fixed(Eigen::VectorXd& x, const std::vector<char>& fixed) {
   for (Eigen::Index i = 0; i < x.size(); ++i) {
@@ -42,13 +42,15 @@ void Newmark::initialise(DynamicState& state) const {
   state.acceleration = solver.solve(f);
 }
 
-void Newmark::step(DynamicState& state, double step) { cut_step(state, step, 0); }
+void Newmark::step(DynamicState& state, double step) {
+  cut_step(state, step, 0);
+}
 
 void Newmark::cut_step(DynamicState& state, double step, int depth) {
   if (try_step(state, step)) return;
   if (depth == kMaxHalvings) {
-    throw NumericalError("time step at " + std::to_string(state.time) + " s diverges, even cut to " +
-                         std::to_string(step) + " s");
+    throw NumericalError("time step at " + std::to_string(state.time) + " s diverges, even cut to " + std::to_string(step) +
+                         " s");
   }
   DynamicState half = state;
   cut_step(half, 0.5 * step, depth + 1);
@@ -56,7 +58,8 @@ void Newmark::cut_step(DynamicState& state, double step, int depth) {
   state = std::move(half);
 }
 
-// Residual of the balance at the weighted instants for the displacement increment x; `middle` gets the state at 1 - alpha_f.
+// Residual of the balance at the weighted instants for the displacement increment x; `middle` gets the state at 1 -
+// alpha_f.
 Eigen::VectorXd Newmark::residual(const DynamicState& s, const Eigen::VectorXd& x, double h, DynamicState& middle) const {
   const Eigen::VectorXd a = (x - h * s.velocity) / (beta_ * h * h) - (0.5 / beta_ - 1.0) * s.acceleration;
   const Eigen::VectorXd v = s.velocity + h * ((1.0 - gamma_) * s.acceleration + gamma_ * a);

@@ -5,7 +5,9 @@ namespace {
 
 constexpr std::array<std::array<int, 2>, 6> kEdges{{{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
 
-Eigen::Vector4d barycentric(const Eigen::Vector3d& rst) { return {1.0 - rst.sum(), rst.x(), rst.y(), rst.z()}; }
+Eigen::Vector4d barycentric(const Eigen::Vector3d& rst) {
+  return {1.0 - rst.sum(), rst.x(), rst.y(), rst.z()};
+}
 
 }  // namespace
 

@@ -5,10 +5,20 @@
 
 #include "tissue_stiffness/types/error.hpp"
 
-// Trajectories run in parallel, one solver each: threads inside BLAS would only get in their way.
+// Trajectories run in parallel, one solver each: threads inside BLAS or CHOLMOD would only get in their way.
 extern "C" void openblas_set_num_threads(int) __attribute__((weak));
+extern "C" void omp_set_num_threads(int) __attribute__((weak));
 
 namespace tissue_stiffness {
+
+namespace {
+
+void quiet_threads() {
+  if (openblas_set_num_threads != nullptr) openblas_set_num_threads(1);
+  if (omp_set_num_threads != nullptr) omp_set_num_threads(1);
+}
+
+}  // namespace
 
 struct SparseSolver::Data {
   cholmod_common common{};
@@ -16,7 +26,7 @@ struct SparseSolver::Data {
   bool numeric = false;
 
   Data() {
-    if (openblas_set_num_threads != nullptr) openblas_set_num_threads(1);
+    quiet_threads();
     cholmod_start(&common);
 #ifdef TISSUE_STIFFNESS_CHOLMOD_SUPERNODAL
     common.supernodal = CHOLMOD_SUPERNODAL;
@@ -61,6 +71,7 @@ SparseSolver::SparseSolver(SparseSolver&&) noexcept = default;
 SparseSolver& SparseSolver::operator=(SparseSolver&&) noexcept = default;
 
 void SparseSolver::factorize(const SparseMatrix& matrix) {
+  quiet_threads();  // OpenMP keeps the number for each calling thread
   cholmod_sparse a = view(matrix);
   if (data_->factor == nullptr) data_->factor = cholmod_analyze(&a, &data_->common);
   data_->numeric = false;
@@ -73,10 +84,13 @@ void SparseSolver::factorize(const SparseMatrix& matrix) {
   data_->numeric = true;
 }
 
-bool SparseSolver::ready() const { return data_->numeric; }
+bool SparseSolver::ready() const {
+  return data_->numeric;
+}
 
 Eigen::MatrixXd SparseSolver::solve(const Eigen::MatrixXd& b) const {
   if (!data_->numeric) throw NumericalError("solve before a successful factorisation");
+  quiet_threads();
   cholmod_dense rhs{};
   rhs.nrow = static_cast<std::size_t>(b.rows());
   rhs.ncol = static_cast<std::size_t>(b.cols());
@@ -92,7 +106,9 @@ Eigen::MatrixXd SparseSolver::solve(const Eigen::MatrixXd& b) const {
   return result;
 }
 
-double SparseSolver::factor_size() const { return data_->common.lnz; }
+double SparseSolver::factor_size() const {
+  return data_->common.lnz;
+}
 
 void fix_dofs(SparseMatrix& matrix, const std::vector<char>& fixed, double diagonal) {
   for (int column = 0; column < matrix.outerSize(); ++column) {

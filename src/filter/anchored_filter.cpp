@@ -77,7 +77,9 @@ AnchoredFilter::Innovation AnchoredFilter::update(const Eigen::VectorXd& y, cons
   return out;
 }
 
-double AnchoredFilter::misfit_scale() const { return rows_ > 0 ? std::max(1.0, data_cost_ / rows_) : 1.0; }
+double AnchoredFilter::misfit_scale() const {
+  return rows_ > 0 ? std::max(1.0, data_cost_ / rows_) : 1.0;
+}
 
 Eigen::MatrixXd AnchoredFilter::total_information() const {
   Eigen::MatrixXd total = information_ / misfit_scale();

@@ -14,8 +14,7 @@ constexpr double kReach = 0.25;  // of the body's size: how far model and measur
 
 class ContourOperator : public ObservationOperator {
  public:
-  ContourOperator(const Model& model, const ObservationSettings& settings)
-      : mesh_(model.mesh()), settings_(settings) {
+  ContourOperator(const Model& model, const ObservationSettings& settings) : mesh_(model.mesh()), settings_(settings) {
     if (settings.region.empty()) {
       triangles_ = split_facets(mesh_);
     } else {
@@ -86,8 +85,8 @@ class ContourOperator : public ObservationOperator {
              Eigen::Vector3d((pixel.x() - camera.cx) / camera.fx, (pixel.y() - camera.cy) / camera.fy, 0.0);
     }
     const double depth = scale * camera.fx;
-    return camera.model_from_sensor * Eigen::Vector3d((pixel.x() - camera.cx) / camera.fx * depth,
-                                                      (pixel.y() - camera.cy) / camera.fy * depth, depth);
+    return camera.model_from_sensor *
+           Eigen::Vector3d((pixel.x() - camera.cx) / camera.fx * depth, (pixel.y() - camera.cy) / camera.fy * depth, depth);
   }
 
   const TetMesh& mesh_;

@@ -1,12 +1,17 @@
 #include "tissue_stiffness/forward/full_model.hpp"
 
 #include <cmath>
+#include <memory>
 #include <utility>
+
+#include "tissue_stiffness/fem/central_difference.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kTolerance = 1e-8;  // last Newton correction over the body's size
+constexpr double kTolerance = 1e-6;  // last Newton correction over the body's size
+constexpr double kExplicitSteps =
+    250;  // explicit steps that one call of advance() may take before implicit ones are cheaper
 
 double body_size(const TetMesh& mesh) {
   return (mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff()).norm();
@@ -25,15 +30,13 @@ class FullTrajectory : public Trajectory {
     for (Eigen::Index i = 0; i < n; ++i) {
       if (model.fixed()[static_cast<std::size_t>(i)] != 0) state_.velocity[i] = 0.0;
     }
-    newmark_.initialise(state_);
   }
 
   void advance(double time) override {
     const double span = time - state_.time;
     if (!(span > 0.0)) return;
-    const int steps = options_.step > 0.0 ? static_cast<int>(std::ceil(span / options_.step * (1.0 - 1e-9)))
-                                          : options_.steps_per_frame;
-    for (int k = 0; k < steps; ++k) newmark_.step(state_, span / steps);
+    if (!chosen_) choose(span);
+    explicit_steps_ ? central_->advance(state_, span) : implicit(span);
     state_.time = time;
   }
   double time() const override { return state_.time; }
@@ -41,10 +44,26 @@ class FullTrajectory : public Trajectory {
   Eigen::VectorXd velocity() const override { return state_.velocity; }
 
  private:
+  // Impacts are filmed so fast that a few explicit steps reach the next frame.
+  void choose(double span) {
+    chosen_ = true;
+    central_ = std::make_unique<CentralDifference>(system_, state_.time);
+    explicit_steps_ = options_.step <= 0.0 && span < kExplicitSteps * central_->largest_step();
+    explicit_steps_ ? central_->initialise(state_) : newmark_.initialise(state_);
+  }
+
+  void implicit(double span) {
+    const int steps =
+        options_.step > 0.0 ? static_cast<int>(std::ceil(span / options_.step * (1.0 - 1e-9))) : options_.steps_per_frame;
+    for (int k = 0; k < steps; ++k) newmark_.step(state_, span / steps);
+  }
+
   FullModel::Options options_;
   ModelSystem system_;
   Newmark newmark_;
+  std::unique_ptr<CentralDifference> central_;
   DynamicState state_;
+  bool chosen_ = false, explicit_steps_ = false;
 };
 
 }  // namespace
@@ -55,8 +74,10 @@ std::unique_ptr<Trajectory> FullModel::start(const Eigen::VectorXd& theta, doubl
 
 std::string FullModel::description() const {
   const std::string scheme = options_.spectral_radius < 1.0 ? "generalised-alpha" : "Newmark";
-  const std::string step = options_.step > 0.0 ? std::to_string(options_.step) + " s a step"
-                                               : std::to_string(options_.steps_per_frame) + " steps a frame";
+  const std::string step =
+      options_.step > 0.0 ? std::to_string(options_.step) + " s a step"
+                          : std::to_string(options_.steps_per_frame) + " steps a frame (explicit when fewer than " +
+                                std::to_string(static_cast<int>(kExplicitSteps)) + " stable steps span the first frame)";
   return "full: " + std::to_string(model_.fem().dof_count()) + " degrees of freedom, " + scheme + ", " + step;
 }
 

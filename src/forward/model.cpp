@@ -84,7 +84,10 @@ void Model::add_initial_velocity() {
   known_.tail<3>() = settings_.initial.velocity;
   if (settings_.initial.kind != InitialSettings::Kind::from_frames) return;
   for (int i = 0; i < 3; ++i) {
-    free_.push_back({std::string("initial.velocity_") + "xyz"[i], "m/s", {Quantity::Kind::normal, 0.0, 1.0}, -kSpeedLimit,
+    free_.push_back({std::string("initial.velocity_") + "xyz"[i],
+                     "m/s",
+                     {Quantity::Kind::normal, 0.0, 1.0},
+                     -kSpeedLimit,
                      kSpeedLimit});
     free_index_.push_back(static_cast<int>(offset) + i);
   }

@@ -150,8 +150,8 @@ std::unique_ptr<Trajectory> ReducedModel::start(const Eigen::VectorXd& theta, do
 }
 
 std::string ReducedModel::description() const {
-  return "reduced: " + std::to_string(basis_.cols()) + " load-dependent Ritz vectors for " +
-         std::to_string(basis_.rows()) + " degrees of freedom, exact in time";
+  return "reduced: " + std::to_string(basis_.cols()) + " load-dependent Ritz vectors for " + std::to_string(basis_.rows()) +
+         " degrees of freedom, exact in time";
 }
 
 }  // namespace tissue_stiffness

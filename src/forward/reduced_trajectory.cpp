@@ -8,8 +8,8 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kLoadStep = 0.004;    // [s] at most between two looks at a measured load
-constexpr double kSameStep = 1e-11;    // [s]
+constexpr double kLoadStep = 0.004;  // [s] at most between two looks at a measured load
+constexpr double kSameStep = 1e-11;  // [s]
 
 }  // namespace
 

@@ -13,8 +13,8 @@ class Course {
  public:
   explicit Course(int components) : components_(components) {}
 
-  /// Reads `time,value...` rows (s and SI units; a header line and # comments are skipped). Times count from the recording's
-  /// first stamp. Throws InputError naming file and line.
+  /// Reads `time,value...` rows (s and SI units; a header line and # comments are skipped). Times count from the
+  /// recording's first stamp. Throws InputError naming file and line.
   static Course from_csv(const std::string& file, int components);
 
   /// Samples may come late, but not twice at one time: the later value wins.

@@ -43,10 +43,10 @@ struct EffectContext {
   const TetMesh& mesh;
   const Discretisation& fem;
   const std::map<std::string, Region>& regions;
-  bool finite_strain;          ///< the model's elasticity is not small-strain
-  double young_modulus;        ///< prior median [Pa], a scale for penalties
-  std::string directory;       ///< of the model file, for relative paths
-  CourseTable& courses;        ///< time courses by topic
+  bool finite_strain;     ///< the model's elasticity is not small-strain
+  double young_modulus;   ///< prior median [Pa], a scale for penalties
+  std::string directory;  ///< of the model file, for relative paths
+  CourseTable& courses;   ///< time courses by topic
   std::vector<LoadInput>& inputs;
 
   /// Throws InputError naming the key and the regions there are.
@@ -63,7 +63,7 @@ struct MatrixTerm {
   Coefficient coefficient;
 };
 struct LoadTerm {
-  Eigen::VectorXd pattern;               ///< nodal forces of a unit load, 3n
+  Eigen::VectorXd pattern;  ///< nodal forces of a unit load, 3n
   Coefficient coefficient;
   std::shared_ptr<const Course> course;  ///< null: constant 1
   int component = 0;                     ///< of the course

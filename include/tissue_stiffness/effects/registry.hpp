@@ -11,7 +11,7 @@
 namespace tissue_stiffness {
 
 namespace effects {
-#define EFFECT(name)       \
+#define EFFECT(name)        \
   EffectSpec name##_spec(); \
   std::unique_ptr<Effect> make_##name(const Value& arguments, const EffectContext& context);
 #include "tissue_stiffness/effects/effects.def"

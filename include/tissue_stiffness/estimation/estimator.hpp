@@ -17,7 +17,7 @@ namespace tissue_stiffness {
 
 /// What one step of the estimator gives.
 struct StepResult {
-  bool used = false;          ///< false: the frame was skipped, `reason` says why, the estimate is unchanged
+  bool used = false;  ///< false: the frame was skipped, `reason` says why, the estimate is unchanged
   std::string reason;
   Estimate estimate;
   Misfit misfit;
@@ -42,16 +42,16 @@ class Estimator {
   /// Topics of the measured loads (pressure, wrench) that the model's effects ask for.
   const std::vector<LoadInput>& load_inputs() const;
 
-  /// Instant at which the body was at rest [s]: `time.start` counts from the recording's first stamp, which the caller knows.
-  /// Without this call the first frame's or load's time is taken as the first stamp.
+  /// Instant at which the body was at rest [s]: `time.start` counts from the recording's first stamp, which the caller
+  /// knows. Without this call the first frame's or load's time is taken as the first stamp.
   void set_first_stamp(double time);
 
   /// Feeds a load. Samples may come in any order up to the frame that needs them; between samples loads are linear in time,
   /// outside they are held.
   void add_load(const LoadSample& sample);
 
-  /// Predict, observe, update. A frame that is late, empty or makes the model diverge is skipped with the reason; never throws
-  /// on data.
+  /// Predict, observe, update. A frame that is late, empty or makes the model diverge is skipped with the reason; never
+  /// throws on data.
   StepResult step(const Frame& frame);
 
   /// Back to the prior; loads and frames are forgotten.

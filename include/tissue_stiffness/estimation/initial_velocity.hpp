@@ -14,7 +14,8 @@ struct VelocityEstimate {
 };
 
 /// Rigid velocity of the body over the first frames: the slope of the observed centre over time, which for two frames is
-/// eq. 24 of Yang & Lin (2016). An outline moves in the image plane only; along the line of sight the velocity is taken as 0.
+/// eq. 24 of Yang & Lin (2016). An outline moves in the image plane only; along the line of sight the velocity is taken as
+/// 0.
 VelocityEstimate velocity_from_frames(const Model& model, const std::vector<Frame>& frames);
 
 }  // namespace tissue_stiffness

@@ -12,8 +12,8 @@ namespace tissue_stiffness {
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
 /// Isoparametric Lagrange tetrahedra (4 or 10 nodes) at rest: shape gradients and weights at the quadrature points, and the
-/// sparsity pattern that every matrix of the model shares. Stiffness uses 1 (4 nodes) or 4 points (10 nodes, degree 2: exact
-/// for straight edges); mass uses a 14-point rule of degree 5 (Walkington 2000).
+/// sparsity pattern that every matrix of the model shares. Stiffness uses 1 (4 nodes) or 4 points (10 nodes, degree 2:
+/// exact for straight edges); mass uses a 14-point rule of degree 5 (Walkington 2000).
 class Discretisation {
  public:
   /// Throws InputError naming the element whose Jacobian is not positive.
@@ -72,8 +72,8 @@ class Discretisation {
   std::vector<int> slots_;
 };
 
-/// Shape functions and their derivatives with respect to the barycentric coordinates (r, s, t) of a 4- or 10-node tetrahedron,
-/// node order of TetMesh.
+/// Shape functions and their derivatives with respect to the barycentric coordinates (r, s, t) of a 4- or 10-node
+/// tetrahedron, node order of TetMesh.
 Eigen::VectorXd tet_shape(int nodes, const Eigen::Vector3d& rst);
 Eigen::MatrixXd tet_shape_derivative(int nodes, const Eigen::Vector3d& rst);
 

@@ -7,15 +7,15 @@
 
 namespace tissue_stiffness {
 
-/// Shape functions of 3- or 6-node facets at the points of a triangle rule (3 nodes: 3 points of degree 2, 6 nodes: 6 points of
-/// degree 4, Dunavant 1985), for surface loads.
+/// Shape functions of 3- or 6-node facets at the points of a triangle rule (3 nodes: 3 points of degree 2, 6 nodes: 6
+/// points of degree 4, Dunavant 1985), for surface loads.
 class FacetQuadrature {
  public:
   explicit FacetQuadrature(int nodes_per_facet);
 
   int points() const { return static_cast<int>(weights_.size()); }
-  double weight(int q) const { return weights_[q]; }                  ///< of the unit triangle; they sum to 1/2
-  auto shape(int q) const { return shape_.col(q); }                   ///< nodes
+  double weight(int q) const { return weights_[q]; }  ///< of the unit triangle; they sum to 1/2
+  auto shape(int q) const { return shape_.col(q); }   ///< nodes
   const Eigen::MatrixX2d& derivative(int q) const { return derivatives_[static_cast<std::size_t>(q)]; }  ///< nodes x 2
 
   /// Area-scaled outward normal dx/dr x dx/ds at point q, for nodal positions x (3 x nodes) [m^2]; |n| w sums to the area.

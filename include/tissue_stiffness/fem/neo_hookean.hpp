@@ -19,8 +19,8 @@ inline Lame lame(double young_modulus, double poisson_ratio) {
           young_modulus / (2.0 * (1.0 + poisson_ratio))};
 }
 
-/// Compressible neo-Hookean solid, psi = mu/2 (tr F^T F - 3 - 2 ln J) + lambda/2 (ln J)^2 (Bonet & Wood 2008, eq. 6.28), over the
-/// elements listed. All throw NumericalError naming the element that turned inside out.
+/// Compressible neo-Hookean solid, psi = mu/2 (tr F^T F - 3 - 2 ln J) + lambda/2 (ln J)^2 (Bonet & Wood 2008, eq. 6.28),
+/// over the elements listed. All throw NumericalError naming the element that turned inside out.
 class NeoHookean {
  public:
   NeoHookean(const Discretisation& fem, std::vector<int> elements) : fem_(fem), elements_(std::move(elements)) {}

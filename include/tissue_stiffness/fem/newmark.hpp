@@ -28,9 +28,9 @@ struct DynamicState {
 };
 
 /// Implicit steps of the generalised-alpha family (Chung & Hulbert 1993, eq. 7-19): second order, unconditionally stable.
-/// Spectral radius 1 here means Newmark's average acceleration (beta = 1/4, gamma = 1/2), which keeps the energy of a linear
-/// system. Newton iterations reuse the last factorisation and refresh it when they converge slowly; a step that still fails is
-/// cut in halves.
+/// Spectral radius 1 here means Newmark's average acceleration (beta = 1/4, gamma = 1/2), which keeps the energy of a
+/// linear system. Newton iterations reuse the last factorisation and refresh it when they converge slowly; a step that
+/// still fails is cut in halves.
 class Newmark {
  public:
   /// `tolerance`: largest last Newton correction [m].

@@ -41,8 +41,8 @@ class AnchoredFilter {
   Eigen::VectorXd mean() const;
   /// Inverse of the information; both count the noise as `misfit_scale` times larger in variance than the sensor's.
   Eigen::MatrixXd covariance() const;
-  /// Mean square of error over sigma at the anchor, at least 1: a model that cannot explain the data must not be sure of its
-  /// parameters (the reduced chi-square of Press et al. 2007, sec. 15.1).
+  /// Mean square of error over sigma at the anchor, at least 1: a model that cannot explain the data must not be sure of
+  /// its parameters (the reduced chi-square of Press et al. 2007, sec. 15.1).
   double misfit_scale() const;
   /// Log-posterior's quadratic part at the anchor so far: data cost plus the prior's.
   double cost() const;
@@ -52,7 +52,8 @@ class AnchoredFilter {
   /// Same by slopes alone: m x p, central differences over the spread.
   Eigen::MatrixXd slopes(const Eigen::MatrixXd& predictions) const;
 
-  /// Mean square of what a straight line through the sigma points misses, over sigma; falls with the fourth power of the spread.
+  /// Mean square of what a straight line through the sigma points misses, over sigma; falls with the fourth power of the
+  /// spread.
   double nonlinearity() const { return rows_ > 0 ? bend_cost_ / rows_ : 0.0; }
 
   /// True when the estimate is more than `far` spreads away from the anchor, or some spread is `wide` times its posterior

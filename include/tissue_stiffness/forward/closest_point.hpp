@@ -22,8 +22,8 @@ Eigen::Vector3d closest_on_triangle(const Eigen::Vector3d& p, const Eigen::Vecto
 /// Closest point of the rest surface by looking at every facet (corners only).
 SurfacePoint closest_surface_point(const TetMesh& mesh, const Eigen::Vector3d& query);
 
-/// Surface as plain triangles: a 6-node facet gives four. 3 x count, node numbers, counter-clockwise from outside; `facet` tells
-/// which facet each came from.
+/// Surface as plain triangles: a 6-node facet gives four. 3 x count, node numbers, counter-clockwise from outside; `facet`
+/// tells which facet each came from.
 struct SurfaceTriangles {
   Eigen::Matrix3Xi nodes;
   std::vector<int> facet;

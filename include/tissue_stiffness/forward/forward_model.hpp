@@ -8,13 +8,13 @@
 
 namespace tissue_stiffness {
 
-/// One free run of the model at fixed parameters, from rest at its start. Runs of one ForwardModel share only constant data, so
-/// sigma points advance in parallel.
+/// One free run of the model at fixed parameters, from rest at its start. Runs of one ForwardModel share only constant
+/// data, so sigma points advance in parallel.
 class Trajectory {
  public:
   virtual ~Trajectory() = default;
-  /// Integrates up to `time` [s]; earlier times are left where they are. Throws NumericalError when the step diverges however
-  /// small it is cut; the trajectory is then unusable.
+  /// Integrates up to `time` [s]; earlier times are left where they are. Throws NumericalError when the step diverges
+  /// however small it is cut; the trajectory is then unusable.
   virtual void advance(double time) = 0;
   virtual double time() const = 0;
   /// Nodal displacement, 3n [m].

@@ -11,9 +11,9 @@ namespace tissue_stiffness {
 class FullModel : public ForwardModel {
  public:
   struct Options {
-    double step = 0.0;               ///< [s]; 0: a fraction of the span that advance() is asked for
-    int steps_per_frame = 4;         ///< when step is 0
-    double spectral_radius = 1.0;    ///< of generalised-alpha at infinite frequency; 1 is Newmark's average acceleration
+    double step = 0.0;             ///< [s]; 0: a fraction of the span that advance() is asked for
+    int steps_per_frame = 4;       ///< when step is 0
+    double spectral_radius = 1.0;  ///< of generalised-alpha at infinite frequency; 1 is Newmark's average acceleration
   };
   FullModel(const Model& model, const Options& options) : model_(model), options_(options) {}
 

@@ -56,7 +56,8 @@ class Model {
 
   Eigen::Vector3d initial_velocity(const Eigen::VectorXd& theta) const { return theta.tail<3>(); }
 
-  /// Matrices at theta. `stiffness` leaves out laws that are not linear, `reference_stiffness` holds every law's rest stiffness.
+  /// Matrices at theta. `stiffness` leaves out laws that are not linear, `reference_stiffness` holds every law's rest
+  /// stiffness.
   SparseMatrix mass(const Eigen::VectorXd& theta) const;
   SparseMatrix stiffness(const Eigen::VectorXd& theta) const;
   SparseMatrix reference_stiffness(const Eigen::VectorXd& theta) const;

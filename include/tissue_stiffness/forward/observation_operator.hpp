@@ -22,8 +22,8 @@ class ObservationOperator {
   virtual Eigen::Matrix4Xd outline(const Observation&, const Eigen::VectorXd&) const { return {}; }
 };
 
-/// One operator for each entry of the model file's `observations`, in that order. Throws InputError for an entry that does not
-/// fit the model.
+/// One operator for each entry of the model file's `observations`, in that order. Throws InputError for an entry that does
+/// not fit the model.
 std::vector<std::unique_ptr<ObservationOperator>> make_observation_operators(const Model& model);
 
 std::unique_ptr<ObservationOperator> make_vertex_operator(const Model& model, const ObservationSettings& settings);

@@ -33,8 +33,8 @@ std::vector<OutlineSegment> silhouette(const SurfaceTriangles& triangles, const 
 std::vector<OutlineSegment> slice(const SurfaceTriangles& triangles, const Eigen::Matrix3Xd& positions,
                                   const Camera& camera, bool cavity);
 
-/// Signed distance in pixels from `point` along `normal` to the outline piece whose normal agrees and that is closest, within
-/// `reach` pixels. NaN when there is none; `segment` gets its number.
+/// Signed distance in pixels from `point` along `normal` to the outline piece whose normal agrees and that is closest,
+/// within `reach` pixels. NaN when there is none; `segment` gets its number.
 double distance_along_normal(const std::vector<OutlineSegment>& outline, const Eigen::Vector2d& point,
                              const Eigen::Vector2d& normal, double reach, std::size_t& segment);
 

@@ -7,9 +7,9 @@
 
 namespace tissue_stiffness {
 
-/// A linear model in a basis of load-dependent Ritz vectors (Wilson, Yuan & Dickens 1982): repeated K^-1 M solves from the static
-/// responses of the loads. In the basis every step is exact for loads that are linear in time (modal superposition), so the time
-/// step is no source of error. Several moduli: K = sum E_r K_r, the basis holds K^-1 K_r x too.
+/// A linear model in a basis of load-dependent Ritz vectors (Wilson, Yuan & Dickens 1982): repeated K^-1 M solves from the
+/// static responses of the loads. In the basis every step is exact for loads that are linear in time (modal superposition),
+/// so the time step is no source of error. Several moduli: K = sum E_r K_r, the basis holds K^-1 K_r x too.
 class ReducedModel : public ForwardModel {
  public:
   /// Throws InputError for a nonlinear model, NumericalError for a body that nothing holds together.

@@ -7,8 +7,8 @@
 
 namespace tissue_stiffness {
 
-/// Modal superposition in the reduced basis: (K_r - omega^2 M_r) phi = 0, then q'' + (alpha + beta omega^2) q' + omega^2 q = f,
-/// stepped with the exact transition for f linear over the step.
+/// Modal superposition in the reduced basis: (K_r - omega^2 M_r) phi = 0, then q'' + (alpha + beta omega^2) q' + omega^2 q
+/// = f, stepped with the exact transition for f linear over the step.
 class ReducedTrajectory : public Trajectory {
  public:
   ReducedTrajectory(const ReducedModel& reduced, const Eigen::VectorXd& theta, double start);

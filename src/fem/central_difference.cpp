@@ -1,0 +1,64 @@
+#include "tissue_stiffness/fem/central_difference.hpp"
+
+#include <cmath>
+
+#include "tissue_stiffness/types/error.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr double kSafety = 0.6;  // of the stable step at rest: elements get thinner, contact stiffens them
+constexpr int kPowerIterations = 60;
+
+}  // namespace
+
+CentralDifference::CentralDifference(const DynamicSystem& system, double start) : system_(system) {
+  const SparseMatrix& mass = system.mass();
+  const Eigen::Index n = mass.rows();
+  const Eigen::VectorXd diagonal = mass.diagonal();
+  const Eigen::VectorXd lumped = diagonal * (mass * Eigen::VectorXd::Ones(n)).sum() / diagonal.sum();
+  inverse_mass_ = lumped.cwiseInverse();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (system.fixed()[static_cast<std::size_t>(i)] != 0) inverse_mass_[i] = 0.0;
+  }
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(n);
+  const SparseMatrix k = system.stiffness(start, zero, zero);
+  Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(n, 1.0, 2.0);
+  for (Eigen::Index i = 1; i < n; i += 2) x[i] = -x[i];  // rough: near the highest mode from the start
+  double square = 0.0;
+  for (int i = 0; i < kPowerIterations; ++i) {
+    x = inverse_mass_.cwiseProduct(k * x);
+    square = x.norm();
+    x /= square;
+  }
+  const double omega = std::sqrt(square);
+  double damping_ratio = 0.0;  // of the highest mode
+  if (system.damped()) damping_ratio = 0.5 * x.dot(inverse_mass_.cwiseProduct(system.damping() * x)) / omega;
+  largest_step_ = kSafety * 2.0 / omega * (std::sqrt(1.0 + damping_ratio * damping_ratio) - damping_ratio);
+}
+
+Eigen::VectorXd CentralDifference::acceleration(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const {
+  Eigen::VectorXd f = system_.force(time, u, v);
+  if (system_.damped()) f -= system_.damping() * v;
+  return inverse_mass_.cwiseProduct(f);
+}
+
+void CentralDifference::initialise(DynamicState& state) const {
+  state.acceleration = acceleration(state.time, state.displacement, state.velocity);
+}
+
+void CentralDifference::advance(DynamicState& state, double span) const {
+  const int steps = static_cast<int>(std::ceil(span / largest_step_));
+  const double h = span / steps, start = state.time;
+  for (int k = 1; k <= steps; ++k) {
+    state.velocity += 0.5 * h * state.acceleration;
+    state.displacement += h * state.velocity;
+    state.time = start + h * k;
+    state.acceleration = acceleration(state.time, state.displacement, state.velocity);
+    state.velocity += 0.5 * h * state.acceleration;
+  }
+  if (!state.displacement.allFinite())
+    throw NumericalError("explicit step diverges at " + std::to_string(state.time) + " s");
+}
+
+}  // namespace tissue_stiffness
