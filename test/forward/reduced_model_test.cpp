@@ -1,0 +1,199 @@
+// The reduced model against the full one and against closed forms.
+#include "tissue_stiffness/forward/reduced_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "../box_model.hpp"
+#include "tissue_stiffness/fem/sparse_solver.hpp"
+#include "tissue_stiffness/forward/full_model.hpp"
+#include "tissue_stiffness/forward/reduced_trajectory.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+const std::string kInertia = "inertia: {density: 1000}";
+const std::string kFixed = "fixed: {region: clamp}";
+const std::string kGravity = "gravity: {acceleration: [0.5, 1, -2]}";
+
+std::string elastic(const std::string& modulus, const std::string& region = "") {
+  return "elasticity: {law: linear, poisson_ratio: 0.45, young_modulus: " + modulus +
+         (region.empty() ? "}" : ", region: " + region + "}");
+}
+
+Eigen::VectorXd prior(const Model& model) {
+  return model.theta(model.prior_mean());
+}
+
+// Largest difference between the two over the frames, at nodes of the surface, over the largest motion there.
+double difference(const Model& model, const Eigen::VectorXd& theta, double step) {
+  FullModel::Options options;
+  options.step = step;
+  const FullModel full(model, options);
+  const ReducedModel reduced(model);
+  const auto a = full.start(theta, 0.1), b = reduced.start(theta, 0.1);
+  double error = 0.0, motion = 0.0;
+  for (int k = 1; k <= 24; ++k) {
+    a->advance(0.1 + 0.016 * k);
+    b->advance(0.1 + 0.016 * k);
+    EXPECT_EQ(a->time(), b->time());
+    const Eigen::VectorXd u = a->displacement(), e = b->displacement() - u;
+    for (Eigen::Index i = 0; i < model.mesh().facets.size(); ++i) {
+      const int node = model.mesh().facets(i);
+      error = std::max(error, e.segment<3>(3 * node).norm());
+      motion = std::max(motion, u.segment<3>(3 * node).norm());
+    }
+  }
+  EXPECT_GT(motion, 1e-3);
+  return error / motion;
+}
+
+// A push on the tip and a pressure on the top, both sampled at instants of their own.
+void push(Model& model) {
+  for (int k = 0; k < 60; ++k) {
+    const double t = 0.1 + 0.008 * k;
+    Eigen::VectorXd wrench = Eigen::VectorXd::Zero(6);
+    wrench.head<3>() << 2e-3 * std::sin(20.0 * t), 0.0, 4e-3 * std::cos(9.0 * t);
+    model.courses().at("/wrench")->add(t, wrench);
+    model.courses().at("/pressure")->add(t, Eigen::VectorXd::Constant(1, 5.0 * std::sin(14.0 * t)));
+  }
+}
+
+TEST(ReducedModel, FollowsTheFullOneUnderLoads) {
+  const TetMesh mesh = bar_mesh(5);
+  Model model(box_settings({kInertia, elastic("{prior: 3.0e4, factor: 2}"), kFixed, kGravity, "mass_damping: {alpha: 1}",
+                            "viscous_damping: {beta: 2.0e-3}", "traction: {region: tip, topic: /wrench}",
+                            "pressure: {region: top, topic: /pressure}", "added_mass: {region: tip, mass: 0.005}"}),
+              mesh);
+  push(model);
+  const double at_prior = difference(model, prior(model), 2e-4);
+  const double away = difference(model, model.theta(model.prior_mean().array() + std::log(1.9)), 2e-4);
+  std::printf("reduced against full, loaded bar: %.1e, E 1.9x: %.1e of the motion\n", at_prior, away);
+  EXPECT_LT(at_prior, 1e-3);
+  EXPECT_LT(away, 1e-3);
+}
+
+TEST(ReducedModel, FollowsTheFullOneWithSeveralModuli) {
+  const TetMesh mesh = bar_mesh(4);
+  const Model model(box_settings({kInertia, elastic("{prior: 3.0e4, factor: 2}", "near"),
+                                  elastic("{prior: 3.0e4, factor: 2}", "far"), kFixed, kGravity}),
+                    mesh);
+  for (const auto& [near, far] : std::vector<std::pair<double, double>>{{1.0, 1.0}, {2.0, 0.5}, {0.6, 2.5}}) {
+    const Eigen::Vector2d w(std::log(3e4 * near), std::log(3e4 * far));
+    const double error = difference(model, model.theta(w), 1e-4);
+    std::printf("reduced against full, moduli %.1fx and %.1fx: %.1e of the motion\n", near, far, error);
+    EXPECT_LT(error, 2e-3);
+  }
+}
+
+TEST(ReducedModel, FollowsTheFullOneFromAnInitialVelocity) {
+  const TetMesh mesh = bar_mesh(4);
+  const Model model(box_settings({kInertia, elastic("3.0e4"), kFixed, "viscous_damping: {beta: 4.0e-3}"},
+                                 "[{vertices: {topic: /v, noise: 1.0e-4}}]", "initial: {velocity: [0, 0, -0.2]}"),
+                    mesh);
+  // A jump of the velocity at the clamp excites every mode: the surface follows less closely than under smooth loads.
+  EXPECT_LT(difference(model, prior(model), 1e-4), 5e-3);
+}
+
+// Static solution K u = f of the loads at time 0.
+Eigen::VectorXd sag(const Model& model) {
+  SparseMatrix k = model.stiffness(prior(model));
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(k.rows());
+  Eigen::VectorXd f = ModelSystem(model, prior(model)).force(0.0, zero, zero);
+  for (Eigen::Index i = 0; i < f.size(); ++i) {
+    if (model.fixed()[static_cast<std::size_t>(i)] != 0) f[i] = 0.0;
+  }
+  fix_dofs(k, model.fixed(), k.diagonal().mean());
+  SparseSolver solver;
+  solver.factorize(k);
+  return solver.solve(f);
+}
+
+// One vector, the static sag x: u(t) = x (1 - e^-st (cos wt + s/w sin wt)).
+void expect_one_mode(const Model& model) {
+  const Eigen::VectorXd x = sag(model);
+  const double square = x.dot(model.stiffness(prior(model)) * x) / x.dot(model.mass(prior(model)) * x);
+  const double s = 0.5 * (model.mass_damping(prior(model)) + model.stiffness_damping(prior(model)) * square),
+               w = std::sqrt(square - s * s);
+  const ReducedModel reduced(model, 1);
+  ASSERT_EQ(reduced.basis().cols(), 1);
+  const auto run = reduced.start(prior(model), 0.0);
+  for (const double t : {0.003, 0.05, 0.31, 0.8, 3.0}) {
+    run->advance(t);
+    const double part = 1.0 - std::exp(-s * t) * (std::cos(w * t) + s / w * std::sin(w * t));
+    const double speed = std::exp(-s * t) * (w + s * s / w) * std::sin(w * t);
+    EXPECT_LT((run->displacement() - part * x).norm(), 1e-9 * x.norm()) << t;
+    EXPECT_LT((run->velocity() - speed * x).norm(), 1e-9 * std::sqrt(square) * x.norm()) << t;
+  }
+}
+
+TEST(ReducedModel, OneModeIsTheClosedForm) {
+  const TetMesh mesh = bar_mesh(3);
+  Model model(box_settings({kInertia, elastic("3.0e4"), kFixed, "traction: {region: tip, topic: /wrench}",
+                            "mass_damping: {alpha: 2}", "viscous_damping: {beta: 0.01}"}),
+              mesh);
+  Eigen::VectorXd wrench(6);
+  wrench << 0.02, 0, 0, 0, 0, 0;  // along x: the basis begins with this component's response
+  model.courses().at("/wrench")->add(0.0, wrench);
+  expect_one_mode(model);
+}
+
+// A load that grows linearly, as between two samples: u(t) = u_static (t - sin wt / w) / T.
+TEST(ReducedModel, OneModeUnderARampIsTheClosedForm) {
+  const TetMesh mesh = bar_mesh(3);
+  Model model(box_settings({kInertia, elastic("3.0e4"), kFixed, "traction: {region: tip, topic: /wrench}"}), mesh);
+  Eigen::VectorXd wrench = Eigen::VectorXd::Zero(6);
+  model.courses().at("/wrench")->add(0.0, wrench);
+  wrench[0] = 0.02;
+  model.courses().at("/wrench")->add(1.0, wrench);
+  const ReducedModel reduced(model, 1);
+  ASSERT_EQ(reduced.basis().cols(), 1);
+  const Eigen::VectorXd b = reduced.basis().col(0);
+  Eigen::VectorXd load = Eigen::VectorXd::Zero(b.size());
+  model.add_loads(prior(model), 1.0, load);
+  const double square = b.dot(model.stiffness(prior(model)) * b), w = std::sqrt(square);
+  const auto run = reduced.start(prior(model), 0.0);
+  for (const double t : {0.01, 0.13, 0.4, 0.99}) {
+    run->advance(t);
+    const double q = b.dot(load) / square * (t - std::sin(w * t) / w);
+    EXPECT_LT((run->displacement() - q * b).norm(), 1e-9 * std::abs(b.dot(load)) / square * b.norm()) << t;
+  }
+}
+
+TEST(ReducedModel, DoesNotDependOnTheFrames) {
+  const TetMesh mesh = bar_mesh(3);
+  const Model model(box_settings({kInertia, elastic("3.0e4"), kFixed, kGravity}), mesh);
+  const ReducedModel reduced(model);
+  const auto one = reduced.start(prior(model), 0.0), many = reduced.start(prior(model), 0.0);
+  one->advance(0.5);
+  for (const double t : {0.01, 0.013, 0.2, 0.1, 0.2, 0.47, 0.5}) many->advance(t);  // an earlier time changes nothing
+  EXPECT_LT((one->displacement() - many->displacement()).norm(), 1e-10 * one->displacement().norm());
+}
+
+TEST(ReducedModel, LetsAFreeBodyFallAndFly) {
+  const TetMesh mesh = bar_mesh(2);
+  const Model model(box_settings({kInertia, elastic("3.0e4"), "gravity: {acceleration: [0, 0, -9.81]}"},
+                                 "[{vertices: {topic: /v, noise: 1.0e-4}}]", "initial: {velocity: [1, 0, 2]}"),
+                    mesh);
+  const ReducedModel reduced(model);
+  const auto run = reduced.start(prior(model), 0.0);
+  run->advance(0.3);
+  for (int i = 0; i < mesh.node_count(); ++i) {
+    const Eigen::Vector3d u = run->displacement().segment<3>(3 * i);
+    EXPECT_LT((u - Eigen::Vector3d(0.3, 0.0, 0.6 - 0.5 * 9.81 * 0.09)).norm(), 1e-8);
+  }
+}
+
+TEST(ReducedModel, RefusesWhatItCannotDo) {
+  const TetMesh mesh = bar_mesh(1);
+  const Model finite(box_settings({kInertia, "elasticity: {law: neo_hookean, young_modulus: 3.0e4, poisson_ratio: 0.4}",
+                                   kFixed, kGravity}),
+                     mesh);
+  EXPECT_NE(refusal([&] { const ReducedModel reduced(finite); }).find("nonlinear"), std::string::npos);
+  const Model still(box_settings({kInertia, elastic("3.0e4"), kFixed}), mesh);
+  EXPECT_NE(refusal([&] { const ReducedModel reduced(still); }).find("nothing that moves"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tissue_stiffness
