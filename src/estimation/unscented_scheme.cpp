@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "tissue_stiffness/estimation/compare.hpp"
+#include "tissue_stiffness/estimation/coordinate_scan.hpp"
+#include "tissue_stiffness/estimation/corrected_runs.hpp"
 #include "tissue_stiffness/estimation/ensemble.hpp"
 #include "tissue_stiffness/estimation/initial_velocity.hpp"
 #include "tissue_stiffness/estimation/posterior.hpp"
@@ -13,19 +15,22 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kFar = 1.0;             // spreads between anchor and estimate that ask for a new anchor
-constexpr double kWide = 6.0;            // posterior standard deviations that the sigma points may span
-constexpr double kNewSpread = 2.0;       // posterior standard deviations that they span after a move
-constexpr double kFloor = 1e-3;          // of the prior's standard deviation: the smallest span
-constexpr double kBent = 0.2;            // of the misfit: nonlinearity over the span that asks for a smaller one
-constexpr double kLongestMove = 3.0;     // spreads that the anchor may move at once
-constexpr int kMostVisits = 6;           // moves of the anchor a frame
-constexpr std::size_t kEarly = 16;       // frames up to which the anchor may move at every frame
-constexpr double kRevisitGrowth = 1.1;   // of the recording between moves of the anchor later
-constexpr double kScanMisfit = 4.0;      // mean square error over sigma that asks for a scan of the parameters
-constexpr double kScanReach = 2.5;       // prior standard deviations scanned to either side
-constexpr int kScanPoints = 25;          // on either side
-constexpr int kVelocityFrames = 4;       // frames that the initial velocity is read from
+constexpr double kFar = 1.0;              // spreads between anchor and estimate that ask for a new anchor
+constexpr double kWide = 6.0;             // posterior standard deviations that the sigma points may span
+constexpr double kNewSpread = 2.0;        // posterior standard deviations that they span after a move
+constexpr double kFloor = 1e-3;           // of the prior's standard deviation: the smallest span
+constexpr double kBent = 0.2;             // of the misfit: nonlinearity over the span that asks for a smaller one
+constexpr double kLongestMove = 3.0;      // spreads that the anchor may move at once
+constexpr int kMostVisits = 6;            // moves of the anchor a frame
+constexpr std::size_t kEarly = 16;        // frames up to which the anchor may move at every frame
+constexpr double kRevisitGrowth = 1.1;    // of the recording between moves of the anchor later
+constexpr double kScanMisfit = 4.0;       // mean square error over sigma that asks for a scan of the parameters
+constexpr int kScanPoints = 25;           // on either side of the prior's mean
+constexpr int kCorrectedPoints = 12;      // the same for corrected runs, whose likelihood is smoother
+constexpr std::size_t kCorrectFrom = 16;  // frames before which a misfit is not taken for missing physics
+constexpr double kReplaced = 4.0;    // times the free run's misfit, beyond which corrected runs no longer follow the model
+constexpr double kFirstForce = 0.1;  // of the modal forces at work: first guess of the missing one
+constexpr int kVelocityFrames = 4;   // frames that the initial velocity is read from
 constexpr std::size_t kWindow = 4000;    // frames kept for replay; later ones only add information
 constexpr double kConverged = 0.05;      // relative standard deviation
 constexpr double kInvalidSigmas = 10.0;  // rms error over noise at which the model says nothing about the body
@@ -57,8 +62,9 @@ class UnscentedScheme : public Scheme {
     waiting_.clear();
     ensemble_.clear();
     filter_ = AnchoredFilter(model_->prior_mean(), model_->prior_std());
+    corrected_ = nullptr;
     complete_ = true;
-    last_revisit_ = 0;
+    last_revisit_ = last_correction_ = 0;
     last_scan_ = 1;
   }
 
@@ -88,7 +94,7 @@ class UnscentedScheme : public Scheme {
     watch.lap("predict");
     Ensemble::Predicted predicted = ensemble_.predict(frame);
     watch.lap("observe");
-    const AnchoredFilter::Innovation innovation = absorb(predicted);
+    const AnchoredFilter::Innovation innovation = corrected_ ? corrected_->absorb(frame, filter_) : absorb(predicted);
     if (complete_) frames_.push_back(frame);
     watch.lap("update");
     if (frames_.size() > kWindow) {
@@ -106,7 +112,16 @@ class UnscentedScheme : public Scheme {
     if (!ensemble_.started()) restart();
   }
 
-  void restart() { ensemble_.restart(filter_.sigma_points(), start()); }
+  void restart() {
+    ensemble_.restart(filter_.sigma_points(), start());
+    if (corrected_) corrected_->restart(filter_.sigma_points(), start());
+  }
+
+  AnchoredFilter::Innovation absorb(const Frame& frame) {
+    if (corrected_) return corrected_->absorb(frame, filter_);
+    ensemble_.advance(frame.time);
+    return absorb(ensemble_.predict(frame));
+  }
 
   AnchoredFilter::Innovation absorb(const Ensemble::Predicted& predicted) {
     Prediction now = predicted.central;
@@ -121,12 +136,22 @@ class UnscentedScheme : public Scheme {
     const std::size_t count = frames_.size();
     if (count > kEarly && static_cast<double>(count) < kRevisitGrowth * static_cast<double>(last_revisit_)) return false;
     bool moved = scan();
+    moved = settle() || moved;
+    if (correct_state()) {
+      settle();
+      moved = true;
+    }
+    if (moved) last_revisit_ = count;
+    return moved;
+  }
+
+  bool settle() {
+    bool moved = false;
     const Eigen::VectorXd floor = kFloor * model_->prior_std();
     for (int visit = 0; visit < kMostVisits && (filter_.stale(kFar, kWide, floor) || bent()); ++visit) {
       move_anchor(floor);
       moved = true;
     }
-    if (moved) last_revisit_ = count;
     return moved;
   }
 
@@ -148,55 +173,86 @@ class UnscentedScheme : public Scheme {
     replay(before.anchor(), spread);
   }
 
-  // A free run that rings has local minima in every modulus. When the misfit is large, looks along each coordinate over the
-  // prior's range, whenever the recording has doubled; linear models only, whose runs cost next to nothing.
+  // When the misfit is large, looks for a better minimum whenever the recording has doubled; linear models only, whose runs
+  // cost next to nothing.
   bool scan() {
-    if (model_->nonlinear() || frames_.size() < 2 * last_scan_ || filter_.misfit_scale() < kScanMisfit) return false;
-    last_scan_ = frames_.size();
-    const Eigen::VectorXd mean = model_->prior_mean(), std = model_->prior_std();
-    bool moved = false;
-    for (Eigen::Index i = 0; i < mean.size(); ++i) {
-      const double step = kScanReach / kScanPoints * std[i];
-      Eigen::VectorXd best = filter_.anchor();
-      double lowest = cost_at(best);
-      for (int k = -kScanPoints; k <= kScanPoints; ++k) {
-        Eigen::VectorXd w = filter_.anchor();
-        w[i] = mean[i] + k * step;
-        const double cost = cost_at(w);
-        if (cost >= lowest) continue;
-        lowest = cost;
-        best = w;
-      }
-      if (best == filter_.anchor()) continue;
-      Eigen::VectorXd spread = filter_.spread();
-      spread[i] = std::min(spread[i], step);
-      replay(best, spread);
-      moved = true;
+    if (model_->nonlinear() || corrected_ || frames_.size() < 2 * last_scan_ || filter_.misfit_scale() < kScanMisfit) {
+      return false;
     }
-    return moved;
+    last_scan_ = frames_.size();
+    return go_to(scan_coordinates([this](const Eigen::VectorXd& w) { return free_fit(w).cost; }, filter_.anchor(),
+                                  model_->prior_mean(), model_->prior_std(), kScanPoints));
   }
 
-  // Mean square error of the free run at w, each point's loss growing slower beyond the robust limit.
-  double cost_at(const Eigen::VectorXd& w) const {
-    const auto run = forward_->start(model_->theta(w), start());
+  bool go_to(const ScanResult& found) {
+    if (!found.moved) return false;
+    replay(found.best, (found.step.array() > 0.0).select(found.step.cwiseMin(filter_.spread()), filter_.spread()));
+    return true;
+  }
+
+  // A free run that no parameters bring near the data lacks physics, and its best fit is biased. The parameters are then
+  // read from runs corrected towards each frame, by as much as makes the data most likely. Decided anew whenever the
+  // recording has doubled. True if the runs changed.
+  bool correct_state() {
+    if (model_->nonlinear() || !complete_ || frames_.size() < std::max(kCorrectFrom, 2 * last_correction_)) return false;
+    last_correction_ = frames_.size();
+    const Eigen::VectorXd w = filter_.mean();
+    const FreeFit free = free_fit(w);
+    if (free.cost < kScanMisfit * free.rows) {
+      if (corrected_ == nullptr) return false;
+      corrected_ = nullptr;
+      replay(w, filter_.spread());
+      return true;
+    }
+    const double scale = modal_force_scale(*model_, *forward_, frames_, w, start());
+    // Where the corrections would replace the model, the likelihood says nothing about its parameters.
+    const auto deviance = [&](const Eigen::VectorXd& x, double force) {
+      if (free_fit(x).cost > kReplaced * free.cost) return static_cast<double>(INFINITY);
+      return CorrectedRuns(*model_, *forward_, operators_, force).deviance(frames_, x, start());
+    };
+    ScanResult found{w, Eigen::VectorXd::Zero(w.size()), 0.0, false};
+    double force = kFirstForce * scale;
+    for (int round = 0; round < (corrected_ ? 1 : 2); ++round) {
+      if (corrected_ == nullptr) {
+        found = scan_coordinates([&](const Eigen::VectorXd& x) { return deviance(x, force); }, found.best,
+                                 model_->prior_mean(), model_->prior_std(), kCorrectedPoints);
+      }
+      found.lowest = INFINITY;
+      for (const double level : {0.3, 0.1, 0.03, 0.01, 0.003}) {
+        const double value = deviance(found.best, level * scale);
+        if (value < found.lowest) found.lowest = value, force = level * scale;
+      }
+    }
+    if (!(found.lowest < free.cost)) return false;
+    corrected_ = std::make_unique<CorrectedRuns>(*model_, *forward_, operators_, force);
+    replay(found.best, (found.step.array() > 0.0).select(found.step, filter_.spread()));
+    return true;
+  }
+
+  // Sum over rows of the square error of the free run at w, in sigmas, each row's growing slower beyond the robust limit.
+  struct FreeFit {
     double cost = 0.0;
+    double rows = 0.0;
+  };
+  FreeFit free_fit(const Eigen::VectorXd& w) const {
+    const auto run = forward_->start(model_->theta(w), start());
+    FreeFit fit;
     for (const Frame& frame : frames_) {
       run->advance(frame.time);
       const Prediction p = predict_frame(operators_, frame, run->displacement());
       const Eigen::ArrayXd e = ((p.measured - p.predicted).cwiseQuotient(p.sigma)).array();
       const Eigen::ArrayXd weights = row_weights(p).array();
-      cost += (weights > 0.0).select(weights * e.square(), 0.0).sum();
+      fit.cost += (weights > 0.0).select(weights * e.square(), 0.0).sum();
+      fit.rows += static_cast<double>((weights > 0.0).count());
     }
-    return cost;
+    return fit;
   }
 
   void replay(const Eigen::VectorXd& anchor, const Eigen::VectorXd& spread) {
     filter_.move_anchor(anchor, spread);
     restart();
-    for (const Frame& frame : frames_) {
-      ensemble_.advance(frame.time);
-      absorb(ensemble_.predict(frame));
-    }
+    for (const Frame& frame : frames_) absorb(frame);
+    if (corrected_) ensemble_.advance(frames_.back().time);
   }
 
   void publish(const Frame& frame, const Ensemble::Predicted& predicted, const AnchoredFilter::Innovation& innovation,
@@ -230,9 +286,10 @@ class UnscentedScheme : public Scheme {
 
   Ensemble ensemble_;
   AnchoredFilter filter_;
+  std::unique_ptr<CorrectedRuns> corrected_;  ///< while the model lacks physics; the ensemble runs free beside it
   std::vector<Frame> frames_, waiting_;
   bool complete_ = true;  ///< every frame since the start is in frames_
-  std::size_t last_revisit_ = 0, last_scan_ = 1;
+  std::size_t last_revisit_ = 0, last_scan_ = 1, last_correction_ = 0;
 };
 
 }  // namespace

@@ -33,6 +33,7 @@ ReducedTrajectory::ReducedTrajectory(const ReducedModel& reduced, const Eigen::V
   }
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(stiffness, mass);
   modes_ = eigen.eigenvectors();
+  to_modal_ = modes_.transpose() * mass;
   omega_ = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();
   damping_ = model.mass_damping(theta) + model.stiffness_damping(theta) * omega_.array().square();
   constant_force_ = modes_.transpose() * (uniform * model.body_acceleration(theta));
@@ -78,6 +79,23 @@ void ReducedTrajectory::set_step(double step) {
     t.qq[i] = e(0, 0), t.qv[i] = e(0, 1), t.qf1[i] = e(0, 3), t.qf0[i] = e(0, 2) - e(0, 3);
     t.vq[i] = e(1, 0), t.vv[i] = e(1, 1), t.vf1[i] = e(1, 3), t.vf0[i] = e(1, 2) - e(1, 3);
   }
+}
+
+ReducedTrajectory::FreeMotion ReducedTrajectory::free_motion(double span, int count) const {
+  FreeMotion m;
+  for (Eigen::ArrayXd* array : {&m.qq, &m.qv, &m.vq, &m.vv}) array->resize(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    Eigen::Matrix2d a;
+    a << 0.0, span, -omega_[i] * omega_[i] * span, -damping_[i] * span;
+    const Eigen::Matrix2d e = a.exp();
+    m.qq[i] = e(0, 0), m.qv[i] = e(0, 1), m.vq[i] = e(1, 0), m.vv[i] = e(1, 1);
+  }
+  return m;
+}
+
+void ReducedTrajectory::correct(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity) {
+  q_ += to_modal_ * displacement;
+  v_ += to_modal_ * velocity;
 }
 
 void ReducedTrajectory::advance(double time) {

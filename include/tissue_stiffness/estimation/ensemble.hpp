@@ -34,6 +34,7 @@ class Ensemble {
 
   /// Displacements, one column a sigma point, 3n x sigma points [m].
   const Eigen::MatrixXd& displacements() const { return displacements_; }
+  Trajectory& trajectory(std::size_t i) { return *trajectories_[i]; }
 
  private:
   const Model& model_;

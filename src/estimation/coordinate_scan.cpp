@@ -1,0 +1,29 @@
+#include "tissue_stiffness/estimation/coordinate_scan.hpp"
+
+#include <tbb/parallel_for.h>
+
+namespace tissue_stiffness {
+
+ScanResult scan_coordinates(const std::function<double(const Eigen::VectorXd&)>& cost, const Eigen::VectorXd& start,
+                            const Eigen::VectorXd& prior_mean, const Eigen::VectorXd& prior_std, int points, double reach) {
+  ScanResult result{start, Eigen::VectorXd::Zero(start.size()), cost(start), false};
+  for (Eigen::Index i = 0; i < start.size(); ++i) {
+    const double step = reach / points * prior_std[i];
+    const auto place = [&](int k) {
+      Eigen::VectorXd w = result.best;
+      w[i] = prior_mean[i] + (k - points) * step;
+      return w;
+    };
+    Eigen::VectorXd costs(2 * points + 1);
+    tbb::parallel_for(0, 2 * points + 1, [&](int k) { costs[k] = cost(place(k)); });
+    Eigen::Index lowest = 0;
+    if (!(costs.minCoeff(&lowest) < result.lowest)) continue;
+    result.lowest = costs[lowest];
+    result.best = place(static_cast<int>(lowest));
+    result.step[i] = step;
+    result.moved = true;
+  }
+  return result;
+}
+
+}  // namespace tissue_stiffness
