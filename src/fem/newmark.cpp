@@ -10,7 +10,9 @@ namespace {
 
 constexpr int kMaxIterations = 40;
 constexpr int kMaxHalvings = 10;
-constexpr double kSlow = 0.4;       // a contraction worse than this asks for a fresh factor
+constexpr double kSlow = 0.6;  // a contraction worse than this asks for a fresh factor
+constexpr std::size_t kMostUpdates = 12;
+constexpr double kFlat = 1e-8;      // relative curvature below which an update says nothing
 constexpr double kSameStep = 1e-3;  // relative change of the step that a factor survives
 
 void zero_fixed(Eigen::VectorXd& x, const std::vector<char>& fixed) {
@@ -80,8 +82,31 @@ void Newmark::factorize(const DynamicState& middle, double h) {
   if (system_.damped()) j += (1.0 - alpha_f_) * gamma_ / (beta_ * h) * system_.damping();
   fix_dofs(j, system_.fixed(), j.diagonal().mean());
   solver_.factorize(j);
+  updates_.clear();
   factored_step_ = h;
   ++factorisations_;
+}
+
+// The two-loop recursion of L-BFGS (Nocedal & Wright 2006, alg. 7.4) around the factored Jacobian.
+Eigen::VectorXd Newmark::direction(const Eigen::VectorXd& residual) const {
+  Eigen::VectorXd q = residual;
+  std::vector<double> weight(updates_.size());
+  for (std::size_t i = updates_.size(); i-- > 0;) {
+    weight[i] = updates_[i].inverse_curvature * updates_[i].step.dot(q);
+    q -= weight[i] * updates_[i].change;
+  }
+  Eigen::VectorXd d = solver_.solve(q);
+  for (std::size_t i = 0; i < updates_.size(); ++i) {
+    d += (weight[i] - updates_[i].inverse_curvature * updates_[i].change.dot(d)) * updates_[i].step;
+  }
+  return d;
+}
+
+void Newmark::learn(Eigen::VectorXd step, Eigen::VectorXd change) {
+  const double curvature = step.dot(change);
+  if (!(curvature > kFlat * step.norm() * change.norm())) return;
+  if (updates_.size() == kMostUpdates) updates_.pop_front();
+  updates_.push_back({std::move(step), std::move(change), 1.0 / curvature});
 }
 
 bool Newmark::try_step(DynamicState& state, double h) {
@@ -97,7 +122,7 @@ bool Newmark::try_step(DynamicState& state, double h) {
     }
     for (int k = 0; k < kMaxIterations; ++k) {
       ++iterations_;
-      const Eigen::VectorXd d = solver_.solve(r);
+      Eigen::VectorXd d = direction(r);
       const double size = d.cwiseAbs().maxCoeff();
       if (!std::isfinite(size)) return false;
       const bool slow = size > kSlow * last;
@@ -110,31 +135,37 @@ bool Newmark::try_step(DynamicState& state, double h) {
       if (slow && size > last) return false;
       fresh = false;
       last = size;
+      if (size < tolerance_) {
+        accept(state, x + d, h);
+        return true;
+      }
       // Shorten a correction that turns an element inside out.
-      double length = 1.0;
+      Eigen::VectorXd next;
       for (int cut = 0;; ++cut) {
         try {
-          r = residual(state, x + length * d, h, middle);
+          next = residual(state, x + d, h, middle);
           break;
         } catch (const NumericalError&) {
           if (cut == 6) return false;
-          length *= 0.5;
+          d *= 0.5;
         }
       }
-      x += length * d;
-      if (size < tolerance_ && length == 1.0) {
-        const Eigen::VectorXd a = (x - h * state.velocity) / (beta_ * h * h) - (0.5 / beta_ - 1.0) * state.acceleration;
-        state.velocity += h * ((1.0 - gamma_) * state.acceleration + gamma_ * a);
-        state.displacement += x;
-        state.acceleration = a;
-        state.time += h;
-        return true;
-      }
+      x += d;
+      learn(std::move(d), r - next);
+      r = std::move(next);
     }
   } catch (const NumericalError&) {
     return false;
   }
   return false;
+}
+
+void Newmark::accept(DynamicState& state, const Eigen::VectorXd& x, double h) {
+  const Eigen::VectorXd a = (x - h * state.velocity) / (beta_ * h * h) - (0.5 / beta_ - 1.0) * state.acceleration;
+  state.velocity += h * ((1.0 - gamma_) * state.acceleration + gamma_ * a);
+  state.displacement += x;
+  state.acceleration = a;
+  state.time += h;
 }
 
 }  // namespace tissue_stiffness

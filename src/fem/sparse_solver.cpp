@@ -7,7 +7,7 @@
 
 // Trajectories run in parallel, one solver each: threads inside BLAS or CHOLMOD would only get in their way.
 extern "C" void openblas_set_num_threads(int) __attribute__((weak));
-extern "C" void omp_set_num_threads(int) __attribute__((weak));
+extern "C" void omp_set_max_active_levels(int) __attribute__((weak));
 
 namespace tissue_stiffness {
 
@@ -15,7 +15,7 @@ namespace {
 
 void quiet_threads() {
   if (openblas_set_num_threads != nullptr) openblas_set_num_threads(1);
-  if (omp_set_num_threads != nullptr) omp_set_num_threads(1);
+  if (omp_set_max_active_levels != nullptr) omp_set_max_active_levels(0);  // CHOLMOD asks for 4 threads by name
 }
 
 }  // namespace

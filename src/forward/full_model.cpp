@@ -9,7 +9,7 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kTolerance = 1e-6;  // last Newton correction over the body's size
+constexpr double kTolerance = 1e-5;  // last Newton correction over the body's size
 constexpr double kExplicitSteps =
     250;  // explicit steps that one call of advance() may take before implicit ones are cheaper
 
@@ -84,13 +84,15 @@ std::string FullModel::description() const {
 ModelSystem::ModelSystem(const Model& model, Eigen::VectorXd theta)
     : model_(model), theta_(std::move(theta)), mass_(model.mass(theta_)), stiffness_(model.stiffness(theta_)) {
   const double alpha = model.mass_damping(theta_), beta = model.stiffness_damping(theta_);
+  linear_part_ = stiffness_.coeffs().cwiseAbs().maxCoeff() > 0.0;
   damped_ = alpha > 0.0 || beta > 0.0;
   if (damped_) damping_ = alpha * mass_ + beta * model.reference_stiffness(theta_);
   gravity_ = mass_ * model.body_acceleration(theta_).replicate(mass_.rows() / 3, 1);
 }
 
 Eigen::VectorXd ModelSystem::force(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const {
-  Eigen::VectorXd f = gravity_ - stiffness_ * u;
+  Eigen::VectorXd f = gravity_;
+  if (linear_part_) f -= stiffness_ * u;
   model_.add_loads(theta_, time, f);
   model_.add_nonlinear_force(theta_, {time, u, v}, f);
   return f;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <deque>
 #include <vector>
 
 #include "tissue_stiffness/fem/sparse_solver.hpp"
@@ -29,8 +30,9 @@ struct DynamicState {
 
 /// Implicit steps of the generalised-alpha family (Chung & Hulbert 1993, eq. 7-19): second order, unconditionally stable.
 /// Spectral radius 1 here means Newmark's average acceleration (beta = 1/4, gamma = 1/2), which keeps the energy of a
-/// linear system. Newton iterations reuse the last factorisation and refresh it when they converge slowly; a step that
-/// still fails is cut in halves.
+/// linear system. The balance is solved by quasi-Newton iterations (BFGS with a factored Jacobian of an earlier instant:
+/// Matthies & Strang 1979), whose updates are carried from step to step; the factor is renewed when they converge slowly. A
+/// step that still fails is cut in halves.
 class Newmark {
  public:
   /// `tolerance`: largest last Newton correction [m].
@@ -46,6 +48,7 @@ class Newmark {
 
  private:
   bool try_step(DynamicState& state, double step);
+  void accept(DynamicState& state, const Eigen::VectorXd& increment, double step);
   void cut_step(DynamicState& state, double step, int depth);
   void factorize(const DynamicState& middle, double step);
   Eigen::VectorXd residual(const DynamicState& state, const Eigen::VectorXd& increment, double step,
@@ -54,7 +57,15 @@ class Newmark {
   const DynamicSystem& system_;
   double alpha_m_ = 0.0, alpha_f_ = 0.0, beta_ = 0.25, gamma_ = 0.5;
   double tolerance_;
+  Eigen::VectorXd direction(const Eigen::VectorXd& residual) const;
+  void learn(Eigen::VectorXd step, Eigen::VectorXd change);
+
   SparseSolver solver_;
+  struct Update {
+    Eigen::VectorXd step, change;  ///< of the unknown and of the residual, with its sign turned
+    double inverse_curvature;      ///< 1 / step . change
+  };
+  std::deque<Update> updates_;
   double factored_step_ = 0.0;
   int factorisations_ = 0, iterations_ = 0;
 };

@@ -13,7 +13,7 @@ class FullModel : public ForwardModel {
   struct Options {
     double step = 0.0;             ///< [s]; 0: a fraction of the span that advance() is asked for
     int steps_per_frame = 4;       ///< when step is 0
-    double spectral_radius = 1.0;  ///< of generalised-alpha at infinite frequency; 1 is Newmark's average acceleration
+    double spectral_radius = 0.9;  ///< of generalised-alpha at infinite frequency; 1 is Newmark's average acceleration
   };
   FullModel(const Model& model, const Options& options) : model_(model), options_(options) {}
 
@@ -44,7 +44,7 @@ class ModelSystem : public DynamicSystem {
   Eigen::VectorXd theta_;
   SparseMatrix mass_, damping_, stiffness_;
   Eigen::VectorXd gravity_;
-  bool damped_ = false;
+  bool damped_ = false, linear_part_ = false;
 };
 
 }  // namespace tissue_stiffness
