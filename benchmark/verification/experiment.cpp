@@ -1,0 +1,61 @@
+#include "experiment.hpp"
+
+#include <numeric>
+
+namespace tissue_stiffness {
+
+Experiment::Experiment(const ModelSettings& settings, const TetMesh& mesh, const std::vector<double>& truth)
+    : model_(settings, mesh), forward_(make_forward_model(model_)) {
+  Eigen::VectorXd w = model_.prior_mean();
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    w[static_cast<Eigen::Index>(i)] = model_.free_parameters().at(i).to_coordinate(truth[i]);
+  }
+  theta_ = model_.theta(w);
+}
+
+void Experiment::add_load(const LoadSample& sample) {
+  model_.courses().at(sample.topic)->add(sample.time, sample.value);
+}
+
+std::vector<Experiment::Moment> Experiment::film(double first, double interval, int count) const {
+  std::vector<Moment> moments;
+  const auto run = forward_->start(theta_, first + model_.settings().time.start);
+  for (int k = 0; k < count; ++k) {
+    const double time = first + k * interval;
+    run->advance(time);
+    moments.push_back({time, run->displacement()});
+  }
+  return moments;
+}
+
+Eigen::Matrix3Xd draw(Eigen::Index count, double sigma, std::mt19937& engine) {
+  std::normal_distribution<double> normal(0.0, sigma);
+  return Eigen::Matrix3Xd::NullaryExpr(3, count, [&] { return normal(engine); });
+}
+
+Frame see_vertices(const Experiment& experiment, const Experiment::Moment& moment, const std::vector<int>& ids, double noise,
+                   std::mt19937& engine) {
+  const auto count = static_cast<Eigen::Index>(ids.size());
+  Observation seen;
+  seen.time = moment.time;
+  seen.ids = Eigen::Map<const Eigen::VectorXi>(ids.data(), count);
+  seen.points = draw(count, noise, engine);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    seen.points.col(i) += experiment.mesh().nodes.col(seen.ids[i]) + moment.displacement.segment<3>(3 * seen.ids[i]);
+  }
+  return {moment.time, {seen}};
+}
+
+std::vector<Frame> see_all(const Experiment& experiment, const std::vector<Experiment::Moment>& moments, double noise,
+                           unsigned seed) {
+  std::vector<int> ids(static_cast<std::size_t>(experiment.mesh().corner_count));
+  std::iota(ids.begin(), ids.end(), 0);
+  std::mt19937 engine(seed);
+  std::vector<Frame> frames;
+  for (const Experiment::Moment& moment : moments) {
+    frames.push_back(see_vertices(experiment, moment, ids, noise, engine));
+  }
+  return frames;
+}
+
+}  // namespace tissue_stiffness
