@@ -1,5 +1,6 @@
 #include "tissue_stiffness/estimation/identify.hpp"
 
+#include <Eigen/LU>
 #include <cmath>
 #include <vector>
 
@@ -34,18 +35,38 @@ std::vector<std::string> known_scales(const Model& model) {
   return known;
 }
 
+// Standard deviation over the prior's of each parameter, with the other scales held when no scale is known: what the data
+// then say about ratios.
+Eigen::VectorXd narrowing(const Model& model, const Eigen::MatrixXd& covariance, bool ratios_only) {
+  Eigen::VectorXd variance = covariance.diagonal();
+  std::vector<Eigen::Index> scales;
+  for (std::size_t i = 0; ratios_only && i < model.free_parameters().size(); ++i) {
+    if (is_scale(model.free_parameters()[i].name)) scales.push_back(static_cast<Eigen::Index>(i));
+  }
+  if (scales.empty()) return variance.cwiseSqrt().cwiseQuotient(model.prior_std());
+  const auto count = static_cast<Eigen::Index>(scales.size());
+  Eigen::MatrixXd block(count, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (Eigen::Index j = 0; j < count; ++j) {
+      block(i, j) = covariance(scales[static_cast<std::size_t>(i)], scales[static_cast<std::size_t>(j)]);
+    }
+  }
+  const Eigen::MatrixXd information = block.inverse();
+  for (Eigen::Index i = 0; i < count; ++i) variance[scales[static_cast<std::size_t>(i)]] = 1.0 / information(i, i);
+  return variance.cwiseSqrt().cwiseQuotient(model.prior_std());
+}
+
 }  // namespace
 
 std::map<std::string, Identifiability> identify(const Model& model, const Eigen::MatrixXd& covariance) {
   std::map<std::string, Identifiability> result;
   const std::vector<std::string> known = known_scales(model);
-  const Eigen::VectorXd prior = model.prior_std();
+  const Eigen::VectorXd narrowed = narrowing(model, covariance, known.empty());
   for (std::size_t i = 0; i < model.free_parameters().size(); ++i) {
     const std::string& name = model.free_parameters()[i].name;
     const auto k = static_cast<Eigen::Index>(i);
-    const double ratio = std::sqrt(covariance(k, k)) / prior[k];
-    const std::string percent = std::to_string(static_cast<int>(std::round(100.0 * ratio)));
-    if (ratio > kLearnt) {
+    const std::string percent = std::to_string(static_cast<int>(std::round(100.0 * narrowed[k])));
+    if (narrowed[k] > kLearnt) {
       result[name] = {"none", "the data hardly narrow the prior: posterior standard deviation is " + percent + " % of it"};
     } else if (is_scale(name) && known.empty()) {
       result[name] = {"ratio_only", "no force, pressure, density or mass is known: all scale together"};

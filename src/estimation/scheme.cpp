@@ -1,10 +1,27 @@
 #include "tissue_stiffness/estimation/scheme.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "tissue_stiffness/estimation/compare.hpp"
 #include "tissue_stiffness/estimation/ensemble.hpp"
 #include "tissue_stiffness/estimation/posterior.hpp"
 
 namespace tissue_stiffness {
+namespace {
+
+// True when some point or some piece of the outline has a number.
+bool saw_something(const Observation& observation) {
+  if (observation.kind == ObservationKind::contour) {
+    return (observation.contour->sigma.array() < INFINITY).any() && observation.contour->points.array().isFinite().any();
+  }
+  for (Eigen::Index i = 0; i < observation.points.cols(); ++i) {
+    if (observation.points.col(i).allFinite()) return true;
+  }
+  return false;
+}
+
+}  // namespace
 
 Scheme::Scheme(const ModelSettings& settings, const TetMesh& mesh)
     : model_(std::make_unique<Model>(settings, mesh)), operators_(make_observation_operators(*model_)) {
@@ -30,7 +47,9 @@ void Scheme::add_load(const LoadSample& sample) {
     throw InputError(sample.topic, "a load that is not finite or has the wrong size",
                      std::to_string(course->second->components()) + " finite number(s)");
   }
+  if (!std::isfinite(sample.time)) throw InputError(sample.topic, "a load without a time", "a finite time [s]");
   course->second->add(sample.time, sample.value);
+  first_load_ = std::min(first_load_, sample.time);
 }
 
 StepResult Scheme::step(const Frame& frame) {
@@ -40,14 +59,12 @@ StepResult Scheme::step(const Frame& frame) {
     result.reason = reason;
     return result;
   };
-  if (!first_stamp_) set_first_stamp(frame.time);
-  if (frame.observations.empty()) return refuse("nothing was observed");
+  if (!std::isfinite(frame.time)) return refuse("its time is not a number");
+  if (!first_stamp_) set_first_stamp(std::min(frame.time, first_load_));
   if (frame.time < start()) return refuse("before the body is at rest (time.start)");
   if (last_time_ && frame.time <= *last_time_) return refuse("late: not newer than the frame before");
   try {
-    for (const Observation& observation : frame.observations) {
-      operators_.at(static_cast<std::size_t>(observation.source))->check(observation);
-    }
+    if (!seen(frame)) return refuse("nothing was observed");
     last_time_ = frame.time;
     return process(frame);
   } catch (const std::exception& error) {
@@ -55,9 +72,25 @@ StepResult Scheme::step(const Frame& frame) {
   }
 }
 
+bool Scheme::seen(const Frame& frame) const {
+  bool any = false;
+  for (const Observation& observation : frame.observations) {
+    const auto source = static_cast<std::size_t>(observation.source);
+    if (source >= operators_.size()) {
+      throw InputError("observations", "entry " + std::to_string(observation.source),
+                       "0 to " + std::to_string(operators_.size() - 1));
+    }
+    operators_[source]->check(observation);
+    any = saw_something(observation) || any;
+  }
+  return any;
+}
+
 void Scheme::reset() {
   last_time_.reset();
   first_stamp_.reset();
+  first_load_ = INFINITY;
+  model_->forget_velocity_prior();
   for (auto& course : model_->courses()) course.second->clear();
   const Eigen::VectorXd std = model_->prior_std();
   estimate_ = summarise(model_->free_parameters(), model_->prior_mean(), std.cwiseAbs2().asDiagonal());

@@ -9,6 +9,7 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr double kSpeedLimit = 1e4;  // [m/s], bound of the initial velocity
+const Quantity kAnySpeed{Quantity::Kind::normal, 0.0, 1.0};  // [m/s], until frames tell
 
 const EffectSettings* find_effect(const ModelSettings& settings, const std::string& name) {
   const auto at = std::find_if(settings.effects.begin(), settings.effects.end(),
@@ -86,7 +87,7 @@ void Model::add_initial_velocity() {
   for (int i = 0; i < 3; ++i) {
     free_.push_back({std::string("initial.velocity_") + "xyz"[i],
                      "m/s",
-                     {Quantity::Kind::normal, 0.0, 1.0},
+                     kAnySpeed,
                      -kSpeedLimit,
                      kSpeedLimit});
     free_index_.push_back(static_cast<int>(offset) + i);
@@ -97,6 +98,11 @@ void Model::set_velocity_prior(const Eigen::Vector3d& mean, double std) {
   for (std::size_t i = 0; i < 3; ++i) {
     free_[free_.size() - 3 + i].prior = {Quantity::Kind::normal, mean[static_cast<Eigen::Index>(i)], std};
   }
+}
+
+void Model::forget_velocity_prior() {
+  if (settings_.initial.kind != InitialSettings::Kind::from_frames) return;
+  for (std::size_t i = 0; i < 3; ++i) free_[free_.size() - 3 + i].prior = kAnySpeed;
 }
 
 Eigen::VectorXd Model::theta(const Eigen::VectorXd& w) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -49,7 +50,11 @@ class Scheme {
   Prediction prediction_;
 
  private:
+  /// Whether the frame holds anything to compare. Throws InputError for an observation that does not fit the model.
+  bool seen(const Frame& frame) const;
+
   std::optional<double> first_stamp_;
+  double first_load_ = std::numeric_limits<double>::infinity();  ///< earliest load's time [s]
   std::optional<double> last_time_;
 };
 

@@ -53,6 +53,8 @@ class Model {
   Eigen::VectorXd prior_std() const;
   /// Replaces the prior of the initial velocity (`initial: {velocity: from_frames}`), mean and std [m/s].
   void set_velocity_prior(const Eigen::Vector3d& mean, double std);
+  /// Back to the prior before any frame.
+  void forget_velocity_prior();
 
   Eigen::Vector3d initial_velocity(const Eigen::VectorXd& theta) const { return theta.tail<3>(); }
 
