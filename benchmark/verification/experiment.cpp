@@ -33,8 +33,8 @@ Eigen::Matrix3Xd draw(Eigen::Index count, double sigma, std::mt19937& engine) {
   return Eigen::Matrix3Xd::NullaryExpr(3, count, [&] { return normal(engine); });
 }
 
-Frame see_vertices(const Experiment& experiment, const Experiment::Moment& moment, const std::vector<int>& ids, double noise,
-                   std::mt19937& engine) {
+Frame see_vertices(const Experiment& experiment, const Experiment::Moment& moment, const std::vector<int>& ids,
+                   double noise, std::mt19937& engine) {
   const auto count = static_cast<Eigen::Index>(ids.size());
   Observation seen;
   seen.time = moment.time;

@@ -39,8 +39,8 @@ class Experiment {
 Eigen::Matrix3Xd draw(Eigen::Index count, double sigma, std::mt19937& engine);
 
 /// A frame of tracked mesh vertices (`ids`), each coordinate off by normal noise [m].
-Frame see_vertices(const Experiment& experiment, const Experiment::Moment& moment, const std::vector<int>& ids, double noise,
-                   std::mt19937& engine);
+Frame see_vertices(const Experiment& experiment, const Experiment::Moment& moment, const std::vector<int>& ids,
+                   double noise, std::mt19937& engine);
 
 /// Every moment seen like that, all corner vertices of the mesh.
 std::vector<Frame> see_all(const Experiment& experiment, const std::vector<Experiment::Moment>& moments, double noise,

@@ -20,9 +20,10 @@ TEST(Calibration, IntervalsHoldTheTruthAsOftenAsTheySay) {
     errors.add(trial.off * trial.off, 1);
     surprising += two_sided_p_value(trial.nis, trial.dof) < 0.05 ? 1 : 0;
   }
-  std::printf("100 seeds: 95 %% interval holds the truth on %d; NIS %.4f a row (p = %.3f), %d seeds beyond 95 %%; "
-              "error^2 / variance %.2f; posterior std of log E %.4f\n",
-              covered, all.mean_per_dof(), all.p_value(), surprising, errors.mean_per_dof(), trials.front().relative);
+  std::printf(
+      "100 seeds: 95 %% interval holds the truth on %d; NIS %.4f a row (p = %.3f), %d seeds beyond 95 %%; "
+      "error^2 / variance %.2f; posterior std of log E %.4f\n",
+      covered, all.mean_per_dof(), all.p_value(), surprising, errors.mean_per_dof(), trials.front().relative);
   EXPECT_GE(covered, 90);
   EXPECT_LE(covered, 98);
   EXPECT_GT(all.p_value(), 0.001);

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cmath>
+#include <cstring>
+
+#include "../box_model.hpp"
+#include "verification/experiment.hpp"
+
+namespace tissue_stiffness {
+
+constexpr double kNoise = 1e-4;   // [m], the default of box_settings
+constexpr double kFilmed = 0.02;  // [s] between frames
+
+inline std::string modulus(const std::string& value, const std::string& region = "") {
+  return "elasticity: {law: linear, poisson_ratio: 0.45, young_modulus: " + value +
+         (region.empty() ? "}" : ", region: " + region + "}");
+}
+
+/// {prior, factor} of a model file.
+inline std::string prior(double median, double factor) {
+  return "{prior: " + std::to_string(median) + ", factor: " + std::to_string(factor) + "}";
+}
+
+/// A clamped bar of the given modulus under gravity.
+inline std::vector<std::string> bar_under_gravity(const std::string& young_modulus) {
+  return {"inertia: {density: 1000}", modulus(young_modulus), "fixed: {region: clamp}",
+          "gravity: {acceleration: [0.5, 1, -3]}"};
+}
+
+/// The result of the last frame.
+inline StepResult step_through(Estimator& estimator, const std::vector<Frame>& frames) {
+  StepResult last;
+  for (const Frame& frame : frames) last = estimator.step(frame);
+  return last;
+}
+
+inline double value(const Estimator& estimator, std::size_t parameter = 0) {
+  return estimator.estimate().parameters.at(parameter).mean;
+}
+
+inline bool holds(const ParameterEstimate& parameter, double truth) {
+  return parameter.lower95 <= truth && truth <= parameter.upper95;
+}
+
+/// Every number and word of an estimate and of the body's state, byte by byte.
+inline std::string bytes(const Estimator& estimator) {
+  std::string out;
+  const auto append = [&out](const double* data, Eigen::Index count) {
+    out.append(reinterpret_cast<const char*>(data), static_cast<std::size_t>(count) * sizeof(double));
+  };
+  const Estimate& estimate = estimator.estimate();
+  append(&estimate.time, 1);
+  out += to_string(estimate.state);
+  for (const ParameterEstimate& p : estimate.parameters) {
+    out += p.name + p.unit;
+    for (const double* number : {&p.mean, &p.std, &p.lower95, &p.upper95}) append(number, 1);
+  }
+  append(estimate.covariance.data(), estimate.covariance.size());
+  append(estimator.displacement().data(), estimator.displacement().size());
+  append(estimator.prediction().predicted.data(), estimator.prediction().predicted.size());
+  for (const auto& [name, identifiable] : estimator.identifiability())
+    out += name + identifiable.verdict + identifiable.reason;
+  for (const Misfit& misfit : estimator.free_run()) append(&misfit.rms, 1);
+  return out;
+}
+
+}  // namespace tissue_stiffness
