@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "elastic_body.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "verification/elastic_body.hpp"
 
 namespace tissue_stiffness {
 namespace {

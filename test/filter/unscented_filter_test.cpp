@@ -11,6 +11,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "../figures.hpp"
 #include "tissue_stiffness/filter/consistency.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
@@ -30,85 +31,10 @@ class UnscentedFilters : public ::testing::Test {
   std::mt19937 engine_{7};
 };
 
-/// The textbook filter, in Joseph's form.
-struct KalmanFilter {
-  Eigen::VectorXd mean;
-  Eigen::MatrixXd covariance;
-  double nis = 0.0;
-
-  void predict(const Eigen::MatrixXd& a, const Eigen::MatrixXd& q) {
-    mean = a * mean;
-    covariance = a * covariance * a.transpose() + q;
-  }
-  void update(const Eigen::VectorXd& y, const Eigen::MatrixXd& h, const Eigen::MatrixXd& r) {
-    const Eigen::MatrixXd s = h * covariance * h.transpose() + r;
-    const Eigen::MatrixXd gain = s.llt().solve(h * covariance).transpose();
-    const Eigen::VectorXd innovation = y - h * mean;
-    nis = innovation.dot(s.llt().solve(innovation));
-    const Eigen::MatrixXd rest = Eigen::MatrixXd::Identity(mean.size(), mean.size()) - gain * h;
-    mean += gain * innovation;
-    covariance = rest * covariance * rest.transpose() + gain * r * gain.transpose();
-  }
-};
-
 const std::vector<UnscentedTuning> tunings = {{1.0, 2.0, 0.0}, {0.3, 2.0, 0.0}, {2.0, 2.0, 0.0}, {0.5, 0.0, 1.0}};
 
-TEST_F(UnscentedFilters, ParameterFiltersEqualTheKalmanFilterOnALinearModel) {
-  for (const UnscentedTuning& tuning : tunings) {
-    for (const int l : {1, 2, 5, 9}) {
-      KalmanFilter exact{random(l, 1), random_covariance(l)};
-      UnscentedFilter paper(exact.mean, exact.covariance, tuning);
-      SquareRootUnscentedFilter root(exact.mean, exact.covariance, tuning);
-      SquareRootUnscentedFilter simplex(exact.mean, exact.covariance, SigmaSet::simplex(l));
-      for (int step = 0; step < 60; ++step) {
-        const int m = 1 + (step * 7) % 13;
-        const Eigen::MatrixXd h = random(m, l);
-        const Eigen::VectorXd offset = random(m, 1), y = random(m, 1);
-        const bool dense = step % 2 == 1;
-        const Eigen::VectorXd sigma = random(m, 1).cwiseAbs().array() + 0.5;
-        const Eigen::MatrixXd r = dense ? random_covariance(m) : Eigen::MatrixXd(sigma.cwiseAbs2().asDiagonal());
-        const Noise noise = dense ? Noise::correlated(r) : Noise::independent(sigma);
-        const SigmaModel model = [&](const Eigen::MatrixXd& x) -> Eigen::MatrixXd { return (h * x).colwise() + offset; };
-        exact.update(y - offset, h, r);
-        const FilterUpdate update = paper.update(y, model(paper.sigma_points()), noise);
-        const FilterUpdate root_update = root.update(y, model(root.sigma_points()), noise);
-        simplex.update(y, model(simplex.sigma_points()), noise);
-        EXPECT_NEAR(update.nis, exact.nis, 1e-11 * (1.0 + exact.nis));
-        EXPECT_NEAR(root_update.nis, exact.nis, 1e-11 * (1.0 + exact.nis));
-        EXPECT_NEAR(update.log_likelihood, root_update.log_likelihood, 1e-10 * (1.0 + exact.nis));
-        EXPECT_EQ(update.dof, m);
-      }
-      EXPECT_LT((paper.mean() - exact.mean).cwiseAbs().maxCoeff(), 1e-12);
-      EXPECT_LT((root.mean() - exact.mean).cwiseAbs().maxCoeff(), 1e-12);
-      EXPECT_LT((simplex.mean() - exact.mean).cwiseAbs().maxCoeff(), 1e-12);
-      EXPECT_LT((paper.covariance() - exact.covariance).cwiseAbs().maxCoeff(), 1e-12);
-      EXPECT_LT((root.covariance() - exact.covariance).cwiseAbs().maxCoeff(), 1e-12);
-      EXPECT_LT((simplex.covariance() - exact.covariance).cwiseAbs().maxCoeff(), 1e-12);
-    }
-  }
-}
-
-TEST_F(UnscentedFilters, StateFilterEqualsTheKalmanFilterOnALinearModel) {
-  for (const UnscentedTuning& tuning : tunings) {
-    for (const int l : {1, 3, 8}) {
-      const int m = l + 2;
-      const Eigen::MatrixXd a = random(l, l) / std::sqrt(2.0 * l), h = random(m, l);
-      const Eigen::MatrixXd q_root = 0.3 * random(l, l + 1);
-      const Eigen::VectorXd sigma = random(m, 1).cwiseAbs().array() + 0.3;
-      const Eigen::MatrixXd r = sigma.cwiseAbs2().asDiagonal();
-      KalmanFilter exact{random(l, 1), random_covariance(l)};
-      SquareRootUnscentedFilter filter(exact.mean, exact.covariance, tuning);
-      for (int step = 0; step < 300; ++step) {
-        const Eigen::VectorXd y = random(m, 1);
-        exact.predict(a, q_root * q_root.transpose());
-        exact.update(y, h, r);
-        filter.predict([&](const Eigen::MatrixXd& x) -> Eigen::MatrixXd { return a * x; }, q_root);
-        filter.update(y, h * filter.sigma_points(), Noise::independent(sigma));
-        ASSERT_LT((filter.mean() - exact.mean).cwiseAbs().maxCoeff(), 1e-12);
-        ASSERT_LT((filter.covariance() - exact.covariance).cwiseAbs().maxCoeff(), 1e-12);
-      }
-    }
-  }
+TEST(Kalman, UnscentedFiltersEqualItOnLinearModels) {
+  expect_all(kalman_figures());
 }
 
 /// A curved model, where only the algebra can agree: eq. 18-23 written out against both filters.

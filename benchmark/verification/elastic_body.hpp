@@ -120,6 +120,13 @@ class ElasticBody : public DynamicSystem {
   Eigen::VectorXd load_;
 };
 
+/// Nodal forces of gravity along -z [N].
+inline Eigen::VectorXd weight(const ElasticBody& body, double acceleration) {
+  Eigen::VectorXd g = Eigen::VectorXd::Zero(body.fem().dof_count());
+  for (Eigen::Index i = 2; i < g.size(); i += 3) g[i] = -acceleration;
+  return body.mass() * g;
+}
+
 /// Displacement that balances the loads, with `prescribed` (3n) at the fixed degrees of freedom, by Newton's method from
 /// `start`.
 inline Eigen::VectorXd equilibrium(const ElasticBody& body, const Eigen::VectorXd& prescribed, const Eigen::VectorXd& start,
