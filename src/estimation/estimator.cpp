@@ -24,6 +24,9 @@ const std::vector<LoadInput>& Estimator::load_inputs() const {
 void Estimator::set_first_stamp(double time) {
   implementation_->scheme->set_first_stamp(time);
 }
+void Estimator::work_in_background() {
+  implementation_->scheme->work_in_background();
+}
 void Estimator::add_load(const LoadSample& sample) {
   implementation_->scheme->add_load(sample);
 }

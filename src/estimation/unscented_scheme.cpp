@@ -1,12 +1,15 @@
 // The default scheme: free-running sigma points, iterated. `step` reads: predict, observe, update, revisit.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <future>
 
 #include "tissue_stiffness/estimation/compare.hpp"
 #include "tissue_stiffness/estimation/coordinate_scan.hpp"
 #include "tissue_stiffness/estimation/corrected_runs.hpp"
 #include "tissue_stiffness/estimation/ensemble.hpp"
 #include "tissue_stiffness/estimation/initial_velocity.hpp"
+#include "tissue_stiffness/estimation/mesh_error.hpp"
 #include "tissue_stiffness/estimation/posterior.hpp"
 #include "tissue_stiffness/estimation/scheme.hpp"
 #include "tissue_stiffness/estimation/stopwatch.hpp"
@@ -33,6 +36,7 @@ constexpr double kFirstForce = 0.1;  // of the modal forces at work: first guess
 constexpr int kVelocityFrames = 4;   // frames that the initial velocity is read from
 constexpr std::size_t kWindow = 4000;    // frames kept for replay; later ones only add information
 constexpr double kConverged = 0.05;      // relative standard deviation
+constexpr double kShiftDoubt = 0.5;      // of the mesh's effect, once it is corrected for
 constexpr double kInvalidSigmas = 10.0;  // rms error over noise at which the model says nothing about the body
 
 class UnscentedScheme : public Scheme {
@@ -40,14 +44,19 @@ class UnscentedScheme : public Scheme {
   UnscentedScheme(const ModelSettings& settings, const TetMesh& mesh)
       : Scheme(settings, mesh),
         ensemble_(*model_, *forward_, operators_),
-        filter_(model_->prior_mean(), model_->prior_std()) {}
+        filter_(model_->prior_mean(), model_->prior_std()),
+        unstudied_(why_no_mesh_study()) {}
 
-  std::vector<std::string> description() const override { return {forward_->description()}; }
+  std::vector<std::string> description() const override {
+    return {forward_->description(),
+            "mesh error: " + (unstudied_.empty() ? "from a mesh refined eightfold" : "not assessed, " + unstudied_)};
+  }
 
   std::vector<Misfit> free_run() const override {
     return frames_.empty() ? std::vector<Misfit>{} : compare_free_run(frames_, model_->theta(filter_.mean()));
   }
   Eigen::MatrixXd parameter_covariance() const override { return filter_.covariance(); }
+  void work_in_background() override { background_ = true; }
 
  protected:
   StepResult process(const Frame& frame) override {
@@ -63,6 +72,10 @@ class UnscentedScheme : public Scheme {
     ensemble_.clear();
     filter_ = AnchoredFilter(model_->prior_mean(), model_->prior_std());
     corrected_ = nullptr;
+    if (study_.valid()) study_.wait();
+    study_ = {};
+    shift_.resize(0);
+    last_study_ = 0;
     complete_ = true;
     last_revisit_ = last_correction_ = 0;
     last_scan_ = 1;
@@ -103,6 +116,8 @@ class UnscentedScheme : public Scheme {
     }
     if (complete_ && revisit()) predicted = ensemble_.predict(frame);
     watch.lap("revisit");
+    study_mesh();
+    watch.lap("mesh error");
     publish(frame, predicted, innovation, result);
     watch.lap("report");
     return result;
@@ -266,7 +281,9 @@ class UnscentedScheme : public Scheme {
     result.misfit = compare(frame.time, prediction_, at_rest(frame).predicted, model_->mesh().node_count());
     result.misfit.nis = innovation.nis;
     result.misfit.dof = innovation.dof;
-    estimate_ = summarise(model_->free_parameters(), w, filter_.covariance());
+    const Eigen::VectorXd shift = shift_.size() > 0 ? shift_ : Eigen::VectorXd::Zero(w.size());
+    const double doubt = kShiftDoubt * kShiftDoubt;
+    estimate_ = summarise(model_->free_parameters(), w - shift, filter_.covariance() + doubt * shift * shift.transpose());
     estimate_.time = frame.time;
     estimate_.state = state(result.misfit);
     result.estimate = estimate_;
@@ -284,12 +301,45 @@ class UnscentedScheme : public Scheme {
     return EstimateState::converged;
   }
 
+  std::string why_no_mesh_study() const {
+    if (!model_->settings().mesh.discretisation_error) return "the model file asks not to";
+    if (model_->nonlinear()) return "the model is not linear";
+    return MeshError::why_not(model_->settings(), model_->mesh());
+  }
+
+  // What the mesh does to the estimate, asked anew whenever the recording has doubled; in the background when a node runs.
+  void study_mesh() {
+    if (study_.valid() && (!background_ || study_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)) {
+      try {
+        shift_ = study_.get();
+      } catch (const std::exception& error) {
+        unstudied_ = error.what();
+      }
+    }
+    if (study_.valid() || !unstudied_.empty() || frames_.size() < std::max(kEarly, 2 * last_study_)) return;
+    last_study_ = frames_.size();
+    MeshError::Question question{frames_, filter_.mean(), filter_.spread(), model_->prior_std(), start(), {}};
+    for (const auto& [topic, course] : model_->courses()) question.courses.emplace(topic, *course);
+    study_ = std::async(std::launch::async, [this, question = std::move(question)] {
+      if (mesh_error_ == nullptr) mesh_error_ = std::make_unique<MeshError>(model_->settings(), model_->mesh());
+      return mesh_error_->shift(question);
+    });
+    if (!background_) study_mesh();
+  }
+
   Ensemble ensemble_;
   AnchoredFilter filter_;
   std::unique_ptr<CorrectedRuns> corrected_;  ///< while the model lacks physics; the ensemble runs free beside it
   std::vector<Frame> frames_, waiting_;
   bool complete_ = true;  ///< every frame since the start is in frames_
   std::size_t last_revisit_ = 0, last_scan_ = 1, last_correction_ = 0;
+
+  std::string unstudied_;                  ///< why the mesh's error is not assessed; empty: it is
+  std::unique_ptr<MeshError> mesh_error_;  ///< the study's own; only its thread touches it
+  Eigen::VectorXd shift_;                  ///< estimate less truth because of the mesh; empty: not known yet
+  std::size_t last_study_ = 0;
+  bool background_ = false;
+  std::future<Eigen::VectorXd> study_;  ///< last: its thread uses the members above
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include <limits>
 #include <vector>
 
+#include "tissue_stiffness/meshing/bend_boundary.hpp"
 #include "tissue_stiffness/meshing/bodies.hpp"
 #include "tissue_stiffness/meshing/quality.hpp"
 #include "tissue_stiffness/meshing/surface.hpp"
@@ -24,11 +25,10 @@ Eigen::Matrix3Xd straight_boundary(const TetMesh& mesh) {
 
 }  // namespace
 
-int curve_boundary(TetMesh& mesh, const RevolutionProfile& profile) {
-  if (!mesh.quadratic()) return 0;
-  const Eigen::Matrix3Xd straight = straight_boundary(mesh);
+int bend_boundary(TetMesh& mesh, const Eigen::Matrix3Xd& targets) {
+  const Eigen::Matrix3Xd straight = mesh.nodes;
   for (int node = mesh.corner_count; node < mesh.node_count(); ++node) {
-    if (straight.col(node).allFinite()) mesh.nodes.col(node) = profile.project(straight.col(node));
+    if (targets.col(node).allFinite()) mesh.nodes.col(node) = targets.col(node);
   }
   std::vector<bool> straightened(static_cast<std::size_t>(mesh.node_count()), false);
   int count = 0;
@@ -39,7 +39,7 @@ int curve_boundary(TetMesh& mesh, const RevolutionProfile& profile) {
       if (jacobians.minCoeff() > kLeastJacobianRatio * jacobians.maxCoeff()) continue;
       for (int i = 4; i < 10; ++i) {
         const int node = mesh.tets(i, tet);
-        if (!straight.col(node).allFinite() || straightened[static_cast<std::size_t>(node)]) continue;
+        if (!targets.col(node).allFinite() || straightened[static_cast<std::size_t>(node)]) continue;
         mesh.nodes.col(node) = straight.col(node);
         straightened[static_cast<std::size_t>(node)] = true;
         changed = true;
@@ -48,6 +48,15 @@ int curve_boundary(TetMesh& mesh, const RevolutionProfile& profile) {
     }
   }
   return count;
+}
+
+int curve_boundary(TetMesh& mesh, const RevolutionProfile& profile) {
+  if (!mesh.quadratic()) return 0;
+  Eigen::Matrix3Xd targets = straight_boundary(mesh);
+  for (int node = mesh.corner_count; node < mesh.node_count(); ++node) {
+    if (targets.col(node).allFinite()) targets.col(node) = profile.project(targets.col(node));
+  }
+  return bend_boundary(mesh, targets);
 }
 
 }  // namespace tissue_stiffness

@@ -118,6 +118,7 @@ std::optional<TetMesh> EstimatorNode::new_mesh() {
 
 void EstimatorNode::build(const TetMesh& mesh) {
   estimator_ = std::make_unique<Estimator>(settings_, mesh);
+  estimator_->work_in_background();
   inputs_.set_vertex_count(mesh.corner_count);
   outputs_.prepare(settings_, mesh);
   for (const std::string& line : estimator_->description()) ROS_INFO("%s", line.c_str());

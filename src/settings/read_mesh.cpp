@@ -91,6 +91,7 @@ MeshSettings read_mesh(const Value& map, const std::string& directory) {
     mesh.max_edge_length = map.number_or("max_edge_length", 0.0, positive, infinity, "m");
   }
   if (map.has("order")) mesh.order = map.at("order").as_integer(1, 2);
+  if (map.has("discretisation_error")) mesh.discretisation_error = map.at("discretisation_error").as_boolean();
   return mesh;
 }
 

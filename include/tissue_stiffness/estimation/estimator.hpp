@@ -46,6 +46,10 @@ class Estimator {
   /// knows. Without this call the first frame's or load's time is taken as the first stamp.
   void set_first_stamp(double time);
 
+  /// Lets long studies (of the mesh's error) run beside the frames instead of holding one up; which frame first sees their
+  /// result then depends on timing.
+  void work_in_background();
+
   /// Feeds a load. Samples may come in any order up to the frame that needs them; between samples loads are linear in time,
   /// outside they are held.
   void add_load(const LoadSample& sample);

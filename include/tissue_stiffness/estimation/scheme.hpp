@@ -25,6 +25,7 @@ class Scheme {
   void add_load(const LoadSample& sample);
 
   virtual std::vector<std::string> description() const = 0;
+  virtual void work_in_background() {}
   virtual std::vector<Misfit> free_run() const = 0;
   virtual Eigen::MatrixXd parameter_covariance() const = 0;  ///< in the filter's coordinates
 

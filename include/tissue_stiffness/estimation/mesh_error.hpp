@@ -1,0 +1,47 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tissue_stiffness/effects/course.hpp"
+#include "tissue_stiffness/settings/model_settings.hpp"
+#include "tissue_stiffness/types/observation.hpp"
+#include "tissue_stiffness/types/tet_mesh.hpp"
+
+namespace tissue_stiffness {
+
+/// What the mesh does to the parameters. The model runs once more on a mesh with every tetrahedron cut into eight and flat
+/// facets bent to the smooth surface they stand for; fitted to that run, the estimator's own mesh would be off by `shift`.
+/// Linear models of moderate size only: `why_not` says what stands against it.
+class MeshError {
+ public:
+  /// Empty when the study can be made.
+  static std::string why_not(const ModelSettings& settings, const TetMesh& mesh);
+
+  /// Throws as Model does.
+  MeshError(const ModelSettings& settings, const TetMesh& mesh);
+  ~MeshError();
+  MeshError(const MeshError&) = delete;
+  MeshError& operator=(const MeshError&) = delete;
+
+  /// What the study looks at: copies, so that it can run beside the estimator.
+  struct Question {
+    std::vector<Frame> frames;
+    Eigen::VectorXd w;          ///< filter coordinates
+    Eigen::VectorXd spread;     ///< of the sigma points around w
+    Eigen::VectorXd prior_std;  ///< holds what the data do not determine
+    double start = 0.0;         ///< [s]
+    std::map<std::string, Course> courses;
+  };
+  /// Estimate less truth in filter coordinates, to first order, if the finer mesh were the truth.
+  Eigen::VectorXd shift(const Question& question);
+
+ private:
+  struct Studies;
+  std::unique_ptr<Studies> studies_;
+};
+
+}  // namespace tissue_stiffness
