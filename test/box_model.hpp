@@ -21,7 +21,7 @@ inline ModelSettings box_settings(const std::vector<std::string>& effects,
                                   const std::string& observations = "[{vertices: {topic: /vertices, noise: 1.0e-4}}]",
                                   const std::string& rest = "") {
   std::string text =
-      "mesh: {file: bar.vtk}\n"
+      "mesh: {file: bar.vtk, discretisation_error: false}\n"
       "regions:\n"
       "  clamp: {box: {min: [-1, -1, -1], max: [1.0e-6, 1, 1]}}\n"
       "  tip: {box: {min: [0.099999, -1, -1], max: [1, 1, 1]}}\n"

@@ -25,7 +25,7 @@ struct Trial {
 
 ModelSettings settings(double prior) {
   const std::string text =
-      "mesh: {file: bar.vtk}\n"
+      "mesh: {file: bar.vtk, discretisation_error: false}\n"
       "regions: {clamp: {box: {min: [-1, -1, -1], max: [1.0e-6, 1, 1]}}}\n"
       "effects:\n"
       "- inertia: {density: 1000}\n"

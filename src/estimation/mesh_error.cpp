@@ -11,7 +11,9 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr int kMostNodes = 6000;  // refined eightfold: what still factorises in seconds and within 2 GB
+constexpr int kMostIterations = 6;
+constexpr double kLongestStep = 0.1;  // prior standard deviations at once
+constexpr int kMostNodes = 6000;      // refined eightfold: what still factorises in seconds and within 2 GB
 
 TetMesh finer(const TetMesh& mesh) {
   TetMesh smooth = mesh;
@@ -56,21 +58,31 @@ Eigen::VectorXd MeshError::shift(const Question& q) {
   Studies& s = *studies_;
   copy_courses(q.courses, s.coarse.courses());
   copy_courses(q.courses, s.fine.courses());
-  AnchoredFilter filter(q.w, q.prior_std);
-  filter.move_anchor(q.w, q.spread);
-  Ensemble ensemble(s.coarse, s.coarse_runs, s.operators);
-  ensemble.restart(filter.sigma_points(), q.start);
-  const auto truth = s.fine_runs.start(s.fine.theta(q.w), q.start);
+  // Nodes of the coarse mesh keep their numbers in the finer one, whose run is seen through them.
+  std::vector<Prediction> truth;
+  const auto run = s.fine_runs.start(s.fine.theta(q.w), q.start);
   for (const Frame& frame : q.frames) {
-    ensemble.advance(frame.time);
-    truth->advance(frame.time);
-    const Ensemble::Predicted predicted = ensemble.predict(frame);
-    // Nodes of the coarse mesh keep their numbers in the finer one.
-    const Eigen::VectorXd u = truth->displacement().head(s.coarse.fem().dof_count());
-    const Prediction fine = predict_frame(s.operators, frame, u);
-    filter.update(fine.predicted, predicted.rows, fine.sigma.cwiseAbs2(), Eigen::VectorXd::Ones(fine.sigma.size()));
+    run->advance(frame.time);
+    truth.push_back(predict_frame(s.operators, frame, run->displacement().head(s.coarse.fem().dof_count())));
   }
-  return filter.mean() - q.w;
+  AnchoredFilter filter(q.w, q.prior_std);
+  Ensemble ensemble(s.coarse, s.coarse_runs, s.operators);
+  Eigen::VectorXd fit = q.w;
+  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+    filter.move_anchor(fit, q.spread);
+    ensemble.restart(filter.sigma_points(), q.start);
+    for (std::size_t k = 0; k < q.frames.size(); ++k) {
+      ensemble.advance(q.frames[k].time);
+      const Eigen::MatrixXd rows = ensemble.predict(q.frames[k]).rows;
+      const Eigen::VectorXd& sigma = truth[k].sigma;
+      filter.update(truth[k].predicted, rows, sigma.cwiseAbs2(), Eigen::VectorXd::Ones(sigma.size()));
+    }
+    const Eigen::VectorXd limit = kLongestStep * q.prior_std;
+    const Eigen::VectorXd step = (filter.mean() - fit).cwiseMax(-limit).cwiseMin(limit);
+    fit += step;
+    if ((step.array().abs() < 0.1 * (fit - q.w).array().abs()).all()) break;
+  }
+  return fit - q.w;
 }
 
 }  // namespace tissue_stiffness

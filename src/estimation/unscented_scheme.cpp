@@ -4,9 +4,9 @@
 #include <cmath>
 #include <future>
 
+#include "tissue_stiffness/estimation/choose_correction.hpp"
 #include "tissue_stiffness/estimation/compare.hpp"
 #include "tissue_stiffness/estimation/coordinate_scan.hpp"
-#include "tissue_stiffness/estimation/corrected_runs.hpp"
 #include "tissue_stiffness/estimation/ensemble.hpp"
 #include "tissue_stiffness/estimation/initial_velocity.hpp"
 #include "tissue_stiffness/estimation/mesh_error.hpp"
@@ -29,15 +29,13 @@ constexpr std::size_t kEarly = 16;        // frames up to which the anchor may m
 constexpr double kRevisitGrowth = 1.1;    // of the recording between moves of the anchor later
 constexpr double kScanMisfit = 4.0;       // mean square error over sigma that asks for a scan of the parameters
 constexpr int kScanPoints = 25;           // on either side of the prior's mean
-constexpr int kCorrectedPoints = 12;      // the same for corrected runs, whose likelihood is smoother
+constexpr double kUnexplained = 0.1;      // of the motion's mean square: more, and a free run's fit is badly biased
 constexpr std::size_t kCorrectFrom = 16;  // frames before which a misfit is not taken for missing physics
-constexpr double kReplaced = 4.0;    // times the free run's misfit, beyond which corrected runs no longer follow the model
-constexpr double kFirstForce = 0.1;  // of the modal forces at work: first guess of the missing one
-constexpr int kVelocityFrames = 4;   // frames that the initial velocity is read from
-constexpr std::size_t kWindow = 4000;    // frames kept for replay; later ones only add information
-constexpr double kConverged = 0.05;      // relative standard deviation
-constexpr double kShiftDoubt = 0.5;      // of the mesh's effect, once it is corrected for
-constexpr double kInvalidSigmas = 10.0;  // rms error over noise at which the model says nothing about the body
+constexpr int kVelocityFrames = 4;        // frames that the initial velocity is read from
+constexpr std::size_t kWindow = 4000;     // frames kept for replay; later ones only add information
+constexpr double kConverged = 0.05;       // relative standard deviation
+constexpr double kShiftDoubt = 0.5;       // of the mesh's effect, once it is corrected for
+constexpr double kInvalidSigmas = 10.0;   // rms error over noise at which the model says nothing about the body
 
 class UnscentedScheme : public Scheme {
  public:
@@ -195,8 +193,8 @@ class UnscentedScheme : public Scheme {
       return false;
     }
     last_scan_ = frames_.size();
-    return go_to(scan_coordinates([this](const Eigen::VectorXd& w) { return free_fit(w).cost; }, filter_.anchor(),
-                                  model_->prior_mean(), model_->prior_std(), kScanPoints));
+    return go_to(scan_coordinates([this](const Eigen::VectorXd& w) { return free_fit(problem(), w).cost; },
+                                  filter_.anchor(), model_->prior_mean(), model_->prior_std(), kScanPoints));
   }
 
   bool go_to(const ScanResult& found) {
@@ -212,56 +210,21 @@ class UnscentedScheme : public Scheme {
     if (model_->nonlinear() || !complete_ || frames_.size() < std::max(kCorrectFrom, 2 * last_correction_)) return false;
     last_correction_ = frames_.size();
     const Eigen::VectorXd w = filter_.mean();
-    const FreeFit free = free_fit(w);
-    if (free.cost < kScanMisfit * free.rows) {
+    const FreeFit free = free_fit(problem(), w);
+    const bool lacking = free.cost > kScanMisfit * free.rows && free.cost > kUnexplained * free.motion;
+    const auto correction = lacking ? choose_correction(problem(), w) : std::nullopt;
+    if (!correction) {
       if (corrected_ == nullptr) return false;
       corrected_ = nullptr;
       replay(w, filter_.spread());
       return true;
     }
-    const double scale = modal_force_scale(*model_, *forward_, frames_, w, start());
-    // Where the corrections would replace the model, the likelihood says nothing about its parameters.
-    const auto deviance = [&](const Eigen::VectorXd& x, double force) {
-      if (free_fit(x).cost > kReplaced * free.cost) return static_cast<double>(INFINITY);
-      return CorrectedRuns(*model_, *forward_, operators_, force).deviance(frames_, x, start());
-    };
-    ScanResult found{w, Eigen::VectorXd::Zero(w.size()), 0.0, false};
-    double force = kFirstForce * scale;
-    for (int round = 0; round < (corrected_ ? 1 : 2); ++round) {
-      if (corrected_ == nullptr) {
-        found = scan_coordinates([&](const Eigen::VectorXd& x) { return deviance(x, force); }, found.best,
-                                 model_->prior_mean(), model_->prior_std(), kCorrectedPoints);
-      }
-      found.lowest = INFINITY;
-      for (const double level : {0.3, 0.1, 0.03, 0.01, 0.003}) {
-        const double value = deviance(found.best, level * scale);
-        if (value < found.lowest) found.lowest = value, force = level * scale;
-      }
-    }
-    if (!(found.lowest < free.cost)) return false;
-    corrected_ = std::make_unique<CorrectedRuns>(*model_, *forward_, operators_, force);
-    replay(found.best, (found.step.array() > 0.0).select(found.step, filter_.spread()));
+    corrected_ = std::make_unique<CorrectedRuns>(*model_, *forward_, operators_, correction->force);
+    replay(correction->w, (correction->step.array() > 0.0).select(correction->step, filter_.spread()));
     return true;
   }
 
-  // Sum over rows of the square error of the free run at w, in sigmas, each row's growing slower beyond the robust limit.
-  struct FreeFit {
-    double cost = 0.0;
-    double rows = 0.0;
-  };
-  FreeFit free_fit(const Eigen::VectorXd& w) const {
-    const auto run = forward_->start(model_->theta(w), start());
-    FreeFit fit;
-    for (const Frame& frame : frames_) {
-      run->advance(frame.time);
-      const Prediction p = predict_frame(operators_, frame, run->displacement());
-      const Eigen::ArrayXd e = ((p.measured - p.predicted).cwiseQuotient(p.sigma)).array();
-      const Eigen::ArrayXd weights = row_weights(p).array();
-      fit.cost += (weights > 0.0).select(weights * e.square(), 0.0).sum();
-      fit.rows += static_cast<double>((weights > 0.0).count());
-    }
-    return fit;
-  }
+  FitProblem problem() const { return {*model_, *forward_, operators_, frames_, start()}; }
 
   void replay(const Eigen::VectorXd& anchor, const Eigen::VectorXd& spread) {
     filter_.move_anchor(anchor, spread);

@@ -1,5 +1,6 @@
 #include "tissue_stiffness/meshing/refine.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <map>

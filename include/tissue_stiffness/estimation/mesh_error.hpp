@@ -36,7 +36,8 @@ class MeshError {
     double start = 0.0;         ///< [s]
     std::map<std::string, Course> courses;
   };
-  /// Estimate less truth in filter coordinates, to first order, if the finer mesh were the truth.
+  /// Estimate less truth in filter coordinates if the finer mesh were the truth: the fit of the coarse model to the fine
+  /// run.
   Eigen::VectorXd shift(const Question& question);
 
  private:

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "tissue_stiffness/estimation/corrected_runs.hpp"
+
+namespace tissue_stiffness {
+
+/// A recording to fit: what every likelihood below needs.
+struct FitProblem {
+  const Model& model;
+  const ForwardModel& forward;
+  const std::vector<std::unique_ptr<ObservationOperator>>& operators;
+  const std::vector<Frame>& frames;
+  double start;  ///< [s]
+};
+
+/// Sum over rows of the square error of the free run, in sigmas, each row's growing slower beyond the robust limit.
+struct FreeFit {
+  double cost = 0.0;
+  double motion = 0.0;  ///< the same of a body that stays at rest
+  double rows = 0.0;
+};
+FreeFit free_fit(const FitProblem& problem, const Eigen::VectorXd& w);
+
+/// Where corrected runs explain the recording best, and by how much they are to be corrected.
+struct Correction {
+  Eigen::VectorXd w;
+  Eigen::VectorXd step;  ///< resolution of the search along each coordinate; 0 where w is as it was
+  double force = 0.0;    ///< see StateCorrection
+};
+/// The place and the missing force with the highest likelihood, for a linear model that fits badly: looks around the prior
+/// with much and with little correction, and at `w`. Empty when the free run at `w` is likelier than all of them.
+std::optional<Correction> choose_correction(const FitProblem& problem, const Eigen::VectorXd& w);
+
+}  // namespace tissue_stiffness

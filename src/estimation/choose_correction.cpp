@@ -1,0 +1,69 @@
+#include "tissue_stiffness/estimation/choose_correction.hpp"
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "tissue_stiffness/estimation/compare.hpp"
+#include "tissue_stiffness/estimation/coordinate_scan.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr int kPoints = 12;        // on either side of the prior's mean, for corrected runs
+constexpr int kFreePoints = 25;    // for free ones, whose likelihood is rougher
+constexpr double kReplaced = 4.0;  // times the free run's misfit, beyond which corrected runs no longer follow the model
+constexpr double kLevels[] = {0.3, 0.1, 0.03, 0.01};  // of the modal forces at work
+constexpr double kSearchLevel = 0.1;
+
+Eigen::VectorXd rest_prediction(const FitProblem& problem, const Frame& frame) {
+  return predict_frame(problem.operators, frame, Eigen::VectorXd::Zero(problem.model.fem().dof_count())).predicted;
+}
+
+}  // namespace
+
+FreeFit free_fit(const FitProblem& problem, const Eigen::VectorXd& w) {
+  const auto run = problem.forward.start(problem.model.theta(w), problem.start);
+  FreeFit fit;
+  for (const Frame& frame : problem.frames) {
+    run->advance(frame.time);
+    const Prediction p = predict_frame(problem.operators, frame, run->displacement());
+    const Eigen::ArrayXd e = ((p.measured - p.predicted).cwiseQuotient(p.sigma)).array();
+    const Eigen::ArrayXd weights = row_weights(p).array();
+    fit.cost += (weights > 0.0).select(weights * e.square(), 0.0).sum();
+    const Eigen::ArrayXd motion = ((p.measured - rest_prediction(problem, frame)).cwiseQuotient(p.sigma)).array();
+    fit.motion += (weights > 0.0 && motion.isFinite()).select(weights * motion.square(), 0.0).sum();
+    fit.rows += static_cast<double>((weights > 0.0).count());
+  }
+  return fit;
+}
+
+std::optional<Correction> choose_correction(const FitProblem& problem, const Eigen::VectorXd& w) {
+  const Model& model = problem.model;
+  const double free = free_fit(problem, w).cost;
+  const double scale = modal_force_scale(model, problem.forward, problem.frames, w, problem.start);
+  // Where the corrections would replace the model, the likelihood says nothing about its parameters.
+  const auto deviance = [&](const Eigen::VectorXd& x, double force) {
+    if (free_fit(problem, x).cost > kReplaced * free) return std::numeric_limits<double>::infinity();
+    return CorrectedRuns(model, problem.forward, problem.operators, force).deviance(problem.frames, x, problem.start);
+  };
+  const auto scan = [&](const std::function<double(const Eigen::VectorXd&)>& cost, int points) {
+    return scan_coordinates(cost, w, model.prior_mean(), model.prior_std(), points);
+  };
+  std::vector<ScanResult> places{{w, Eigen::VectorXd::Zero(w.size()), free, false}};
+  places.push_back(scan([&](const Eigen::VectorXd& x) { return free_fit(problem, x).cost; }, kFreePoints));
+  places.push_back(scan([&](const Eigen::VectorXd& x) { return deviance(x, kSearchLevel * scale); }, kPoints));
+  std::optional<Correction> best;
+  double lowest = free;
+  for (const ScanResult& place : places) {
+    for (const double level : kLevels) {
+      const double value = deviance(place.best, level * scale);
+      if (!(value < lowest)) continue;
+      lowest = value;
+      best = Correction{place.best, place.step, level * scale};
+    }
+  }
+  return best;
+}
+
+}  // namespace tissue_stiffness
