@@ -7,9 +7,10 @@ namespace {
 
 class AddedMass : public Effect {
  public:
-  AddedMass(const Value& arguments, const EffectContext& context) : unit_mass_(context.fem.pattern()) {
+  AddedMass(const Value& arguments, const EffectContext& context) {
     const Region& region = context.region(arguments.at("region"));
-    region.facets.empty() ? spread_on_nodes(region, context) : spread_on_facets(region, context);
+    unit_mass_ = region.facets.empty() ? on_nodes(region, context.fem) : facet_mass(context.mesh, region.facets);
+    unit_mass_ *= 3.0 / unit_mass_.sum();
   }
 
   void linear_terms(LinearTerms& out) const override {
@@ -17,37 +18,30 @@ class AddedMass : public Effect {
   }
 
  private:
-  void spread_on_nodes(const Region& region, const EffectContext&) {
-    const double share = 1.0 / static_cast<double>(region.nodes.size());
+  static SparseMatrix on_nodes(const Region& region, const Discretisation& fem) {
+    SparseMatrix shares(fem.dof_count(), fem.dof_count());
     for (const int node : region.nodes) {
-      for (int i = 0; i < 3; ++i) unit_mass_.coeffRef(3 * node + i, 3 * node + i) += share;
+      for (int i = 0; i < 3; ++i) shares.insert(3 * node + i, 3 * node + i) = 1.0;
     }
-  }
-
-  void spread_on_facets(const Region& region, const EffectContext& context) {
-    const TetMesh& mesh = context.mesh;
-    const FacetQuadrature rule(static_cast<int>(mesh.facets.rows()));
-    double total = 0.0;
-    for (const int f : region.facets) {
-      const Eigen::Matrix3Xd x = facet_nodes(mesh, f);
-      const std::vector<int> local = facet_local_nodes(mesh, f);
-      for (int q = 0; q < rule.points(); ++q) {
-        const double area = rule.weight(q) * rule.normal(x, q).norm();
-        total += area;
-        for (std::size_t b = 0; b < local.size(); ++b) {
-          for (std::size_t a = 0; a < local.size(); ++a) {
-            const double n = rule.shape(q)[static_cast<Eigen::Index>(a)] * rule.shape(q)[static_cast<Eigen::Index>(b)];
-            context.fem.add_block(unit_mass_, mesh.facet_tet[f], local[a], local[b],
-                                  area * n * Eigen::Matrix3d::Identity());
-          }
-        }
-      }
-    }
-    unit_mass_ *= 1.0 / total;
+    return shares;
   }
 
   SparseMatrix unit_mass_;
 };
+
+// On every named surface that nothing holds.
+std::vector<Proposal> propose(const ProposalContext& context) {
+  if (context.holds("added_mass")) return {};
+  const Eigen::Vector3d edges = context.high() - context.low();
+  const double scale = 0.05 * context.density * edges.prod();
+  std::vector<Proposal> list;
+  for (const auto& [name, region] : context.regions) {
+    if (region.nodes.empty() || context.names("fixed", name)) continue;
+    const std::string head = "added_mass: {region: " + name + ", mass: ";
+    list.push_back({head + normal(0.0, scale) + "}", "mass", head + log_normal(scale, 4.0) + "}"});
+  }
+  return list;
+}
 
 }  // namespace
 
@@ -59,6 +53,7 @@ EffectSpec added_mass_spec() {
   spec.source = "rigid layer without rotary inertia";
   spec.parameters = {{"mass", "m", "kg", 0.0, 1e4, ParameterSpec::Default::required, 0.0, 0.0, 1}};
   spec.keys = {{"region", "facets (or, where it holds none, nodes) that carry it"}};
+  spec.proposals = propose;
   return spec;
 }
 

@@ -1,24 +1,16 @@
 // Elastic resistance: small strain (linear) or finite strain (neo_hookean).
+#include <numeric>
+
 #include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/fem/neo_hookean.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {
 
-std::vector<int> elements_of(const Value& arguments, const EffectContext& context) {
-  if (arguments.has("region")) return context.region(arguments.at("region")).tets;
-  std::vector<int> all(static_cast<std::size_t>(context.fem.element_count()));
-  for (std::size_t e = 0; e < all.size(); ++e) all[e] = static_cast<int>(e);
-  return all;
-}
-
 class Elasticity : public Effect {
  public:
   Elasticity(const Value& arguments, const EffectContext& context)
-      : elements_(elements_of(arguments, context)), solid_(context.fem, elements_) {
-    if (elements_.empty()) {
-      throw InputError(arguments.at("region").path(), arguments.at("region").shown(), "a region that holds tetrahedra");
-    }
+      : elements_(solid_elements(arguments, context.fem.element_count(), context.regions)), solid_(context.fem, elements_) {
     finite_strain_ = arguments.at("law").as_choice({"linear", "neo_hookean"}) == "neo_hookean";
     Eigen::VectorXd inside = Eigen::VectorXd::Zero(context.fem.element_count());
     for (const int e : elements_) inside[e] = 1.0;
@@ -30,19 +22,23 @@ class Elasticity : public Effect {
     out.stiffness.push_back({volumetric_, [](const Parameters& p) { return lame(p[0], p[1]).lambda; }});
     out.stiffness.push_back({shear_, [](const Parameters& p) { return lame(p[0], p[1]).mu; }});
   }
-  bool nonlinear() const override { return finite_strain_; }
-  bool stiffness_is_reference() const override { return finite_strain_; }
-  void add_force(const Motion& motion, const Parameters& p, Eigen::VectorXd& force) const override {
-    if (finite_strain_) solid_.add_force(lame(p[0], p[1]), motion.displacement, force);
+  bool has_finite_form() const override { return true; }
+  bool always_finite() const override { return finite_strain_; }
+  void add_finite_force(const Motion& motion, const Parameters& p, Eigen::VectorXd& force) const override {
+    solid_.add_force(lame(p[0], p[1]), motion.displacement, force);
   }
-  void add_stiffness(const Motion& motion, const Parameters& p, SparseMatrix& stiffness) const override {
-    if (finite_strain_) solid_.add_stiffness(lame(p[0], p[1]), motion.displacement, stiffness);
+  void add_finite_stiffness(const Motion& motion, const Parameters& p, SparseMatrix& stiffness) const override {
+    solid_.add_stiffness(lame(p[0], p[1]), motion.displacement, stiffness);
   }
   double energy(const Motion& motion, const Parameters& p) const override {
     const Lame c = lame(p[0], p[1]);
-    if (finite_strain_) return solid_.energy(c, motion.displacement);
     const Eigen::VectorXd& u = motion.displacement;
-    return 0.5 * (c.lambda * u.dot(volumetric_ * u) + c.mu * u.dot(shear_ * u));
+    double sum = 0.0;
+    if (motion.finite_share > 0.0) sum += motion.finite_share * solid_.energy(c, u);
+    if (motion.finite_share < 1.0) {
+      sum += (1.0 - motion.finite_share) * 0.5 * (c.lambda * u.dot(volumetric_ * u) + c.mu * u.dot(shear_ * u));
+    }
+    return sum;
   }
 
  private:
@@ -60,7 +56,7 @@ EffectSpec elasticity_spec() {
   spec.summary = "elastic resistance of the tissue, isotropic";
   spec.formula = "linear: sigma = lambda tr(eps) I + 2 mu eps; neo_hookean: P = mu (F - F^-T) + lambda ln J F^-T";
   spec.source = "Yang & Lin 2016, eq. 4, second term; Bonet & Wood 2008, eq. 6.29";
-  spec.parameters = {{"young_modulus", "E", "Pa", 1.0, 1e12, ParameterSpec::Default::required, 0.0, 0.0, 1},
+  spec.parameters = {{"young_modulus", "E", "Pa", 1.0, 1e12, ParameterSpec::Default::required, 0.0, NAN, 1},
                      {"poisson_ratio", "nu", "-", -0.9, 0.4999, ParameterSpec::Default::required, 0.0, NAN, 1}};
   spec.keys = {{"law", "linear | neo_hookean"}, {"region", "tetrahedra it fills; without it the whole body"}};
   return spec;
@@ -71,3 +67,19 @@ std::unique_ptr<Effect> make_elasticity(const Value& arguments, const EffectCont
 }
 
 }  // namespace tissue_stiffness::effects
+
+namespace tissue_stiffness {
+
+std::vector<int> solid_elements(const Value& arguments, int element_count, const std::map<std::string, Region>& regions) {
+  if (!arguments.has("region")) {
+    std::vector<int> all(static_cast<std::size_t>(element_count));
+    std::iota(all.begin(), all.end(), 0);
+    return all;
+  }
+  const Value& name = arguments.at("region");
+  const std::vector<int>& inside = find_region(name, regions).tets;
+  if (inside.empty()) throw InputError(name.path(), name.shown(), "a region that holds tetrahedra");
+  return inside;
+}
+
+}  // namespace tissue_stiffness

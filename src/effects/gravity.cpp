@@ -13,6 +13,12 @@ class Gravity : public Effect {
   }
 };
 
+std::vector<Proposal> propose(const ProposalContext& context) {
+  if (context.holds("gravity")) return {};
+  const std::string entry = "gravity: {acceleration: " + normal(Eigen::Vector3d::Zero(), 6.0) + "}";
+  return {{entry, "acceleration", entry}};
+}
+
 }  // namespace
 
 EffectSpec gravity_spec() {
@@ -22,6 +28,7 @@ EffectSpec gravity_spec() {
   spec.formula = "M g";
   spec.source = "Yang & Lin 2016, eq. 4, third term";
   spec.parameters = {{"acceleration", "g", "m/s^2", -1e3, 1e3, ParameterSpec::Default::required, 0.0, 0.0, 3}};
+  spec.proposals = propose;
   return spec;
 }
 

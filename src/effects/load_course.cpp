@@ -12,7 +12,7 @@ std::shared_ptr<Course> load_course(const Value& arguments, LoadInput::Kind kind
   }
   if (arguments.has("course")) {
     std::string file = arguments.at("course").at("file").as_text();
-    if (!file.empty() && file[0] != '/') file = context.directory + "/" + file;
+    if (!file.empty() && file[0] != '/') file = context.settings.directory + "/" + file;
     auto course = std::make_shared<Course>(Course::from_csv(file, components));
     context.courses["file:" + file] = course;
     return course;

@@ -11,6 +11,12 @@ class MassDamping : public Effect {
   }
 };
 
+std::vector<Proposal> propose(const ProposalContext& context) {
+  if (context.holds("mass_damping")) return {};
+  return {
+      {"mass_damping: {alpha: " + normal(0.0, 3.0) + "}", "alpha", "mass_damping: {alpha: " + log_normal(3.0, 4.0) + "}"}};
+}
+
 }  // namespace
 
 EffectSpec mass_damping_spec() {
@@ -20,6 +26,7 @@ EffectSpec mass_damping_spec() {
   spec.formula = "-alpha M v";
   spec.source = "Rayleigh damping, mass part";
   spec.parameters = {{"alpha", "alpha", "1/s", 0.0, 1e5, ParameterSpec::Default::required, 0.0, 0.0, 1}};
+  spec.proposals = propose;
   return spec;
 }
 

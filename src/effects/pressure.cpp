@@ -18,37 +18,38 @@ class Pressure : public Effect {
   Pressure(const Value& arguments, const EffectContext& context)
       : mesh_(context.mesh),
         fem_(context.fem),
-        facets_(context.region(arguments.at("region")).facets),
-        follower_(context.finite_strain),
+        facets_(find_surface(arguments.at("region"), context.regions).facets),
         rule_(static_cast<int>(context.mesh.facets.rows())),
         course_(load_course(arguments, LoadInput::Kind::pressure, context)) {
-    if (facets_.empty()) {
-      throw InputError(arguments.at("region").path(), arguments.at("region").shown(),
-                       "a region that holds boundary facets");
-    }
     for (const int f : facets_) local_.push_back(facet_local_nodes(mesh_, f));
   }
 
   void linear_terms(LinearTerms& out) const override {
-    if (follower_) return;
     Eigen::VectorXd pattern = Eigen::VectorXd::Zero(fem_.dof_count());
     add_unit_force(nullptr, 1.0, pattern);
-    out.loads.push_back({pattern, [](const Parameters& p) { return p[0]; }, course_, 0});
+    LoadTerm load;
+    load.pattern = std::move(pattern);
+    load.coefficient = [](const Parameters& p) { return p[0]; };
+    load.course = course_;
+    out.loads.push_back(std::move(load));
   }
-  bool nonlinear() const override { return follower_; }
+  bool has_finite_form() const override { return true; }
 
-  void add_force(const Motion& motion, const Parameters& p, Eigen::VectorXd& force) const override {
-    if (follower_) add_unit_force(&motion.displacement, p[0] * course_->value(motion.time, 0), force);
+  void add_finite_force(const Motion& motion, const Parameters& p, Eigen::VectorXd& force) const override {
+    add_unit_force(&motion.displacement, pressure(motion, p), force);
   }
 
   // Symmetric part: exact but for the edge of the loaded surface.
-  void add_stiffness(const Motion& motion, const Parameters& p, SparseMatrix& stiffness) const override {
-    if (!follower_) return;
-    const double pressure = p[0] * course_->value(motion.time, 0);
-    for (std::size_t i = 0; i < facets_.size(); ++i) add_facet_stiffness(i, motion.displacement, pressure, stiffness);
+  void add_finite_stiffness(const Motion& motion, const Parameters& p, SparseMatrix& stiffness) const override {
+    const double now = pressure(motion, p);
+    for (std::size_t i = 0; i < facets_.size(); ++i) add_facet_stiffness(i, motion.displacement, now, stiffness);
   }
 
  private:
+  double pressure(const Motion& motion, const Parameters& p) const {
+    return motion.load_factor * p[0] * course_->value(motion.time, 0);
+  }
+
   void add_unit_force(const Eigen::VectorXd* u, double pressure, Eigen::VectorXd& force) const {
     for (const int f : facets_) {
       const Eigen::Matrix3Xd x = facet_nodes(mesh_, f, u);
@@ -86,7 +87,6 @@ class Pressure : public Effect {
   const Discretisation& fem_;
   std::vector<int> facets_;
   std::vector<std::vector<int>> local_;
-  bool follower_;
   FacetQuadrature rule_;
   std::shared_ptr<Course> course_;
 };

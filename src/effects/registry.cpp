@@ -1,6 +1,7 @@
 #include "tissue_stiffness/effects/registry.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace tissue_stiffness {
 namespace {
@@ -29,7 +30,22 @@ Quantity default_value(const ParameterSpec& spec) {
   return {Quantity::Kind::known, spec.value, 0.0};
 }
 
+// {mean: [x, y, z], std: s}: the same spread along every axis.
+void read_normal_vector(const Value& value, const ParameterSpec& spec, std::vector<Quantity>& out) {
+  const std::string allowed = "{mean: [x, y, z], std} in " + spec.unit;
+  for (const std::string& key : value.keys()) {
+    if (key != "mean" && key != "std") throw InputError(value.path(), value.shown(), allowed);
+  }
+  const std::vector<Value>& mean = value.at("mean").items();
+  if (static_cast<int>(mean.size()) != spec.components) throw InputError(value.path(), value.shown(), allowed);
+  const double std = value.at("std").as_number(std::numeric_limits<double>::min(), 1e300, spec.unit);
+  for (const Value& item : mean) {
+    out.push_back({Quantity::Kind::normal, item.as_number(spec.lower, spec.upper, spec.unit), std});
+  }
+}
+
 void read_vector(const Value& value, const ParameterSpec& spec, std::vector<Quantity>& out) {
+  if (value.type() == Value::Type::map) return read_normal_vector(value, spec, out);
   const std::vector<Value>& items = value.items();
   if (static_cast<int>(items.size()) != spec.components) {
     throw InputError(value.path(), value.shown(), "[x, y, z] in " + spec.unit);
@@ -77,12 +93,22 @@ std::unique_ptr<Effect> make_effect(const EffectSettings& settings, const Effect
 }
 
 const Region& EffectContext::region(const Value& name) const {
+  return find_region(name, regions);
+}
+
+const Region& find_region(const Value& name, const std::map<std::string, Region>& regions) {
   const std::string wanted = name.as_text();
   const auto at = regions.find(wanted);
   if (at != regions.end()) return at->second;
   std::string names;
   for (const auto& entry : regions) names += (names.empty() ? "" : ", ") + entry.first;
   throw InputError(name.path(), "region '" + wanted + "'", names.empty() ? "none: `regions` is empty" : names);
+}
+
+const Region& find_surface(const Value& name, const std::map<std::string, Region>& regions) {
+  const Region& region = find_region(name, regions);
+  if (region.facets.empty()) throw InputError(name.path(), name.shown(), "a region that holds boundary facets");
+  return region;
 }
 
 }  // namespace tissue_stiffness

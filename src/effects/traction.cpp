@@ -23,19 +23,19 @@ class Traction : public Effect {
  public:
   Traction(const Value& arguments, const EffectContext& context)
       : course_(load_course(arguments, LoadInput::Kind::wrench, context)) {
-    const std::vector<int>& facets = context.region(arguments.at("region")).facets;
-    if (facets.empty()) {
-      throw InputError(arguments.at("region").path(), arguments.at("region").shown(),
-                       "a region that holds boundary facets");
-    }
-    weights_ = mean_weights(context.mesh, facets);
+    weights_ = mean_weights(context.mesh, find_surface(arguments.at("region"), context.regions).facets);
   }
 
   void linear_terms(LinearTerms& out) const override {
     for (int i = 0; i < 3; ++i) {
       Eigen::VectorXd pattern = Eigen::VectorXd::Zero(3 * weights_.size());
       for (Eigen::Index a = 0; a < weights_.size(); ++a) pattern[3 * a + i] = weights_[a];
-      out.loads.push_back({pattern, [](const Parameters& p) { return p[0]; }, course_, i});
+      LoadTerm load;
+      load.pattern = std::move(pattern);
+      load.coefficient = [](const Parameters& p) { return p[0]; };
+      load.course = course_;
+      load.component = i;
+      out.loads.push_back(std::move(load));
     }
   }
 

@@ -11,6 +11,13 @@ class ViscousDamping : public Effect {
   }
 };
 
+// Scaled by a damping ratio of a few per cent at ten hertz.
+std::vector<Proposal> propose(const ProposalContext& context) {
+  if (context.holds("viscous_damping")) return {};
+  return {{"viscous_damping: {beta: " + normal(0.0, 2e-3) + "}", "beta",
+           "viscous_damping: {beta: " + log_normal(2e-3, 4.0) + "}"}};
+}
+
 }  // namespace
 
 EffectSpec viscous_damping_spec() {
@@ -20,6 +27,7 @@ EffectSpec viscous_damping_spec() {
   spec.formula = "-beta K v";
   spec.source = "Kelvin-Voigt solid; Rayleigh damping, stiffness part";
   spec.parameters = {{"beta", "beta", "s", 0.0, 1e2, ParameterSpec::Default::required, 0.0, 0.0, 1}};
+  spec.proposals = propose;
   return spec;
 }
 

@@ -21,8 +21,9 @@ TetMesh finer(const TetMesh& mesh) {
   return refine(smooth);
 }
 
-void copy_courses(const std::map<std::string, Course>& from, CourseTable& to) {
-  for (const auto& [topic, course] : from) *to.at(topic) = course;
+void drive(const MeshError::Question& question, Model& model) {
+  for (const auto& [topic, course] : question.courses) *model.courses().at(topic) = course;
+  model.set_first_stamp(question.first_stamp);
 }
 
 }  // namespace
@@ -56,8 +57,8 @@ MeshError::~MeshError() = default;
 
 Eigen::VectorXd MeshError::shift(const Question& q) {
   Studies& s = *studies_;
-  copy_courses(q.courses, s.coarse.courses());
-  copy_courses(q.courses, s.fine.courses());
+  drive(q, s.coarse);
+  drive(q, s.fine);
   // Nodes of the coarse mesh keep their numbers in the finer one, whose run is seen through them.
   std::vector<Prediction> truth;
   const auto run = s.fine_runs.start(s.fine.theta(q.w), q.start);

@@ -37,7 +37,7 @@ Scheme::Scheme(const ModelSettings& settings, const TetMesh& mesh)
 
 void Scheme::set_first_stamp(double time) {
   first_stamp_ = time;
-  for (auto& course : model_->courses()) course.second->shift(time);
+  model_->set_first_stamp(time);
 }
 
 void Scheme::add_load(const LoadSample& sample) {

@@ -281,7 +281,8 @@ class UnscentedScheme : public Scheme {
     }
     if (study_.valid() || !unstudied_.empty() || frames_.size() < std::max(kEarly, 2 * last_study_)) return;
     last_study_ = frames_.size();
-    MeshError::Question question{frames_, filter_.mean(), filter_.spread(), model_->prior_std(), start(), {}};
+    MeshError::Question question{
+        frames_, filter_.mean(), filter_.spread(), model_->prior_std(), start(), model_->first_stamp(), {}};
     for (const auto& [topic, course] : model_->courses()) question.courses.emplace(topic, *course);
     study_ = std::async(std::launch::async, [this, question = std::move(question)] {
       if (mesh_error_ == nullptr) mesh_error_ = std::make_unique<MeshError>(model_->settings(), model_->mesh());

@@ -22,7 +22,8 @@ CentralDifference::CentralDifference(const DynamicSystem& system, double start) 
     if (system.fixed()[static_cast<std::size_t>(i)] != 0) inverse_mass_[i] = 0.0;
   }
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(n);
-  const SparseMatrix k = system.stiffness(start, zero, zero);
+  SparseMatrix k = system.stiffness(start, zero, zero);
+  for (const Relaxation& branch : system.relaxations()) k += branch.modulus * system.relaxing_stiffness();
   Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(n, 1.0, 2.0);
   for (Eigen::Index i = 1; i < n; i += 2) x[i] = -x[i];  // rough: near the highest mode from the start
   double square = 0.0;
@@ -37,14 +38,18 @@ CentralDifference::CentralDifference(const DynamicSystem& system, double start) 
   largest_step_ = kSafety * 2.0 / omega * (std::sqrt(1.0 + damping_ratio * damping_ratio) - damping_ratio);
 }
 
-Eigen::VectorXd CentralDifference::acceleration(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const {
-  Eigen::VectorXd f = system_.force(time, u, v);
-  if (system_.damped()) f -= system_.damping() * v;
+Eigen::VectorXd CentralDifference::acceleration(const DynamicState& state) const {
+  Eigen::VectorXd f = system_.force(state.time, state.displacement, state.velocity);
+  if (system_.damped()) f -= system_.damping() * state.velocity;
+  if (const auto& branches = system_.relaxations(); !branches.empty()) {
+    f -= system_.relaxing_stiffness() * overstretch(branches, state.displacement, state.relaxed);
+  }
   return inverse_mass_.cwiseProduct(f);
 }
 
 void CentralDifference::initialise(DynamicState& state) const {
-  state.acceleration = acceleration(state.time, state.displacement, state.velocity);
+  state.relaxed.assign(system_.relaxations().size(), state.displacement);
+  state.acceleration = acceleration(state);
 }
 
 void CentralDifference::advance(DynamicState& state, double span) const {
@@ -52,9 +57,11 @@ void CentralDifference::advance(DynamicState& state, double span) const {
   const double h = span / steps, start = state.time;
   for (int k = 1; k <= steps; ++k) {
     state.velocity += 0.5 * h * state.acceleration;
-    state.displacement += h * state.velocity;
+    const Eigen::VectorXd next = state.displacement + h * state.velocity;
+    state.relaxed = relax(system_.relaxations(), h, state.displacement, next, state.relaxed);
+    state.displacement = next;
     state.time = start + h * k;
-    state.acceleration = acceleration(state.time, state.displacement, state.velocity);
+    state.acceleration = acceleration(state);
     state.velocity += 0.5 * h * state.acceleration;
   }
   if (!state.displacement.allFinite())

@@ -60,6 +60,7 @@ void Discretisation::compute_gradients(const TetMesh& mesh) {
   const std::vector<QuadraturePoint> rule = stiffness_rule(n);
   points_ = static_cast<int>(rule.size());
   weights_.resize(points_, element_count());
+  positions_.resize(3, static_cast<Eigen::Index>(points_) * element_count());
   gradients_.resize(static_cast<std::size_t>(3 * n * points_) * static_cast<std::size_t>(element_count()));
   for (int e = 0; e < element_count(); ++e) {
     const Eigen::Matrix3Xd x = element_nodes(mesh.nodes, elements_, e);
@@ -74,6 +75,7 @@ void Discretisation::compute_gradients(const TetMesh& mesh) {
         throw InputError(where.str(), "a Jacobian of " + std::to_string(determinant), "positive");
       }
       weights_(q, e) = point.weight * determinant;
+      positions_.col(static_cast<Eigen::Index>(e) * points_ + q) = x * tet_shape(n, point.rst);
       const Eigen::Index at = 3 * n * (static_cast<Eigen::Index>(e) * points_ + q);
       Eigen::Map<Eigen::Matrix3Xd>(gradients_.data() + at, 3, n) = jacobian.inverse() * d;
     }
@@ -173,6 +175,19 @@ SparseMatrix Discretisation::shear_stiffness(const Eigen::VectorXd& element_weig
     }
   }
   return result;
+}
+
+void add_scaled(SparseMatrix& to, double scale, const SparseMatrix& part) {
+  double* values = to.valuePtr();
+  const int* rows = to.innerIndexPtr();
+  for (Eigen::Index column = 0; column < part.outerSize(); ++column) {
+    const int* at = rows + to.outerIndexPtr()[column];
+    const int* end = rows + to.outerIndexPtr()[column + 1];
+    for (SparseMatrix::InnerIterator entry(part, column); entry; ++entry) {
+      at = std::lower_bound(at, end, static_cast<int>(entry.row()));
+      values[at - rows] += scale * entry.value();
+    }
+  }
 }
 
 }  // namespace tissue_stiffness

@@ -62,6 +62,28 @@ Eigen::Matrix3Xd facet_nodes(const TetMesh& mesh, int facet, const Eigen::Vector
   return x;
 }
 
+SparseMatrix facet_mass(const TetMesh& mesh, const std::vector<int>& facets) {
+  const FacetQuadrature rule(static_cast<int>(mesh.facets.rows()));
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const int f : facets) {
+    const Eigen::Matrix3Xd x = facet_nodes(mesh, f);
+    Eigen::MatrixXd local = Eigen::MatrixXd::Zero(x.cols(), x.cols());
+    for (int q = 0; q < rule.points(); ++q) {
+      local += rule.weight(q) * rule.normal(x, q).norm() * rule.shape(q) * rule.shape(q).transpose();
+    }
+    for (Eigen::Index b = 0; b < x.cols(); ++b) {
+      for (Eigen::Index a = 0; a < x.cols(); ++a) {
+        for (int i = 0; i < 3; ++i) {
+          entries.emplace_back(3 * mesh.facets(a, f) + i, 3 * mesh.facets(b, f) + i, local(a, b));
+        }
+      }
+    }
+  }
+  SparseMatrix result(3 * mesh.node_count(), 3 * mesh.node_count());
+  result.setFromTriplets(entries.begin(), entries.end());
+  return result;
+}
+
 std::vector<int> facet_local_nodes(const TetMesh& mesh, int facet) {
   std::vector<int> local;
   const auto tet = mesh.tets.col(mesh.facet_tet[facet]);

@@ -38,8 +38,21 @@ Deformation deform(const Nodal<N>& u, const Eigen::Map<const Nodal<N>>& g, int e
   return d;
 }
 
-template <int N>
-void force(const Discretisation& fem, const std::vector<int>& list, const Lame& c, const Eigen::VectorXd& u,
+double energy_density(const Lame& c, const Deformation& d) {
+  return 0.5 * c.mu * (d.gradient.squaredNorm() - 3.0 - 2.0 * d.log_volume) + 0.5 * c.lambda * d.log_volume * d.log_volume;
+}
+
+// First Piola-Kirchhoff stress.
+Eigen::Matrix3d stress(const Lame& c, const Deformation& d) {
+  return c.mu * d.gradient + (c.lambda * d.log_volume - c.mu) * d.inverse.transpose();
+}
+
+struct Plain {
+  StressScale operator()(int, int, double) const { return {}; }
+};
+
+template <int N, typename Law>
+void force(const Discretisation& fem, const std::vector<int>& list, const Lame& c, const Eigen::VectorXd& u, const Law& law,
            Eigen::VectorXd& f) {
   for (const int e : list) {
     const Nodal<N> local = gather<N>(fem.elements(), e, u);
@@ -47,30 +60,34 @@ void force(const Discretisation& fem, const std::vector<int>& list, const Lame& 
     for (int q = 0; q < fem.points_per_element(); ++q) {
       const Eigen::Map<const Nodal<N>> g(fem.gradient(e, q).data());
       const Deformation d = deform<N>(local, g, e);
-      const Eigen::Matrix3d stress =
-          c.mu * d.gradient + (c.lambda * d.log_volume - c.mu) * d.inverse.transpose();  // first Piola-Kirchhoff
-      internal.noalias() += (fem.weight(e, q) * stress) * g;
+      const double scale = law(e, q, energy_density(c, d)).value;
+      if (scale != 0.0) internal.noalias() += (scale * fem.weight(e, q) * stress(c, d)) * g;
     }
     for (int a = 0; a < N; ++a) f.segment<3>(3 * fem.elements()(a, e)) -= internal.col(a);
   }
 }
 
-template <int N>
+template <int N, typename Law>
 void stiffness(const Discretisation& fem, const std::vector<int>& list, const Lame& c, const Eigen::VectorXd& u,
-               SparseMatrix& k) {
+               const Law& law, SparseMatrix& k) {
   for (const int e : list) {
     const Nodal<N> local = gather<N>(fem.elements(), e, u);
     Eigen::Matrix<double, 3 * N, 3 * N> block = Eigen::Matrix<double, 3 * N, 3 * N>::Zero();
     for (int q = 0; q < fem.points_per_element(); ++q) {
       const Eigen::Map<const Nodal<N>> g(fem.gradient(e, q).data());
       const Deformation d = deform<N>(local, g, e);
+      const StressScale scale = law(e, q, energy_density(c, d));
+      if (scale.value == 0.0 && scale.slope == 0.0) continue;
       const Nodal<N> h = d.inverse.transpose() * g;  // gradients in the deformed body
-      const double w = fem.weight(e, q), s = w * (c.mu - c.lambda * d.log_volume), l = w * c.lambda, m = w * c.mu;
+      const Nodal<N> p = stress(c, d) * g;
+      const double w = scale.value * fem.weight(e, q), s = w * (c.mu - c.lambda * d.log_volume), l = w * c.lambda,
+                   m = w * c.mu, steeper = scale.slope * fem.weight(e, q);
       for (int b = 0; b < N; ++b) {
         for (int a = 0; a < N; ++a) {
           auto part = block.template block<3, 3>(3 * a, 3 * b);
           part.noalias() += (s * h.col(b)) * h.col(a).transpose() + (l * h.col(a)) * h.col(b).transpose();
           part.diagonal().array() += m * g.col(a).dot(g.col(b));
+          if (steeper != 0.0) part.noalias() += (steeper * p.col(a)) * p.col(b).transpose();
         }
       }
     }
@@ -87,8 +104,7 @@ double stored(const Discretisation& fem, const std::vector<int>& list, const Lam
     const Nodal<N> local = gather<N>(fem.elements(), e, u);
     for (int q = 0; q < fem.points_per_element(); ++q) {
       const Deformation d = deform<N>(local, Eigen::Map<const Nodal<N>>(fem.gradient(e, q).data()), e);
-      energy += fem.weight(e, q) * (0.5 * c.mu * (d.gradient.squaredNorm() - 3.0 - 2.0 * d.log_volume) +
-                                    0.5 * c.lambda * d.log_volume * d.log_volume);
+      energy += fem.weight(e, q) * energy_density(c, d);
     }
   }
   return energy;
@@ -97,11 +113,23 @@ double stored(const Discretisation& fem, const std::vector<int>& list, const Lam
 }  // namespace
 
 void NeoHookean::add_force(const Lame& lame, const Eigen::VectorXd& u, Eigen::VectorXd& f) const {
-  fem_.nodes_per_element() == 10 ? force<10>(fem_, elements_, lame, u, f) : force<4>(fem_, elements_, lame, u, f);
+  fem_.nodes_per_element() == 10 ? force<10>(fem_, elements_, lame, u, Plain(), f)
+                                 : force<4>(fem_, elements_, lame, u, Plain(), f);
 }
 
 void NeoHookean::add_stiffness(const Lame& lame, const Eigen::VectorXd& u, SparseMatrix& k) const {
-  fem_.nodes_per_element() == 10 ? stiffness<10>(fem_, elements_, lame, u, k) : stiffness<4>(fem_, elements_, lame, u, k);
+  fem_.nodes_per_element() == 10 ? stiffness<10>(fem_, elements_, lame, u, Plain(), k)
+                                 : stiffness<4>(fem_, elements_, lame, u, Plain(), k);
+}
+
+void NeoHookean::add_force(const Lame& lame, const Eigen::VectorXd& u, const PointLaw& scale, Eigen::VectorXd& f) const {
+  fem_.nodes_per_element() == 10 ? force<10>(fem_, elements_, lame, u, scale, f)
+                                 : force<4>(fem_, elements_, lame, u, scale, f);
+}
+
+void NeoHookean::add_stiffness(const Lame& lame, const Eigen::VectorXd& u, const PointLaw& scale, SparseMatrix& k) const {
+  fem_.nodes_per_element() == 10 ? stiffness<10>(fem_, elements_, lame, u, scale, k)
+                                 : stiffness<4>(fem_, elements_, lame, u, scale, k);
 }
 
 double NeoHookean::energy(const Lame& lame, const Eigen::VectorXd& u) const {

@@ -33,7 +33,13 @@ Newmark::Newmark(const DynamicSystem& system, double spectral_radius, double tol
   }
 }
 
+const std::vector<Relaxation>& DynamicSystem::relaxations() const {
+  static const std::vector<Relaxation> none;
+  return none;
+}
+
 void Newmark::initialise(DynamicState& state) const {
+  state.relaxed.assign(system_.relaxations().size(), state.displacement);
   Eigen::VectorXd f = system_.force(state.time, state.displacement, state.velocity);
   if (system_.damped()) f -= system_.damping() * state.velocity;
   zero_fixed(f, system_.fixed());
@@ -72,6 +78,10 @@ Eigen::VectorXd Newmark::residual(const DynamicState& s, const Eigen::VectorXd& 
   Eigen::VectorXd r = system_.force(middle.time, middle.displacement, middle.velocity);
   r -= system_.mass() * middle.acceleration;
   if (system_.damped()) r -= system_.damping() * middle.velocity;
+  if (const auto& branches = system_.relaxations(); !branches.empty()) {
+    const auto z = relax(branches, (1.0 - alpha_f_) * h, s.displacement, middle.displacement, s.relaxed);
+    r -= system_.relaxing_stiffness() * overstretch(branches, middle.displacement, z);
+  }
   zero_fixed(r, system_.fixed());
   return r;
 }
@@ -80,6 +90,10 @@ void Newmark::factorize(const DynamicState& middle, double h) {
   SparseMatrix j = (1.0 - alpha_f_) * system_.stiffness(middle.time, middle.displacement, middle.velocity);
   j += (1.0 - alpha_m_) / (beta_ * h * h) * system_.mass();
   if (system_.damped()) j += (1.0 - alpha_f_) * gamma_ / (beta_ * h) * system_.damping();
+  for (const Relaxation& branch : system_.relaxations()) {
+    const double quick = branch.modulus * (1.0 - RelaxationStep(branch, (1.0 - alpha_f_) * h).to);
+    j += (1.0 - alpha_f_) * quick * system_.relaxing_stiffness();
+  }
   fix_dofs(j, system_.fixed(), j.diagonal().mean());
   solver_.factorize(j);
   updates_.clear();
@@ -163,6 +177,7 @@ bool Newmark::try_step(DynamicState& state, double h) {
 void Newmark::accept(DynamicState& state, const Eigen::VectorXd& x, double h) {
   const Eigen::VectorXd a = (x - h * state.velocity) / (beta_ * h * h) - (0.5 / beta_ - 1.0) * state.acceleration;
   state.velocity += h * ((1.0 - gamma_) * state.acceleration + gamma_ * a);
+  state.relaxed = relax(system_.relaxations(), h, state.displacement, state.displacement + x, state.relaxed);
   state.displacement += x;
   state.acceleration = a;
   state.time += h;

@@ -82,11 +82,20 @@ std::string FullModel::description() const {
 }
 
 ModelSystem::ModelSystem(const Model& model, Eigen::VectorXd theta)
-    : model_(model), theta_(std::move(theta)), mass_(model.mass(theta_)), stiffness_(model.stiffness(theta_)) {
+    : model_(model),
+      theta_(std::move(theta)),
+      mass_(model.mass(theta_)),
+      stiffness_(model.stiffness(theta_)),
+      fixed_(model.fixed(theta_)),
+      relaxations_(model.relaxations(theta_)) {
   const double alpha = model.mass_damping(theta_), beta = model.stiffness_damping(theta_);
   linear_part_ = stiffness_.coeffs().cwiseAbs().maxCoeff() > 0.0;
   damped_ = alpha > 0.0 || beta > 0.0;
-  if (damped_) damping_ = alpha * mass_ + beta * model.reference_stiffness(theta_);
+  if (beta > 0.0 || !relaxations_.empty()) reference_ = model.reference_stiffness(theta_);
+  if (damped_) {
+    damping_ = alpha * mass_;
+    if (beta > 0.0) damping_ += beta * reference_;
+  }
   gravity_ = mass_ * model.body_acceleration(theta_).replicate(mass_.rows() / 3, 1);
 }
 

@@ -8,7 +8,7 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kSpeedLimit = 1e4;  // [m/s], bound of the initial velocity
+constexpr double kSpeedLimit = 1e4;                          // [m/s], bound of the initial velocity
 const Quantity kAnySpeed{Quantity::Kind::normal, 0.0, 1.0};  // [m/s], until frames tell
 
 const EffectSettings* find_effect(const ModelSettings& settings, const std::string& name) {
@@ -41,42 +41,103 @@ double FreeParameter::prior_std() const {
 Model::Model(const ModelSettings& settings, const TetMesh& mesh)
     : settings_(settings), mesh_(mesh), fem_(mesh_), regions_(resolve_regions(settings.regions, mesh_)) {
   require_effect(settings_, "inertia");
-  const EffectSettings& elasticity = require_effect(settings_, "elasticity");
-  const EffectContext context{mesh_,
-                              fem_,
-                              regions_,
-                              elasticity.arguments.at("law").as_text() != "linear",
-                              read_parameters(elasticity).front().value,
-                              settings_.directory,
-                              courses_,
-                              inputs_};
+  const EffectContext shared = context();
+  holders_.assign(static_cast<std::size_t>(fem_.node_count()), 0);
+  for (const EffectSettings& effect : settings_.effects) add_part(effect, shared);
+  link_elasticities();
+  for (Part& part : parts_) {
+    part.effect->linear_terms(part.terms);
+    settle_terms(part);
+    finite_law_ = finite_law_ || part.effect->always_finite();
+    nonlinear_ = nonlinear_ || part.effect->nonlinear() || !part.terms.finite_share.empty();
+  }
+  nonlinear_ = nonlinear_ || finite_law_;
+  check_laws();
   fixed_.assign(static_cast<std::size_t>(fem_.dof_count()), 0);
-  for (const EffectSettings& effect : settings_.effects) add_part(effect, context);
+  for (std::size_t node = 0; node < holders_.size(); ++node) {
+    if (holders_[node] > 0) std::fill_n(fixed_.begin() + static_cast<std::ptrdiff_t>(3 * node), 3, char{1});
+  }
   add_initial_velocity();
 }
 
+EffectContext Model::context() {
+  const EffectSettings& elasticity = require_effect(settings_, "elasticity");
+  std::vector<std::vector<int>> solids;
+  for (const EffectSettings& effect : settings_.effects) {
+    if (effect.name != "elasticity") continue;
+    solids.push_back(solid_elements(effect.arguments, fem_.element_count(), regions_));
+  }
+  const double modulus = read_parameters(elasticity).front().value;
+  return {mesh_, fem_, regions_, settings_, std::move(solids), modulus, courses_, inputs_};
+}
+
 void Model::add_part(const EffectSettings& settings, const EffectContext& context) {
-  const std::vector<Quantity> quantities = read_parameters(settings);
   Part part;
   part.label = settings.label;
-  part.offset = static_cast<int>(known_.size());
-  part.count = static_cast<int>(quantities.size());
-  known_.conservativeResize(part.offset + part.count);
-  std::size_t k = 0;
+  add_parameters(settings, part);
+  part.effect = make_effect(settings, context);
+  for (const int node : part.effect->fixed_nodes()) ++holders_[static_cast<std::size_t>(node)];
+  parts_.push_back(std::move(part));
+}
+
+void Model::add_parameters(const EffectSettings& settings, Part& part) {
+  const std::vector<Quantity> quantities = read_parameters(settings);
+  auto quantity = quantities.begin();
   for (const ParameterSpec& spec : effect_spec(settings).parameters) {
-    for (int c = 0; c < spec.components; ++c, ++k) {
-      known_[part.offset + static_cast<int>(k)] = quantities[k].value;
-      if (!quantities[k].estimated()) continue;
+    for (int c = 0; c < spec.components; ++c, ++quantity) {
+      const auto index = static_cast<int>(known_.size());
+      known_.conservativeResize(index + 1);
+      known_[index] = quantity->value;
+      part.indices.push_back(index);
+      if (!quantity->estimated()) continue;
       const std::string suffix = spec.components > 1 ? std::string("_") + "xyz"[c] : "";
-      free_.push_back({settings.label + "." + spec.name + suffix, spec.unit, quantities[k], spec.lower, spec.upper});
-      free_index_.push_back(part.offset + static_cast<int>(k));
+      free_.push_back({settings.label + "." + spec.name + suffix, spec.unit, *quantity, spec.lower, spec.upper});
+      free_index_.push_back(index);
     }
   }
-  part.effect = make_effect(settings, context);
-  part.effect->linear_terms(part.terms);
-  nonlinear_ = nonlinear_ || part.effect->nonlinear();
-  for (const int node : part.effect->fixed_nodes()) std::fill_n(fixed_.begin() + 3 * node, 3, char{1});
-  parts_.push_back(std::move(part));
+}
+
+// Effects that alter the elastic law read its parameters behind their own.
+void Model::link_elasticities() {
+  std::vector<int> elastic;
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    if (settings_.effects[i].name != "elasticity") continue;
+    elastic.insert(elastic.end(), parts_[i].indices.begin(), parts_[i].indices.end());
+  }
+  for (Part& part : parts_) {
+    if (part.effect->needs_elasticity()) part.indices.insert(part.indices.end(), elastic.begin(), elastic.end());
+  }
+}
+
+// Finite strain is the whole model's: a mixture of laws would have no meaning for the effects between them.
+void Model::check_laws() const {
+  bool linear = false, blended = false;
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    linear = linear || (settings_.effects[i].name == "elasticity" && !parts_[i].effect->always_finite());
+    blended = blended || !parts_[i].terms.finite_share.empty();
+  }
+  if (finite_law_ && (linear || blended)) {
+    throw InputError(settings_.name + ": effects",
+                     linear ? "elasticities of small and of finite strain" : "finite strain twice",
+                     "one law for all; geometric_nonlinearity only with law: linear");
+  }
+}
+
+// Patterns whose parameters are all known are computed once.
+void Model::settle_terms(Part& part) const {
+  const Eigen::VectorXd p = part.parameters(known_);
+  for (LoadTerm& load : part.terms.loads) {
+    if (!load.shaped) continue;
+    load.pattern = load.shaped(p);
+    if (!estimated(part, load.shape)) load.shaped = nullptr;
+  }
+}
+
+bool Model::estimated(const Part& part, const std::vector<int>& shape) const {
+  return std::any_of(shape.begin(), shape.end(), [&](int i) {
+    const int index = part.indices[static_cast<std::size_t>(i)];
+    return std::find(free_index_.begin(), free_index_.end(), index) != free_index_.end();
+  });
 }
 
 void Model::add_initial_velocity() {
@@ -85,11 +146,7 @@ void Model::add_initial_velocity() {
   known_.tail<3>() = settings_.initial.velocity;
   if (settings_.initial.kind != InitialSettings::Kind::from_frames) return;
   for (int i = 0; i < 3; ++i) {
-    free_.push_back({std::string("initial.velocity_") + "xyz"[i],
-                     "m/s",
-                     kAnySpeed,
-                     -kSpeedLimit,
-                     kSpeedLimit});
+    free_.push_back({std::string("initial.velocity_") + "xyz"[i], "m/s", kAnySpeed, -kSpeedLimit, kSpeedLimit});
     free_index_.push_back(static_cast<int>(offset) + i);
   }
 }
@@ -125,86 +182,9 @@ Eigen::VectorXd Model::prior_std() const {
   return s;
 }
 
-SparseMatrix Model::mass(const Eigen::VectorXd& theta) const {
-  SparseMatrix m = fem_.pattern();
-  for (const Part& part : parts_) {
-    for (const MatrixTerm& term : part.terms.mass) m += term.coefficient(part.parameters(theta)) * term.matrix;
-  }
-  return m;
-}
-
-SparseMatrix Model::stiffness(const Eigen::VectorXd& theta) const {
-  SparseMatrix k = fem_.pattern();
-  for (const Part& part : parts_) {
-    if (part.effect->stiffness_is_reference()) continue;
-    for (const MatrixTerm& term : part.terms.stiffness) k += term.coefficient(part.parameters(theta)) * term.matrix;
-  }
-  return k;
-}
-
-SparseMatrix Model::reference_stiffness(const Eigen::VectorXd& theta) const {
-  SparseMatrix k = fem_.pattern();
-  for (const Part& part : parts_) {
-    for (const MatrixTerm& term : part.terms.stiffness) k += term.coefficient(part.parameters(theta)) * term.matrix;
-  }
-  return k;
-}
-
-Eigen::VectorXd Model::stiffness_coefficients(const Eigen::VectorXd& theta) const {
-  std::vector<double> values;
-  for (const Part& part : parts_) {
-    for (const MatrixTerm& term : part.terms.stiffness) values.push_back(term.coefficient(part.parameters(theta)));
-  }
-  return Eigen::Map<Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-}
-
-double Model::mass_damping(const Eigen::VectorXd& theta) const {
-  double sum = 0.0;
-  for (const Part& part : parts_) {
-    for (const Coefficient& c : part.terms.mass_damping) sum += c(part.parameters(theta));
-  }
-  return sum;
-}
-
-double Model::stiffness_damping(const Eigen::VectorXd& theta) const {
-  double sum = 0.0;
-  for (const Part& part : parts_) {
-    for (const Coefficient& c : part.terms.stiffness_damping) sum += c(part.parameters(theta));
-  }
-  return sum;
-}
-
-Eigen::Vector3d Model::body_acceleration(const Eigen::VectorXd& theta) const {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const Part& part : parts_) {
-    for (int i = 0; i < 3; ++i) {
-      for (const Coefficient& c : part.terms.acceleration[i]) sum[i] += c(part.parameters(theta));
-    }
-  }
-  return sum;
-}
-
-void Model::add_loads(const Eigen::VectorXd& theta, double time, Eigen::VectorXd& force) const {
-  for (const Part& part : parts_) {
-    for (const LoadTerm& term : part.terms.loads) {
-      const double course = term.course ? term.course->value(time, term.component) : 1.0;
-      force += term.coefficient(part.parameters(theta)) * course * term.pattern;
-    }
-  }
-}
-
-void Model::add_nonlinear_force(const Eigen::VectorXd& theta, const Motion& motion, Eigen::VectorXd& force) const {
-  for (const Part& part : parts_) part.effect->add_force(motion, part.parameters(theta), force);
-}
-
-void Model::add_nonlinear_stiffness(const Eigen::VectorXd& theta, const Motion& motion, SparseMatrix& stiffness) const {
-  for (const Part& part : parts_) part.effect->add_stiffness(motion, part.parameters(theta), stiffness);
-}
-
-double Model::stored_energy(const Eigen::VectorXd& theta, const Motion& motion) const {
-  double sum = 0.0;
-  for (const Part& part : parts_) sum += part.effect->energy(motion, part.parameters(theta));
-  return sum;
+void Model::set_first_stamp(double time) {
+  first_stamp_ = time;
+  for (auto& course : courses_) course.second->shift(time);
 }
 
 }  // namespace tissue_stiffness

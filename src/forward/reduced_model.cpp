@@ -1,148 +1,191 @@
 #include "tissue_stiffness/forward/reduced_model.hpp"
 
-#include <cmath>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
-#include "tissue_stiffness/fem/sparse_solver.hpp"
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
 #include "tissue_stiffness/forward/reduced_trajectory.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kDependent = 1e-7;  // a candidate that loses this much of its norm to the basis is no new direction
-constexpr double kShift = 1e-3;      // of a free body's smallest elastic frequency squared, makes K invertible
+constexpr std::size_t kKept = 8;  // modes of the last theta: what damping, loads and sensors vary leaves them alone
 
-Eigen::MatrixX3d uniform_motion(const std::vector<char>& fixed) {
-  Eigen::MatrixX3d u = Eigen::MatrixX3d::Zero(static_cast<Eigen::Index>(fixed.size()), 3);
-  for (Eigen::Index i = 0; i < u.rows(); ++i) u(i, i % 3) = fixed[static_cast<std::size_t>(i)] != 0 ? 0.0 : 1.0;
-  return u;
+Eigen::MatrixX3d unit_motion(Eigen::Index dofs) {
+  return Eigen::Matrix3d::Identity().replicate(dofs / 3, 1);
 }
 
-void zero_fixed(Eigen::MatrixXd& x, const std::vector<char>& fixed) {
-  for (Eigen::Index i = 0; i < x.rows(); ++i) {
-    if (fixed[static_cast<std::size_t>(i)] != 0) x.row(i).setZero();
+Eigen::MatrixXd chosen(const Eigen::MatrixXd& m, const std::vector<int>& rows, const std::vector<int>& columns) {
+  Eigen::MatrixXd part(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t j = 0; j < columns.size(); ++j) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      part(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = m(rows[i], columns[j]);
+    }
   }
+  return part;
 }
 
-// Gram-Schmidt, twice, in the inner product of M.
-class OrthonormalBasis {
- public:
-  OrthonormalBasis(const SparseMatrix& mass, int capacity) : mass_(mass), vectors_(mass.rows(), capacity) {}
-
-  bool full() const { return size_ == vectors_.cols(); }
-  int size() const { return size_; }
-  auto vectors() const { return vectors_.leftCols(size_); }
-
-  bool add(Eigen::VectorXd x) {
-    if (full()) return false;
-    const double before = std::sqrt(x.dot(mass_ * x));
-    if (!(before > 0.0)) return false;
-    x /= before;
-    for (int pass = 0; pass < 2; ++pass) x -= vectors() * (vectors().transpose() * (mass_ * x)).eval();
-    const double after = std::sqrt(x.dot(mass_ * x));
-    if (!(after > kDependent)) return false;
-    vectors_.col(size_++) = x / after;
-    return true;
+// basis^T K basis, at the cost of K's own rows.
+Eigen::MatrixXd project_matrix(const SparseMatrix& k, const Eigen::MatrixXd& basis) {
+  std::vector<int> rows;
+  for (int j = 0; j < k.outerSize(); ++j) {
+    if (SparseMatrix::InnerIterator(k, j)) rows.push_back(j);
   }
-
- private:
-  const SparseMatrix& mass_;
-  Eigen::MatrixXd vectors_;
-  int size_ = 0;
-};
+  if (static_cast<Eigen::Index>(rows.size()) == k.rows()) return basis.transpose() * (k * basis);
+  const auto count = static_cast<Eigen::Index>(rows.size());
+  Eigen::MatrixXd own(count, basis.cols()), product = Eigen::MatrixXd::Zero(count, basis.cols());
+  std::vector<Eigen::Index> place(static_cast<std::size_t>(k.rows()), -1);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    own.row(i) = basis.row(rows[static_cast<std::size_t>(i)]);
+    place[static_cast<std::size_t>(rows[static_cast<std::size_t>(i)])] = i;
+  }
+  for (Eigen::Index j = 0; j < count; ++j) {
+    for (SparseMatrix::InnerIterator entry(k, rows[static_cast<std::size_t>(j)]); entry; ++entry) {
+      product.row(place[static_cast<std::size_t>(entry.row())]) += entry.value() * own.row(j);
+    }
+  }
+  return own.transpose() * product;
+}
 
 }  // namespace
 
-ReducedModel::ReducedModel(const Model& model, int basis_size) : model_(model) {
+ReducedModel::ReducedModel(const Model& model, const BasisOptions& options) : model_(model) {
   if (model.nonlinear()) throw InputError("model", "a nonlinear effect", "linear effects only, in a reduced basis");
-  build_basis(basis_size);
+  basis_ = build_reduced_basis(model, options);
   project();
 }
 
-Eigen::MatrixXd ReducedModel::start_vectors(const SparseMatrix& mass) const {
-  const Eigen::VectorXd theta = model_.theta(model_.prior_mean());
-  Eigen::MatrixXd patterns(model_.fem().dof_count(), 0);
-  const auto append = [&patterns](const Eigen::VectorXd& x) {
-    patterns.conservativeResize(Eigen::NoChange, patterns.cols() + 1);
-    patterns.rightCols<1>() = x;
-  };
-  const Eigen::MatrixX3d uniform = uniform_motion(model_.fixed());
-  const auto& free = model_.free_parameters();
-  bool unknown_acceleration = false;
-  for (const auto& parameter : free) {
-    unknown_acceleration = unknown_acceleration || parameter.name.find(".acceleration_") != std::string::npos;
-  }
-  const Eigen::Vector3d gravity = model_.body_acceleration(theta);
-  if (unknown_acceleration) {
-    for (int i = 0; i < 3; ++i) append(mass * uniform.col(i));
-  } else if (gravity.norm() > 0.0) {
-    append(mass * (uniform * gravity));
-  }
-  for (const auto& part : model_.parts()) {
-    for (const auto& term : part.terms.loads) append(term.pattern);
-  }
-  const bool moving = model_.settings().initial.kind != InitialSettings::Kind::rest;
-  for (int i = 0; moving && i < 3; ++i) append(mass * uniform.col(i));
-  if (patterns.cols() == 0) {
-    throw InputError(model_.settings().name + ": effects", "nothing that moves the body",
-                     "gravity, pressure, traction or an initial velocity");
-  }
-  return patterns;
-}
-
-void ReducedModel::build_basis(int size) {
-  const Eigen::VectorXd theta = model_.theta(model_.prior_mean());
-  const SparseMatrix mass = model_.mass(theta);
-  SparseMatrix stiffness = model_.stiffness(theta);
-  bool held = false;
-  for (const char flag : model_.fixed()) held = held || flag != 0;
-  if (!held) stiffness += kShift * stiffness.diagonal().sum() / mass.diagonal().sum() * 1e-3 * mass;
-  std::vector<SparseMatrix> regional;  // K_r of each elasticity when their ratios may change
-  for (const auto& part : model_.parts()) {
-    if (part.terms.stiffness.empty()) continue;
-    SparseMatrix k = model_.fem().pattern();
-    for (const auto& term : part.terms.stiffness) k += term.coefficient(part.parameters(theta)) * term.matrix;
-    regional.push_back(std::move(k));
-  }
-  if (regional.size() == 1) regional.clear();
-  fix_dofs(stiffness, model_.fixed(), stiffness.diagonal().mean());
-  SparseSolver solver;
-  solver.factorize(stiffness);
-
-  OrthonormalBasis basis(mass, std::min(size, model_.fem().dof_count() / 2));
-  const auto extend = [&](Eigen::MatrixXd loads) {
-    zero_fixed(loads, model_.fixed());
-    const Eigen::MatrixXd x = solver.solve(loads);
-    const int before = basis.size();
-    for (Eigen::Index i = 0; i < x.cols(); ++i) basis.add(x.col(i));
-    return Eigen::MatrixXd(basis.vectors().rightCols(basis.size() - before));
-  };
-  Eigen::MatrixXd block = extend(start_vectors(mass));
-  while (!basis.full() && block.cols() > 0) {
-    Eigen::MatrixXd loads = mass * block;
-    for (const SparseMatrix& k : regional) {
-      loads.conservativeResize(Eigen::NoChange, loads.cols() + block.cols());
-      loads.rightCols(block.cols()) = k * block;
-    }
-    block = extend(std::move(loads));
-  }
-  basis_ = basis.vectors();
-}
-
 void ReducedModel::project() {
-  const Eigen::MatrixX3d uniform = uniform_motion(model_.fixed());
+  bool strained = false, varies = false;
   for (const auto& part : model_.parts()) {
-    mass_.emplace_back();
-    stiffness_.emplace_back();
-    loads_.emplace_back();
-    uniform_.emplace_back();
-    for (const auto& term : part.terms.mass) {
-      const Eigen::MatrixXd mb = term.matrix * basis_;
-      mass_.back().push_back(basis_.transpose() * mb);
-      uniform_.back().push_back(mb.transpose() * uniform);
+    for (const StrainTerm& term : part.terms.strain_stiffness) {
+      strained = true;
+      varies = varies || model_.estimated(part, term.shape);
     }
-    for (const auto& term : part.terms.stiffness) stiffness_.back().push_back(basis_.transpose() * (term.matrix * basis_));
-    for (const auto& term : part.terms.loads) loads_.back().push_back(basis_.transpose() * term.pattern);
   }
+  if (strained) strains_ = strains(model_.fem(), basis_.vectors);
+  projected_.resize(model_.parts().size());
+  tbb::parallel_for(std::size_t{0}, projected_.size(), [this](std::size_t p) { project_part(p); });
+  if (!varies) strains_.resize(0, 0);
+}
+
+void ReducedModel::project_part(std::size_t index) {
+  const auto& part = model_.parts()[index];
+  const Eigen::MatrixXd& b = basis_.vectors;
+  Projected& out = projected_[index];
+  const Eigen::VectorXd p = part.parameters(model_.theta(model_.prior_mean()));
+  Eigen::MatrixX3d unit = unit_motion(b.rows()), loose = unit;
+  for (Eigen::Index i = 0; i < loose.rows(); ++i) {
+    if (model_.fixed()[static_cast<std::size_t>(i)] != 0) loose.row(i).setZero();
+  }
+  for (const auto& term : part.terms.mass) {
+    out.mass.push_back(project_matrix(term.matrix, b));
+    out.weight.push_back(b.transpose() * (term.matrix * unit));
+    out.momentum.push_back(b.transpose() * (term.matrix * loose));
+  }
+  for (const auto& term : part.terms.stiffness) out.stiffness.push_back(project_matrix(term.matrix, b));
+  for (const auto& term : part.terms.strain_stiffness) {
+    out.strain_stiffness.emplace_back();
+    if (model_.estimated(part, term.shape)) continue;
+    out.strain_stiffness.back() = project_strain_stiffness(model_.fem(), term.at(p), strains_);
+  }
+  for (const auto& term : part.terms.loads) out.loads.push_back(b.transpose() * term.pattern);
+}
+
+std::vector<int> ReducedModel::active(const Eigen::VectorXd& theta) const {
+  std::vector<int> columns;
+  for (std::size_t i = 0; i < basis_.support.size(); ++i) {
+    const int support = basis_.support[i];
+    if (support >= 0) {
+      const auto& part = model_.parts()[static_cast<std::size_t>(support)];
+      if (!part.effect->releases(part.parameters(theta))) continue;
+    }
+    columns.push_back(static_cast<int>(i));
+  }
+  return columns;
+}
+
+// Everything that the modes depend on.
+Eigen::VectorXd ReducedModel::key(const Eigen::VectorXd& theta) const {
+  std::vector<double> values{model_.mass_factor(theta)};
+  for (const auto& part : model_.parts()) {
+    const LinearTerms& terms = part.terms;
+    if (terms.mass.empty() && terms.stiffness.empty() && terms.strain_stiffness.empty()) continue;
+    const Eigen::VectorXd p = part.parameters(theta);
+    for (const auto& term : terms.mass) values.push_back(term.coefficient(p));
+    for (const auto& term : terms.stiffness) values.push_back(term.coefficient(p));
+    for (const auto& term : terms.strain_stiffness) {
+      const double c = term.coefficient(p);
+      values.push_back(c);
+      for (const int i : term.shape) values.push_back(c == 0.0 ? 0.0 : p[i]);
+    }
+  }
+  return Eigen::Map<Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+std::shared_ptr<const ReducedModes> ReducedModel::modes(const Eigen::VectorXd& theta) const {
+  Eigen::VectorXd wanted = key(theta);
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    for (const Known& known : known_) {
+      if (known.key == wanted) return known.modes;
+    }
+  }
+  auto modes = std::make_shared<const ReducedModes>(solve(theta));
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (known_.size() == kKept) known_.erase(known_.begin());
+  known_.push_back({std::move(wanted), modes});
+  return modes;
+}
+
+ReducedModes ReducedModel::solve(const Eigen::VectorXd& theta) const {
+  const Eigen::Index m = basis_.vectors.cols();
+  Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(m, m), stiffness = mass;
+  ReducedModes modes;
+  modes.weight = modes.momentum = Eigen::MatrixX3d::Zero(m, 3);
+  const double factor = model_.mass_factor(theta);
+  for (std::size_t i = 0; i < projected_.size(); ++i) {
+    const LinearTerms& terms = model_.parts()[i].terms;
+    const Projected& part = projected_[i];
+    const Eigen::VectorXd p = model_.parts()[i].parameters(theta);
+    for (std::size_t k = 0; k < part.mass.size(); ++k) {
+      const double c = factor * terms.mass[k].coefficient(p);
+      if (c == 0.0) continue;
+      mass += c * part.mass[k];
+      modes.weight += c * part.weight[k];
+      modes.momentum += c * part.momentum[k];
+    }
+    for (std::size_t k = 0; k < part.stiffness.size(); ++k) {
+      const double c = terms.stiffness[k].coefficient(p);
+      if (c != 0.0) stiffness += c * part.stiffness[k];
+    }
+    for (std::size_t k = 0; k < part.strain_stiffness.size(); ++k) {
+      const StrainTerm& term = terms.strain_stiffness[k];
+      const double c = term.coefficient(p);
+      if (c == 0.0) continue;
+      const bool constant = part.strain_stiffness[k].size() > 0;
+      stiffness += c * (constant ? part.strain_stiffness[k] : project_strain_stiffness(model_.fem(), term.at(p), strains_));
+    }
+  }
+  const std::vector<int> columns = active(theta);
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(chosen(stiffness, columns, columns),
+                                                                        chosen(mass, columns, columns));
+  modes.square = eigen.eigenvalues().cwiseMax(0.0);
+  modes.shapes = Eigen::MatrixXd::Zero(m, eigen.eigenvectors().cols());
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    modes.shapes.row(columns[i]) = eigen.eigenvectors().row(static_cast<Eigen::Index>(i));
+  }
+  modes.to_modal = modes.shapes.transpose() * mass;
+  modes.weight = modes.shapes.transpose() * modes.weight;
+  modes.momentum = modes.shapes.transpose() * modes.momentum;
+  return modes;
+}
+
+Eigen::VectorXd ReducedModel::load(std::size_t part, std::size_t term, const Eigen::VectorXd& parameters) const {
+  const LoadTerm& load = model_.parts()[part].terms.loads[term];
+  return load.shaped ? Eigen::VectorXd(basis_.vectors.transpose() * load.shaped(parameters)) : projected_[part].loads[term];
 }
 
 std::unique_ptr<Trajectory> ReducedModel::start(const Eigen::VectorXd& theta, double start) const {
@@ -150,8 +193,8 @@ std::unique_ptr<Trajectory> ReducedModel::start(const Eigen::VectorXd& theta, do
 }
 
 std::string ReducedModel::description() const {
-  return "reduced: " + std::to_string(basis_.cols()) + " load-dependent Ritz vectors for " + std::to_string(basis_.rows()) +
-         " degrees of freedom, exact in time";
+  return "reduced: " + std::to_string(basis_.vectors.cols()) + " load-dependent Ritz vectors for " +
+         std::to_string(basis_.vectors.rows()) + " degrees of freedom, exact in time";
 }
 
 }  // namespace tissue_stiffness

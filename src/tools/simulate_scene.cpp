@@ -151,7 +151,7 @@ void require_known(const Scene& scene, const Model& model) {
 
 /// The loads act as they are; what is published may be noisy.
 void drive(const Scene& scene, Model& model) {
-  for (auto& entry : model.courses()) entry.second->shift(kFirstStamp.toSec());
+  model.set_first_stamp(kFirstStamp.toSec());
   for (const LoadScene& load : scene.loads) {
     const auto count = static_cast<int>(std::ceil(scene.duration / scene.step)) + 1;
     for (int k = 0; k <= count; ++k) {

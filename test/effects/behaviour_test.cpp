@@ -41,7 +41,8 @@ Eigen::Vector3d moment(const TetMesh& mesh, const Eigen::VectorXd& u, const Eige
 Eigen::VectorXd load(Model& model, double time, const Eigen::VectorXd& u) {
   Eigen::VectorXd elastic = zero(model);
   for (const Model::Part& part : model.parts()) {
-    if (part.label == "elasticity") part.effect->add_force({time, u, zero(model)}, part.parameters(prior(model)), elastic);
+    if (part.label != "elasticity" || !part.effect->always_finite()) continue;
+    part.effect->add_finite_force({time, u, zero(model)}, part.parameters(prior(model)), elastic);
   }
   const ModelSystem system(model, prior(model));
   return system.force(time, u, zero(model)) - elastic + model.stiffness(prior(model)) * u;
@@ -125,7 +126,7 @@ TEST(Pressure, TangentOnAPatchIsTheSymmetricPart) {
   const Eigen::VectorXd u = 0.01 * Eigen::VectorXd::LinSpaced(zero(model).size(), 0.0, 30.0).array().sin();
   const auto force = [&](const Eigen::VectorXd& at) {
     Eigen::VectorXd f = zero(model);
-    part.effect->add_force({0.0, at, zero(model)}, part.parameters(prior(model)), f);
+    part.effect->add_finite_force({0.0, at, zero(model)}, part.parameters(prior(model)), f);
     return f;
   };
   Eigen::MatrixXd d(u.size(), u.size());
@@ -134,7 +135,7 @@ TEST(Pressure, TangentOnAPatchIsTheSymmetricPart) {
     d.col(j) = -(force(u + h) - force(u - h)) / 2e-6;
   }
   SparseMatrix tangent = model.fem().pattern();
-  part.effect->add_stiffness({0.0, u, zero(model)}, part.parameters(prior(model)), tangent);
+  part.effect->add_finite_stiffness({0.0, u, zero(model)}, part.parameters(prior(model)), tangent);
   const Eigen::MatrixXd symmetric = 0.5 * (d + d.transpose());
   EXPECT_LT((Eigen::MatrixXd(tangent) - symmetric).norm(), 1e-8 * symmetric.norm());
   EXPECT_GT((d - symmetric).norm(), 1e-3 * symmetric.norm());

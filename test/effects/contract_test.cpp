@@ -9,6 +9,7 @@
 #include "../box_model.hpp"
 #include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/forward/full_model.hpp"
+#include "tissue_stiffness/forward/reduced_model.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -30,22 +31,35 @@ std::string text(const ParameterSpec& parameter, double value) {
   return list + "]";
 }
 
-// Something inside the bounds and away from their ends.
-double example(const ParameterSpec& parameter) {
-  if (parameter.lower > 0.0) return std::sqrt(parameter.lower * parameter.upper);
-  return parameter.lower + 0.6 * (parameter.upper - parameter.lower);
+// A value that does something on the bar, or one inside the bounds and away from their ends.
+std::string example(const EffectSpec& spec, const ParameterSpec& parameter) {
+  static const Arguments typical{
+      {"viscoelasticity.gamma", "0.5"},
+      {"viscoelasticity.tau", "0.01"},
+      {"elastic_support.compliance", "1.0e-6"},
+      {"foundation.stiffness", "1.0e5"},
+  };
+  const auto known = typical.find(spec.name + "." + parameter.name);
+  if (known != typical.end()) return known->second;
+  if (parameter.lower > 0.0) return text(parameter, std::sqrt(parameter.lower * parameter.upper));
+  return text(parameter, parameter.lower + 0.6 * (parameter.upper - parameter.lower));
+}
+
+// Keys that an effect can do without say so.
+bool optional(const std::string& meaning) {
+  return meaning.find("without it") != std::string::npos || meaning.find("instead of") != std::string::npos;
 }
 
 // Arguments that the spec accepts; keys that are no parameters are filled by what they are called everywhere.
 Arguments example_arguments(const EffectSpec& spec, const std::string& law = "linear", const std::string& region = "tip") {
   Arguments arguments;
   for (const ParameterSpec& parameter : spec.parameters) {
-    if (parameter.presence == ParameterSpec::Default::required)
-      arguments[parameter.name] = text(parameter, example(parameter));
+    if (parameter.presence == ParameterSpec::Default::required) arguments[parameter.name] = example(spec, parameter);
   }
   const Arguments known{{"law", law}, {"point", "[0.03, 0, 0]"}, {"normal", "[1, 0.2, 0.1]"}, {"topic", "/load"}};
   for (const auto& key : spec.keys) {
-    if (key.first == "region" && spec.name != "elasticity") arguments["region"] = region;
+    if (optional(key.second)) continue;
+    if (key.first == "region") arguments["region"] = spec.name == "elastic_support" ? "clamp" : region;
     if (known.count(key.first) == 1) arguments[key.first] = known.at(key.first);
   }
   return arguments;
@@ -183,35 +197,47 @@ Eigen::VectorXd large_displacement(const TetMesh& mesh) {
   return u;
 }
 
+// Everything in a part's force that is not linear, under finite strain.
+Eigen::VectorXd nonlinear_force(const Model& model, const Eigen::VectorXd& u) {
+  const Model::Part& part = model.parts().back();
+  const Eigen::VectorXd p = part.parameters(model.theta(model.prior_mean())), v = Eigen::VectorXd::Zero(u.size());
+  Eigen::VectorXd f = Eigen::VectorXd::Zero(u.size());
+  part.effect->add_force({0.1, u, v, 1.0}, p, f);
+  part.effect->add_finite_force({0.1, u, v, 1.0}, p, f);
+  return f;
+}
+
+SparseMatrix nonlinear_tangent(const Model& model, const Eigen::VectorXd& u) {
+  const Model::Part& part = model.parts().back();
+  const Eigen::VectorXd p = part.parameters(model.theta(model.prior_mean())), v = Eigen::VectorXd::Zero(u.size());
+  SparseMatrix k = model.fem().pattern();
+  part.effect->add_stiffness({0.1, u, v, 1.0}, p, k);
+  part.effect->add_finite_stiffness({0.1, u, v, 1.0}, p, k);
+  return k;
+}
+
 // The surface is closed, so that a follower pressure's tangent is symmetric and must match to the last entry.
 TEST(EveryEffect, TangentEqualsFiniteDifferencesOfTheForce) {
   const TetMesh mesh = bar_mesh(2);
-  const Eigen::VectorXd u = large_displacement(mesh), v = Eigen::VectorXd::Zero(u.size());
+  const Eigen::VectorXd u = large_displacement(mesh);
   int nonlinear = 0;
   for (const EffectSpec& spec : effect_specs()) {
     Model model(box_settings(bar_with(spec.name, example_arguments(spec, "neo_hookean", "skin"), "neo_hookean")), mesh);
     feed(model);
     const Model::Part& part = model.parts().back();
-    const Eigen::VectorXd p = part.parameters(model.theta(model.prior_mean()));
-    const auto force = [&](const Eigen::VectorXd& at) {
-      Eigen::VectorXd f = Eigen::VectorXd::Zero(u.size());
-      part.effect->add_force({0.1, at, v}, p, f);
-      return f;
-    };
-    SparseMatrix tangent = model.fem().pattern();
-    part.effect->add_stiffness({0.1, u, v}, p, tangent);
-    if (!part.effect->nonlinear()) {
-      EXPECT_EQ(force(u).norm(), 0.0) << spec.name << " has a nonlinear force but does not say so";
+    const SparseMatrix tangent = nonlinear_tangent(model, u);
+    if (!part.effect->nonlinear() && !part.effect->has_finite_form()) {
+      EXPECT_EQ(nonlinear_force(model, u).norm(), 0.0) << spec.name << " has a nonlinear force but does not say so";
       EXPECT_EQ(tangent.norm(), 0.0) << spec.name;
       continue;
     }
     ++nonlinear;
-    EXPECT_GT(force(u).norm(), 0.0) << spec.name << ": the example does nothing";
+    EXPECT_GT(nonlinear_force(model, u).norm(), 0.0) << spec.name << ": the example does nothing";
     const double h = 1e-8;
     Eigen::MatrixXd differences(u.size(), u.size());
     for (Eigen::Index j = 0; j < u.size(); ++j) {
       const Eigen::VectorXd step = h * Eigen::VectorXd::Unit(u.size(), j);
-      differences.col(j) = -(force(u + step) - force(u - step)) / (2.0 * h);
+      differences.col(j) = -(nonlinear_force(model, u + step) - nonlinear_force(model, u - step)) / (2.0 * h);
     }
     const double error = (Eigen::MatrixXd(tangent) - differences).cwiseAbs().maxCoeff() / differences.cwiseAbs().maxCoeff();
     std::printf("%s: tangent against differences %.1e\n", spec.name.c_str(), error);
@@ -220,21 +246,63 @@ TEST(EveryEffect, TangentEqualsFiniteDifferencesOfTheForce) {
   EXPECT_GE(nonlinear, 3);
 }
 
-bool can_be_absent(const EffectSpec& spec) {
-  for (const ParameterSpec& p : spec.parameters) {
-    if (!(p.absent >= p.lower && p.absent <= p.upper)) return false;
+// What is left of the linear terms' force when the body hardly moves.
+TEST(EveryEffect, FiniteStrainTendsToTheLinearTerms) {
+  const TetMesh mesh = bar_mesh(2);
+  const Eigen::VectorXd u = 1e-6 * large_displacement(mesh);
+  for (const EffectSpec& spec : effect_specs()) {
+    Model model(box_settings(bar_with(spec.name, example_arguments(spec, "neo_hookean", "skin"), "neo_hookean")), mesh);
+    feed(model);
+    const Model::Part& part = model.parts().back();
+    if (!part.effect->has_finite_form()) continue;
+    const Eigen::VectorXd p = part.parameters(model.theta(model.prior_mean()));
+    SparseMatrix k = model.fem().pattern();
+    for (const MatrixTerm& term : part.terms.stiffness) add_scaled(k, term.coefficient(p), term.matrix);
+    for (const StrainTerm& term : part.terms.strain_stiffness) {
+      add_strain_stiffness(model.fem(), term.at(p), term.coefficient(p), k);
+    }
+    Eigen::VectorXd linear = -(k * u);
+    for (const LoadTerm& term : part.terms.loads) {
+      linear += term.coefficient(p) * model.load_value(term, p, 1.0, 0.1) * term.pattern;
+    }
+    EXPECT_GT(linear.norm(), 0.0) << spec.name;
+    EXPECT_LT((nonlinear_force(model, u) - linear).norm(), 1e-5 * linear.norm()) << spec.name;
   }
-  return !spec.parameters.empty();
 }
 
-Eigen::VectorXd swing(const std::vector<std::string>& effects, const TetMesh& mesh) {
+// At least one parameter has a value that takes the effect away.
+bool can_be_absent(const EffectSpec& spec) {
+  bool found = false;
+  for (const ParameterSpec& p : spec.parameters) {
+    EXPECT_TRUE(std::isnan(p.absent) || (p.absent >= p.lower && p.absent <= p.upper)) << spec.name << "." << p.name;
+    found = found || std::isfinite(p.absent);
+  }
+  return found;
+}
+
+Arguments absent_arguments(const EffectSpec& spec, const std::string& law) {
+  Arguments arguments = example_arguments(spec, law);
+  for (const ParameterSpec& p : spec.parameters) {
+    if (std::isfinite(p.absent)) arguments[p.name] = text(p, p.absent);
+  }
+  return arguments;
+}
+
+// What a sensor sees of the swinging bar.
+Eigen::VectorXd swing(const std::vector<std::string>& effects, const TetMesh& mesh, bool reduced = false) {
   Model model(box_settings(effects), mesh);
   feed(model);
+  const Eigen::VectorXd theta = model.theta(model.prior_mean());
   FullModel::Options options;
   options.step = 0.002;
-  const auto run = FullModel(model, options).start(model.theta(model.prior_mean()), 0.0);
-  run->advance(0.02);
-  return run->displacement();
+  std::unique_ptr<ForwardModel> forward = std::make_unique<FullModel>(model, options);
+  if (reduced) forward = std::make_unique<ReducedModel>(model);
+  const auto run = forward->start(theta, 0.0);
+  run->advance(0.02 - model.delay(theta));
+  const ObservedMotion seen = model.observe(theta, 0.02, run->displacement());
+  Eigen::VectorXd all(seen.displacement.size() + 1);
+  all << seen.displacement, seen.outward;
+  return all;
 }
 
 TEST(EveryEffect, AtItsAbsentValueTheModelWithoutItComesBackBitForBit) {
@@ -245,15 +313,27 @@ TEST(EveryEffect, AtItsAbsentValueTheModelWithoutItComesBackBitForBit) {
     int compared = 0;
     for (const EffectSpec& spec : effect_specs()) {
       if (!can_be_absent(spec)) continue;
-      Arguments absent = example_arguments(spec, law);
-      for (const ParameterSpec& p : spec.parameters) absent[p.name] = text(p, p.absent);
-      EXPECT_EQ(swing(bar_with(spec.name, absent, law), mesh), without) << spec.name << ", " << law;
+      EXPECT_EQ(swing(bar_with(spec.name, absent_arguments(spec, law), law), mesh), without) << spec.name << ", " << law;
       EXPECT_NE(swing(bar_with(spec.name, example_arguments(spec, law), law), mesh), without)
           << spec.name << " does nothing at all";
       ++compared;
     }
-    EXPECT_GE(compared, 6);
+    EXPECT_GE(compared, 9);
   }
+}
+
+TEST(EveryEffect, AtItsAbsentValueTheReducedModelIsTheSameToo) {
+  const TetMesh mesh = bar_mesh(3);
+  const Eigen::VectorXd without = swing(bar_with("", {}), mesh, true);
+  int compared = 0;
+  for (const EffectSpec& spec : effect_specs()) {
+    if (!can_be_absent(spec)) continue;
+    const Model model(box_settings(bar_with(spec.name, absent_arguments(spec, "linear"))), mesh);
+    if (model.nonlinear()) continue;
+    EXPECT_EQ(swing(bar_with(spec.name, absent_arguments(spec, "linear")), mesh, true), without) << spec.name;
+    ++compared;
+  }
+  EXPECT_GE(compared, 9);
 }
 
 TEST(UnknownEffect, IsRefusedWithTheLibrary) {

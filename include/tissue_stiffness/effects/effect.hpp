@@ -1,13 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
 #include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "tissue_stiffness/effects/course.hpp"
+#include "tissue_stiffness/effects/proposal.hpp"
+#include "tissue_stiffness/effects/terms.hpp"
 #include "tissue_stiffness/fem/discretisation.hpp"
 #include "tissue_stiffness/settings/model_settings.hpp"
 #include "tissue_stiffness/types/load_sample.hpp"
@@ -36,6 +37,7 @@ struct EffectSpec {
   std::string source;
   std::vector<ParameterSpec> parameters;
   std::vector<std::pair<std::string, std::string>> keys;  ///< further keys and what they take
+  Proposer proposals = nullptr;                           ///< null: its absence is nothing to look for
 };
 
 /// What an effect may look at while it is built.
@@ -43,38 +45,14 @@ struct EffectContext {
   const TetMesh& mesh;
   const Discretisation& fem;
   const std::map<std::string, Region>& regions;
-  bool finite_strain;     ///< the model's elasticity is not small-strain
-  double young_modulus;   ///< prior median [Pa], a scale for penalties
-  std::string directory;  ///< of the model file, for relative paths
-  CourseTable& courses;   ///< time courses by topic
+  const ModelSettings& settings;         ///< the whole model file
+  std::vector<std::vector<int>> solids;  ///< tetrahedra of each elasticity, in order
+  double young_modulus;                  ///< prior median [Pa], a scale for penalties
+  CourseTable& courses;                  ///< time courses by topic
   std::vector<LoadInput>& inputs;
 
   /// Throws InputError naming the key and the regions there are.
   const Region& region(const Value& name) const;
-};
-
-/// The effect's own parameter values, in the order of its spec, vectors spread out.
-using Parameters = Eigen::Ref<const Eigen::VectorXd>;
-using Coefficient = std::function<double(const Parameters&)>;
-
-/// Contributions that are linear in displacement and velocity: coefficient(parameters) times a constant.
-struct MatrixTerm {
-  SparseMatrix matrix;
-  Coefficient coefficient;
-};
-struct LoadTerm {
-  Eigen::VectorXd pattern;  ///< nodal forces of a unit load, 3n
-  Coefficient coefficient;
-  std::shared_ptr<const Course> course;  ///< null: constant 1
-  int component = 0;                     ///< of the course
-};
-struct LinearTerms {
-  std::vector<MatrixTerm> mass;                ///< [kg]
-  std::vector<MatrixTerm> stiffness;           ///< [N/m]; at rest, for damping too where the law is not linear
-  std::vector<LoadTerm> loads;                 ///< [N]
-  std::vector<Coefficient> acceleration[3];    ///< body acceleration [m/s^2]; its force is the whole mass matrix times it
-  std::vector<Coefficient> mass_damping;       ///< alpha [1/s]
-  std::vector<Coefficient> stiffness_damping;  ///< beta [s]
 };
 
 /// Instant at which a nonlinear effect is evaluated.
@@ -82,6 +60,16 @@ struct Motion {
   double time;
   const Eigen::VectorXd& displacement;  ///< 3n [m]
   const Eigen::VectorXd& velocity;      ///< 3n [m/s]
+  double finite_share = 0.0;            ///< of finite strain, 0 to 1
+  double load_factor = 1.0;             ///< of every measured load
+};
+
+/// What a sensor makes of the motion. Effects of the observation change it in place, in the order of the model file.
+struct ObservedMotion {
+  const TetMesh& mesh;
+  double time;                   ///< since the model's start [s]
+  Eigen::VectorXd displacement;  ///< apparent, 3n [m]
+  double outward = 0.0;          ///< of outlines and surface points, along their outward normal [m]
 };
 
 /// One physical effect of the model. Hooks are const and default to nothing.
@@ -90,20 +78,34 @@ class Effect {
   virtual ~Effect() = default;
 
   virtual void linear_terms(LinearTerms&) const {}
-  /// Nodes held at rest.
+  /// Its parameters are followed by those of the model's elasticities.
+  virtual bool needs_elasticity() const { return false; }
+  /// Nodes held at rest, and nodes of other effects that it lets go while releases() holds.
   virtual std::vector<int> fixed_nodes() const { return {}; }
+  virtual std::vector<int> released_nodes() const { return {}; }
+  virtual bool releases(const Parameters&) const { return false; }
+
+  /// True when the two below replace the linear stiffness and loads under finite strain.
+  virtual bool has_finite_form() const { return false; }
+  /// Elasticity only: its law asks for finite strain.
+  virtual bool always_finite() const { return false; }
+  virtual void add_finite_force(const Motion&, const Parameters&, Eigen::VectorXd&) const {}
+  virtual void add_finite_stiffness(const Motion&, const Parameters&, SparseMatrix&) const {}
 
   /// True when the force below is not zero: the model is then integrated in full.
   virtual bool nonlinear() const { return false; }
-  /// Elasticity only: true when `linear_terms` gives the rest stiffness for damping, while the force itself comes from
-  /// add_force.
-  virtual bool stiffness_is_reference() const { return false; }
-  /// Adds the force [N] (external minus internal).
+  /// Adds the force [N] (external minus internal) that is no linear term.
   virtual void add_force(const Motion&, const Parameters&, Eigen::VectorXd&) const {}
   /// Adds -d force / d displacement [N/m]; symmetric, pattern of the discretisation.
   virtual void add_stiffness(const Motion&, const Parameters&, SparseMatrix&) const {}
   /// Stored energy [J], where the effect has one.
   virtual double energy(const Motion&, const Parameters&) const { return 0.0; }
+
+  /// True when the two below do something.
+  virtual bool observes() const { return false; }
+  virtual void observe(const Parameters&, ObservedMotion&) const {}
+  /// How late measurements are stamped [s].
+  virtual double delay(const Parameters&) const { return 0.0; }
 };
 
 }  // namespace tissue_stiffness

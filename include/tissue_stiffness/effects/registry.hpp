@@ -27,6 +27,14 @@ const std::vector<EffectSpec>& effect_specs();
 /// Throws InputError naming the effects there are.
 const EffectSpec& effect_spec(const EffectSettings& settings);
 
+/// Tetrahedra that an elasticity fills. Throws InputError for a region without any.
+std::vector<int> solid_elements(const Value& arguments, int element_count, const std::map<std::string, Region>& regions);
+
+/// Throws InputError naming the key and the regions there are.
+const Region& find_region(const Value& name, const std::map<std::string, Region>& regions);
+/// The same, and refuses a region without boundary facets.
+const Region& find_surface(const Value& name, const std::map<std::string, Region>& regions);
+
 /// Values and priors of an effect's parameters, vectors spread out, in the order of the spec. Throws InputError for a value
 /// that is missing or out of bounds.
 std::vector<Quantity> read_parameters(const EffectSettings& settings);

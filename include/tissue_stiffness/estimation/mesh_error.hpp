@@ -34,6 +34,7 @@ class MeshError {
     Eigen::VectorXd spread;     ///< of the sigma points around w
     Eigen::VectorXd prior_std;  ///< holds what the data do not determine
     double start = 0.0;         ///< [s]
+    double first_stamp = 0.0;   ///< of the recording [s]
     std::map<std::string, Course> courses;
   };
   /// Estimate less truth in filter coordinates if the finer mesh were the truth: the fit of the coarse model to the fine

@@ -21,7 +21,7 @@ class CentralDifference {
   void advance(DynamicState& state, double span) const;
 
  private:
-  Eigen::VectorXd acceleration(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const;
+  Eigen::VectorXd acceleration(const DynamicState& state) const;
 
   const DynamicSystem& system_;
   Eigen::VectorXd inverse_mass_;  ///< 0 for fixed degrees of freedom

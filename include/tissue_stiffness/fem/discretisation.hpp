@@ -34,6 +34,8 @@ class Discretisation {
   /// Quadrature weight times Jacobian [m^3]; they sum to the volume.
   double weight(int e, int q) const { return weights_(q, e); }
   double volume() const { return weights_.sum(); }
+  /// Place of quadrature point q of element e at rest [m].
+  auto position(int e, int q) const { return positions_.col(static_cast<Eigen::Index>(e) * points_ + q); }
 
   /// Zero matrix (dofs x dofs) with the pattern of the mesh, 3 x 3 blocks for nodes that share an element.
   const SparseMatrix& pattern() const { return pattern_; }
@@ -68,9 +70,13 @@ class Discretisation {
   Eigen::Matrix3Xd nodes_;
   std::vector<double> gradients_;
   Eigen::MatrixXd weights_;
+  Eigen::Matrix3Xd positions_;
   SparseMatrix pattern_;
   std::vector<int> slots_;
 };
+
+/// to += scale * part, for a part whose non-zeros lie in the pattern of `to`; costs what the part holds.
+void add_scaled(SparseMatrix& to, double scale, const SparseMatrix& part);
 
 /// Shape functions and their derivatives with respect to the barycentric coordinates (r, s, t) of a 4- or 10-node
 /// tetrahedron, node order of TetMesh.

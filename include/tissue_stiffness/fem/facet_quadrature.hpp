@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "tissue_stiffness/fem/discretisation.hpp"
 #include "tissue_stiffness/types/tet_mesh.hpp"
 
 namespace tissue_stiffness {
@@ -29,6 +30,9 @@ class FacetQuadrature {
 
 /// Positions of a facet's nodes, 3 x nodes; `displacement` (3n) may be null.
 Eigen::Matrix3Xd facet_nodes(const TetMesh& mesh, int facet, const Eigen::VectorXd* displacement = nullptr);
+
+/// int N_a N_b dA over facets, one 3 x 3 identity block a pair of nodes, 3n x 3n with only its own non-zeros [m^2].
+SparseMatrix facet_mass(const TetMesh& mesh, const std::vector<int>& facets);
 
 /// Place of each of a facet's nodes in the tetrahedron behind it, for Discretisation::add_block.
 std::vector<int> facet_local_nodes(const TetMesh& mesh, int facet);

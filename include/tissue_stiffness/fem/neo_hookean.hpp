@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 #include "tissue_stiffness/fem/discretisation.hpp"
@@ -19,6 +20,13 @@ inline Lame lame(double young_modulus, double poisson_ratio) {
           young_modulus / (2.0 * (1.0 + poisson_ratio))};
 }
 
+/// What multiplies the stress at a quadrature point, and its derivative with respect to the energy density psi [1/Pa].
+struct StressScale {
+  double value = 1.0;
+  double slope = 0.0;
+};
+using PointLaw = std::function<StressScale(int e, int q, double psi)>;
+
 /// Compressible neo-Hookean solid, psi = mu/2 (tr F^T F - 3 - 2 ln J) + lambda/2 (ln J)^2 (Bonet & Wood 2008, eq. 6.28),
 /// over the elements listed. All throw NumericalError naming the element that turned inside out.
 class NeoHookean {
@@ -29,6 +37,9 @@ class NeoHookean {
   void add_force(const Lame& lame, const Eigen::VectorXd& u, Eigen::VectorXd& force) const;
   /// Adds the tangent stiffness [N/m].
   void add_stiffness(const Lame& lame, const Eigen::VectorXd& u, SparseMatrix& stiffness) const;
+  /// The same with the stress P(F) scaled from point to point: scale(e, q, psi).value P.
+  void add_force(const Lame& lame, const Eigen::VectorXd& u, const PointLaw& scale, Eigen::VectorXd& force) const;
+  void add_stiffness(const Lame& lame, const Eigen::VectorXd& u, const PointLaw& scale, SparseMatrix& stiffness) const;
   /// Stored energy [J].
   double energy(const Lame& lame, const Eigen::VectorXd& u) const;
 

@@ -4,11 +4,12 @@
 #include <deque>
 #include <vector>
 
+#include "tissue_stiffness/fem/relaxation.hpp"
 #include "tissue_stiffness/fem/sparse_solver.hpp"
 
 namespace tissue_stiffness {
 
-/// M a + C v = f(t, u, v) with some degrees of freedom held at zero.
+/// M a + C v + sum of relaxing branches = f(t, u, v) with some degrees of freedom held at zero.
 class DynamicSystem {
  public:
   virtual ~DynamicSystem() = default;
@@ -20,12 +21,16 @@ class DynamicSystem {
   virtual Eigen::VectorXd force(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const = 0;
   /// -df/du, symmetric [N/m].
   virtual SparseMatrix stiffness(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const = 0;
+  /// Branches whose force the state's history carries, and the stiffness they share (read only when there are any).
+  virtual const std::vector<Relaxation>& relaxations() const;
+  virtual const SparseMatrix& relaxing_stiffness() const { return mass(); }
 };
 
 /// Where a dynamic system stands.
 struct DynamicState {
   double time = 0.0;
   Eigen::VectorXd displacement, velocity, acceleration;
+  std::vector<Eigen::VectorXd> relaxed;  ///< z of each relaxing branch [m]; filled in by initialise, fully relaxed
 };
 
 /// Implicit steps of the generalised-alpha family (Chung & Hulbert 1993, eq. 7-19): second order, unconditionally stable.
@@ -38,7 +43,7 @@ class Newmark {
   /// `tolerance`: largest last Newton correction [m].
   Newmark(const DynamicSystem& system, double spectral_radius, double tolerance);
 
-  /// Fills in the acceleration that belongs to displacement and velocity.
+  /// Fills in the acceleration that belongs to displacement and velocity, and a history of rest at this displacement.
   void initialise(DynamicState& state) const;
   /// Advances by `step` [s]. Throws NumericalError when ten halvings do not help; the state is then unchanged.
   void step(DynamicState& state, double step);

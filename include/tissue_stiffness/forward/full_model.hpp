@@ -33,7 +33,9 @@ class ModelSystem : public DynamicSystem {
   const SparseMatrix& mass() const override { return mass_; }
   const SparseMatrix& damping() const override { return damping_; }
   bool damped() const override { return damped_; }
-  const std::vector<char>& fixed() const override { return model_.fixed(); }
+  const std::vector<char>& fixed() const override { return fixed_; }
+  const std::vector<Relaxation>& relaxations() const override { return relaxations_; }
+  const SparseMatrix& relaxing_stiffness() const override { return reference_; }
   Eigen::VectorXd force(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const override;
   SparseMatrix stiffness(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const override;
   /// Kinetic and stored energy less the work of gravity [J].
@@ -42,7 +44,9 @@ class ModelSystem : public DynamicSystem {
  private:
   const Model& model_;
   Eigen::VectorXd theta_;
-  SparseMatrix mass_, damping_, stiffness_;
+  SparseMatrix mass_, damping_, stiffness_, reference_;
+  std::vector<char> fixed_;
+  std::vector<Relaxation> relaxations_;
   Eigen::VectorXd gravity_;
   bool damped_ = false, linear_part_ = false;
 };

@@ -8,6 +8,7 @@
 
 #include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/fem/discretisation.hpp"
+#include "tissue_stiffness/fem/relaxation.hpp"
 #include "tissue_stiffness/settings/model_settings.hpp"
 #include "tissue_stiffness/types/load_sample.hpp"
 #include "tissue_stiffness/types/tet_mesh.hpp"
@@ -27,8 +28,8 @@ struct FreeParameter {
   double prior_std() const;
 };
 
-/// The sum of effects on a mesh: M a + C v + K u + nonlinear forces = loads. Parameters come as theta, the values of every
-/// parameter of every effect in order, initial velocity last.
+/// The sum of effects on a mesh: M a + C v + K u + relaxing and nonlinear forces = loads. Parameters come as theta, the
+/// values of every parameter of every effect in order, initial velocity last.
 class Model {
  public:
   /// Throws InputError for effects or regions that do not fit.
@@ -42,9 +43,16 @@ class Model {
   const std::vector<FreeParameter>& free_parameters() const { return free_; }
   const std::vector<LoadInput>& load_inputs() const { return inputs_; }
   CourseTable& courses() { return courses_; }
-  const std::vector<char>& fixed() const { return fixed_; }  ///< a flag a degree of freedom
   bool nonlinear() const { return nonlinear_; }
   const ModelSettings& settings() const { return settings_; }
+
+  /// Time of the recording's first stamp [s]: courses from files and rhythms count from it. 0 until it is set.
+  void set_first_stamp(double time);
+  double first_stamp() const { return first_stamp_; }
+
+  /// A flag a degree of freedom: held at rest by a `fixed` effect; and held at theta, when some of them give way there.
+  const std::vector<char>& fixed() const { return fixed_; }
+  std::vector<char> fixed(const Eigen::VectorXd& theta) const;
 
   /// theta for the filter's coordinates w; values are clamped to the parameters' bounds.
   Eigen::VectorXd theta(const Eigen::VectorXd& w) const;
@@ -58,15 +66,19 @@ class Model {
 
   Eigen::Vector3d initial_velocity(const Eigen::VectorXd& theta) const { return theta.tail<3>(); }
 
-  /// Matrices at theta. `stiffness` leaves out laws that are not linear, `reference_stiffness` holds every law's rest
-  /// stiffness.
+  /// Matrices at theta. `stiffness` holds the part that is linear, `reference_stiffness` every law's rest stiffness.
   SparseMatrix mass(const Eigen::VectorXd& theta) const;
   SparseMatrix stiffness(const Eigen::VectorXd& theta) const;
   SparseMatrix reference_stiffness(const Eigen::VectorXd& theta) const;
-  /// Rayleigh coefficients: C = alpha M + beta K_reference.
+  /// Rayleigh coefficients: C = alpha M + beta K_reference; branches of K_reference that relax, those of modulus 0 left
+  /// out.
   double mass_damping(const Eigen::VectorXd& theta) const;
   double stiffness_damping(const Eigen::VectorXd& theta) const;
+  std::vector<Relaxation> relaxations(const Eigen::VectorXd& theta) const;
   Eigen::Vector3d body_acceleration(const Eigen::VectorXd& theta) const;
+  /// What every mass, and what every measured load, is multiplied by.
+  double mass_factor(const Eigen::VectorXd& theta) const;
+  double load_factor(const Eigen::VectorXd& theta) const;
 
   /// Sum of the load terms (not gravity) at an instant [N].
   void add_loads(const Eigen::VectorXd& theta, double time, Eigen::VectorXd& force) const;
@@ -75,22 +87,35 @@ class Model {
   /// Elastic and contact energy [J].
   double stored_energy(const Eigen::VectorXd& theta, const Motion& motion) const;
 
+  /// How late measurements are stamped [s], and what a sensor makes of the motion `since` seconds after the start.
+  double delay(const Eigen::VectorXd& theta) const;
+  ObservedMotion observe(const Eigen::VectorXd& theta, double since, const Eigen::VectorXd& displacement) const;
+
   /// One effect in the model: its terms and where its parameters stand in theta.
   struct Part {
     std::string label;
     std::unique_ptr<Effect> effect;
-    int offset = 0;
-    int count = 0;
+    std::vector<int> indices;  ///< of its parameters in theta
     LinearTerms terms;
-    auto parameters(const Eigen::VectorXd& theta) const { return theta.segment(offset, count); }
+    Eigen::VectorXd parameters(const Eigen::VectorXd& theta) const;
   };
   const std::vector<Part>& parts() const { return parts_; }
-  /// Coefficients of all parts' mass, stiffness and load terms at theta, in order of parts and terms.
-  Eigen::VectorXd stiffness_coefficients(const Eigen::VectorXd& theta) const;
+  /// True when one of these parameters (indices of the part's) is estimated.
+  bool estimated(const Part& part, const std::vector<int>& shape) const;
+  /// Value of a load term over time: measured, by a rhythm, or 1; the load factor included.
+  double load_value(const LoadTerm& term, const Eigen::VectorXd& parameters, double load_factor, double time) const;
+  /// Share of finite strain in a part's force, 0 to 1.
+  double finite_share(const Part& part, const Eigen::VectorXd& theta) const;
 
  private:
+  EffectContext context();
   void add_part(const EffectSettings& settings, const EffectContext& context);
+  void add_parameters(const EffectSettings& settings, Part& part);
+  void link_elasticities();
+  void check_laws() const;
+  void settle_terms(Part& part) const;
   void add_initial_velocity();
+  SparseMatrix sum_stiffness(const Eigen::VectorXd& theta, bool reference) const;
 
   ModelSettings settings_;
   TetMesh mesh_;
@@ -102,7 +127,10 @@ class Model {
   std::vector<FreeParameter> free_;
   std::vector<int> free_index_;  ///< of each free parameter in theta
   Eigen::VectorXd known_;        ///< theta with free parameters at their prior
+  std::vector<int> holders_;     ///< how many `fixed` effects hold each node
   std::vector<char> fixed_;
+  double first_stamp_ = 0.0;
+  bool finite_law_ = false;  ///< the elasticity's law is one of finite strain
   bool nonlinear_ = false;
 };
 

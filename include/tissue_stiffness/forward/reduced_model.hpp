@@ -1,37 +1,65 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
+#include <mutex>
 #include <vector>
 
 #include "tissue_stiffness/forward/forward_model.hpp"
+#include "tissue_stiffness/forward/reduced_basis.hpp"
 
 namespace tissue_stiffness {
 
-/// A linear model in a basis of load-dependent Ritz vectors (Wilson, Yuan & Dickens 1982): repeated K^-1 M solves from the
-/// static responses of the loads. In the basis every step is exact for loads that are linear in time (modal superposition),
-/// so the time step is no source of error. Several moduli: K = sum E_r K_r, the basis holds K^-1 K_r x too.
+/// Free vibrations of a reduced model at one theta: (K - omega^2 M) phi = 0.
+struct ReducedModes {
+  Eigen::MatrixXd shapes;     ///< basis coordinates of each mode, basis size x modes, M-orthonormal
+  Eigen::MatrixXd to_modal;   ///< modal coordinates of basis coordinates, modes x basis size
+  Eigen::VectorXd square;     ///< omega^2, ascending [rad^2/s^2]
+  Eigen::MatrixX3d weight;    ///< modal force of a unit body acceleration along each axis
+  Eigen::MatrixX3d momentum;  ///< modal velocity of a unit initial velocity of the nodes that nothing holds
+};
+
+/// A linear model in a basis of load-dependent Ritz vectors. In the basis every step is exact for loads that are linear in
+/// time (modal superposition), so the time step is no source of error. Terms whose place or angle is estimated are
+/// projected anew for each theta. Thread safe.
 class ReducedModel : public ForwardModel {
  public:
-  /// Throws InputError for a nonlinear model, NumericalError for a body that nothing holds together.
-  explicit ReducedModel(const Model& model, int basis_size = 48);
+  /// Throws InputError for a nonlinear model or one that nothing moves.
+  explicit ReducedModel(const Model& model, const BasisOptions& options = {});
 
   std::unique_ptr<Trajectory> start(const Eigen::VectorXd& theta, double start) const override;
   std::string description() const override;
 
-  /// M-orthonormal at the prior, 3n x basis size.
-  const Eigen::MatrixXd& basis() const { return basis_; }
+  const Model& model() const { return model_; }
+  /// 3n x basis size.
+  const Eigen::MatrixXd& basis() const { return basis_.vectors; }
+  /// Kept for the last few theta that differ in mass or stiffness.
+  std::shared_ptr<const ReducedModes> modes(const Eigen::VectorXd& theta) const;
+  /// Basis coordinates of a load term's pattern.
+  Eigen::VectorXd load(std::size_t part, std::size_t term, const Eigen::VectorXd& parameters) const;
 
  private:
-  friend class ReducedTrajectory;
-  void build_basis(int size);
+  struct Projected {
+    std::vector<Eigen::MatrixXd> mass, stiffness, strain_stiffness;  ///< the last: empty where it depends on theta
+    std::vector<Eigen::VectorXd> loads;
+    std::vector<Eigen::MatrixX3d> weight, momentum;  ///< each mass term times a unit motion along each axis
+  };
+  struct Known {
+    Eigen::VectorXd key;
+    std::shared_ptr<const ReducedModes> modes;
+  };
   void project();
-  Eigen::MatrixXd start_vectors(const SparseMatrix& mass) const;
+  void project_part(std::size_t part);
+  Eigen::VectorXd key(const Eigen::VectorXd& theta) const;
+  std::vector<int> active(const Eigen::VectorXd& theta) const;
+  ReducedModes solve(const Eigen::VectorXd& theta) const;
 
   const Model& model_;
-  Eigen::MatrixXd basis_;
-  std::vector<std::vector<Eigen::MatrixXd>> mass_, stiffness_;  ///< part x term, projected
-  std::vector<std::vector<Eigen::VectorXd>> loads_;             ///< part x term, projected
-  std::vector<std::vector<Eigen::MatrixX3d>> uniform_;          ///< mass term times a uniform unit motion, projected
+  ReducedBasis basis_;
+  std::vector<Projected> projected_;  ///< a part each
+  StrainRows strains_;                ///< of the basis, where a term needs them for each theta
+  mutable std::mutex mutex_;
+  mutable std::vector<Known> known_;
 };
 
 }  // namespace tissue_stiffness

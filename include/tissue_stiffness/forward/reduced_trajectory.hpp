@@ -1,31 +1,36 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <vector>
 
+#include "tissue_stiffness/forward/modal_step.hpp"
 #include "tissue_stiffness/forward/reduced_model.hpp"
 
 namespace tissue_stiffness {
 
-/// Modal superposition in the reduced basis: (K_r - omega^2 M_r) phi = 0, then q'' + (alpha + beta omega^2) q' + omega^2 q
-/// = f, stepped with the exact transition for f linear over the step.
+/// Modal superposition in the reduced basis: q'' + (alpha + beta omega^2) q' + omega^2 (q + sum gamma (q - z)) = f with
+/// tau z' = q - z for each relaxing branch, stepped with the exact transition for f linear over the step.
 class ReducedTrajectory : public Trajectory {
  public:
   ReducedTrajectory(const ReducedModel& reduced, const Eigen::VectorXd& theta, double start);
 
   void advance(double time) override;
   double time() const override { return time_; }
-  Eigen::VectorXd displacement() const override { return reduced_.basis_ * (modes_ * q_); }
-  Eigen::VectorXd velocity() const override { return reduced_.basis_ * (modes_ * v_); }
+  Eigen::VectorXd displacement() const override { return reduced_.basis() * coordinates(); }
+  Eigen::VectorXd velocity() const override { return reduced_.basis() * (modes_->shapes * state_.col(1)); }
+  /// Displacement as coordinates of the reduced basis.
+  Eigen::VectorXd coordinates() const { return modes_->shapes * state_.col(0); }
   /// Natural frequencies [rad/s], ascending.
-  const Eigen::VectorXd& frequencies() const { return omega_; }
+  Eigen::VectorXd frequencies() const { return modes_->square.cwiseSqrt(); }
 
   /// The `count` lowest modes' shapes, mass-normalised: 3n x count, and the same in the basis: basis size x count.
-  Eigen::MatrixXd mode_shapes(int count) const { return reduced_.basis_ * modes_.leftCols(count); }
-  Eigen::MatrixXd modes_in_basis(int count) const { return modes_.leftCols(count); }
-  const Eigen::VectorXd& modal_displacement() const { return q_; }
-  const Eigen::VectorXd& modal_velocity() const { return v_; }
+  Eigen::MatrixXd mode_shapes(int count) const { return reduced_.basis() * modes_->shapes.leftCols(count); }
+  Eigen::MatrixXd modes_in_basis(int count) const { return modes_->shapes.leftCols(count); }
+  Eigen::VectorXd modal_displacement() const { return state_.col(0); }
+  Eigen::VectorXd modal_velocity() const { return state_.col(1); }
   /// Free motion of each mode over `span` [s]: q' = qq q + qv v, v' = vq q + vv v; qv and vv answer a unit impulse too.
+  /// Relaxing branches are left out.
   struct FreeMotion {
     Eigen::ArrayXd qq, qv, vq, vv;
   };
@@ -34,23 +39,23 @@ class ReducedTrajectory : public Trajectory {
   void correct(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity);
 
  private:
-  struct Transition {
-    Eigen::ArrayXd qq, qv, qf0, qf1, vq, vv, vf0, vf1;
+  struct Load {
+    const LoadTerm* term;
+    Eigen::VectorXd parameters;
+    Eigen::VectorXd modal;  ///< coefficient included
   };
-  void set_step(double step);
+  void collect_loads(const Eigen::VectorXd& theta);
   Eigen::VectorXd modal_force(double time) const;
 
   const ReducedModel& reduced_;
-  Eigen::VectorXd theta_;
-  double time_;
-  Eigen::MatrixXd modes_, to_modal_;  ///< to_modal_: inverse of modes_
-  Eigen::VectorXd omega_, damping_;  ///< damping_: alpha + beta omega^2 [1/s]
-  Eigen::VectorXd constant_force_;   ///< gravity, modal
-  Eigen::MatrixXd load_modes_;       ///< one column a load term, coefficient included
-  std::vector<const LoadTerm*> load_terms_;
-  Eigen::VectorXd q_, v_, force_;
-  double step_ = -1.0;
-  Transition transition_;
+  double time_, load_factor_;
+  std::shared_ptr<const ReducedModes> modes_;
+  Eigen::VectorXd constant_force_;  ///< gravity, modal
+  std::vector<Load> loads_;
+  Eigen::VectorXd damping_;  ///< alpha + beta omega^2 [1/s]
+  ModalStep step_;
+  Eigen::MatrixXd state_;  ///< columns q, q', z...; a row a mode
+  Eigen::VectorXd force_;
 };
 
 }  // namespace tissue_stiffness

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace tissue_stiffness {
+
+/// A Maxwell branch of a standard linear solid: force -modulus K (u - z) with time_constant z' = u - z.
+struct Relaxation {
+  double modulus;        ///< over the elastic one [-]
+  double time_constant;  ///< [s]
+};
+
+/// Exact change of z over a step in which u is linear in time: z1 = decay z0 + from u0 + to u1.
+struct RelaxationStep {
+  double decay, from, to;
+  RelaxationStep(const Relaxation& relaxation, double step);
+};
+
+/// z of every branch after a step from u0 to u1.
+std::vector<Eigen::VectorXd> relax(const std::vector<Relaxation>& branches, double step, const Eigen::VectorXd& u0,
+                                   const Eigen::VectorXd& u1, const std::vector<Eigen::VectorXd>& z0);
+
+/// sum modulus (u - z): what the branches' stiffness acts on.
+Eigen::VectorXd overstretch(const std::vector<Relaxation>& branches, const Eigen::VectorXd& u,
+                            const std::vector<Eigen::VectorXd>& z);
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "tissue_stiffness/forward/model.hpp"
+
+namespace tissue_stiffness {
+
+/// Vectors that a linear model moves in.
+struct ReducedBasis {
+  Eigen::MatrixXd vectors;   ///< 3n x m, M-orthonormal at the prior within what one set of held nodes allows
+  std::vector<int> support;  ///< of each vector: the part that must let its nodes go for it, -1 for none
+};
+
+struct BasisOptions {
+  int size = 48;      ///< vectors from the loads that act at the prior
+  int per_part = 16;  ///< more for each effect that is absent at the prior, or whose place or angle is estimated
+  int largest = 160;  ///< with those; supports that may give way come on top
+  int released = 40;  ///< for each support that may give way
+};
+
+/// Load-dependent Ritz vectors (Wilson, Yuan & Dickens 1982), repeated K^-1 M solves from the static responses to the
+/// loads. Several moduli: K = sum E_r K_r, the basis holds K^-1 K_r x too. Terms that are zero at the prior give their
+/// static responses to the leading motion, K^-1 dK_j x, K^-1 dM_j x and K^-1 dF_j, the most common of them first (proper
+/// orthogonal decomposition). Throws InputError for a model that nothing moves.
+ReducedBasis build_reduced_basis(const Model& model, const BasisOptions& options);
+
+}  // namespace tissue_stiffness

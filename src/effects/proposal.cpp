@@ -1,0 +1,54 @@
+#include "tissue_stiffness/effects/proposal.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace tissue_stiffness {
+
+bool ProposalContext::holds(const std::string& effect) const {
+  return !all(effect).empty();
+}
+
+std::vector<const EffectSettings*> ProposalContext::all(const std::string& effect) const {
+  std::vector<const EffectSettings*> found;
+  for (const EffectSettings& entry : settings.effects) {
+    if (entry.name == effect) found.push_back(&entry);
+  }
+  return found;
+}
+
+bool ProposalContext::names(const std::string& effect, const std::string& region) const {
+  const auto found = all(effect);
+  return std::any_of(found.begin(), found.end(), [&](const EffectSettings* entry) {
+    return entry->arguments.has("region") && entry->arguments.at("region").as_text() == region;
+  });
+}
+
+bool ProposalContext::observes(ObservationSettings::Kind kind) const {
+  return std::any_of(settings.observations.begin(), settings.observations.end(),
+                     [kind](const ObservationSettings& entry) { return entry.kind == kind; });
+}
+
+std::string yaml(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+std::string yaml(const Eigen::Vector3d& v) {
+  return "[" + yaml(v.x()) + ", " + yaml(v.y()) + ", " + yaml(v.z()) + "]";
+}
+
+std::string normal(double mean, double std) {
+  return "{mean: " + yaml(mean) + ", std: " + yaml(std) + "}";
+}
+
+std::string normal(const Eigen::Vector3d& mean, double std) {
+  return "{mean: " + yaml(mean) + ", std: " + yaml(std) + "}";
+}
+
+std::string log_normal(double median, double factor) {
+  return "{prior: " + yaml(median) + ", factor: " + yaml(factor) + "}";
+}
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,45 @@
+// Standard linear solid: part of the stiffness relaxes.
+#include "tissue_stiffness/effects/registry.hpp"
+
+namespace tissue_stiffness::effects {
+namespace {
+
+class Viscoelasticity : public Effect {
+ public:
+  void linear_terms(LinearTerms& out) const override {
+    out.relaxation.push_back({[](const Parameters& p) { return p[0]; }, [](const Parameters& p) { return p[1]; }});
+  }
+};
+
+// Time constants from the frame interval to the recording, two a decade and a half apart.
+std::vector<Proposal> propose(const ProposalContext& context) {
+  if (context.holds("viscoelasticity")) return {};
+  constexpr int count = 7;
+  std::vector<Proposal> list;
+  for (int i = 0; i < count; ++i) {
+    const double tau = context.frame_interval * std::pow(context.duration / context.frame_interval, i / (count - 1.0));
+    list.push_back({"viscoelasticity: {gamma: " + normal(0.0, 0.3) + ", tau: " + yaml(tau) + "}", "gamma",
+                    "viscoelasticity: {gamma: " + log_normal(0.3, 3.0) + ", tau: " + log_normal(tau, 3.0) + "}"});
+  }
+  return list;
+}
+
+}  // namespace
+
+EffectSpec viscoelasticity_spec() {
+  EffectSpec spec;
+  spec.name = "viscoelasticity";
+  spec.summary = "a branch of the whole stiffness at rest that relaxes: stiffer when fast, soft when slow, lossy between";
+  spec.formula = "-gamma K (u - z), tau z' = u - z";
+  spec.source = "standard linear solid, Simo & Hughes 1998, sec. 10.2";
+  spec.parameters = {{"gamma", "gamma", "-", 0.0, 1e3, ParameterSpec::Default::required, 0.0, 0.0, 1},
+                     {"tau", "tau", "s", 1e-6, 1e6, ParameterSpec::Default::required, 0.0, NAN, 1}};
+  spec.proposals = propose;
+  return spec;
+}
+
+std::unique_ptr<Effect> make_viscoelasticity(const Value&, const EffectContext&) {
+  return std::make_unique<Viscoelasticity>();
+}
+
+}  // namespace tissue_stiffness::effects

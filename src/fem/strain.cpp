@@ -1,0 +1,150 @@
+#include "tissue_stiffness/fem/strain.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+
+namespace tissue_stiffness {
+namespace {
+
+const double kRoot = std::sqrt(2.0);
+
+// B^T s at one node with shape gradient g: the force that the stress s exerts there.
+Eigen::Vector3d nodal(const Strain& s, const Eigen::Vector3d& g) {
+  const double xy = s[3] / kRoot, yz = s[4] / kRoot, xz = s[5] / kRoot;
+  return {s[0] * g.x() + xy * g.y() + xz * g.z(), xy * g.x() + s[1] * g.y() + yz * g.z(),
+          xz * g.x() + yz * g.y() + s[2] * g.z()};
+}
+
+// Adds B_a u_a.
+template <typename Row>
+void add_strain(const Eigen::Vector3d& g, const Row& x, const Row& y, const Row& z, Eigen::Index at, StrainRows& e) {
+  e.row(at) += g.x() * x;
+  e.row(at + 1) += g.y() * y;
+  e.row(at + 2) += g.z() * z;
+  e.row(at + 3) += (g.y() * x + g.x() * y) / kRoot;
+  e.row(at + 4) += (g.z() * y + g.y() * z) / kRoot;
+  e.row(at + 5) += (g.z() * x + g.x() * z) / kRoot;
+}
+
+}  // namespace
+
+Strain strain_of(const Eigen::Vector3d& d) {
+  Strain s;
+  s << d.x() * d.x(), d.y() * d.y(), d.z() * d.z(), kRoot * d.x() * d.y(), kRoot * d.y() * d.z(), kRoot * d.x() * d.z();
+  return s;
+}
+
+StrainFactor isotropic_factor(double lambda, double mu) {
+  // On the span of m: 3 lambda + 2 mu; elsewhere 2 mu.
+  const double bulk = std::sqrt(3.0 * lambda + 2.0 * mu), shear = std::sqrt(2.0 * mu);
+  StrainFactor r = shear * StrainFactor::Identity(6, 6);
+  r.topLeftCorner<3, 3>().array() += (bulk - shear) / 3.0;
+  return r;
+}
+
+StrainRows strains(const Discretisation& fem, const Eigen::MatrixXd& u) {
+  const int points = fem.points_per_element();
+  StrainRows result = StrainRows::Zero(static_cast<Eigen::Index>(6) * points * fem.element_count(), u.cols());
+  const StrainRows rows = u;
+  tbb::parallel_for(0, fem.element_count(), [&](int e) {
+    for (int q = 0; q < points; ++q) {
+      const auto g = fem.gradient(e, q);
+      const Eigen::Index at = 6 * (static_cast<Eigen::Index>(e) * points + q);
+      for (int a = 0; a < fem.nodes_per_element(); ++a) {
+        const Eigen::Index node = 3 * fem.elements()(a, e);
+        add_strain(g.col(a), rows.row(node), rows.row(node + 1), rows.row(node + 2), at, result);
+      }
+    }
+  });
+  return result;
+}
+
+void add_strain_stiffness(const Discretisation& fem, const StrainFactorField& factor, double scale, SparseMatrix& k) {
+  const int n = fem.nodes_per_element();
+  Eigen::Matrix<double, 3, Eigen::Dynamic> forces(3, 6 * n);
+  for (int e = 0; e < fem.element_count(); ++e) {
+    for (int q = 0; q < fem.points_per_element(); ++q) {
+      const StrainFactor r = factor(e, q);
+      const auto g = fem.gradient(e, q);
+      const Eigen::Index columns = r.cols();
+      for (int a = 0; a < n; ++a) {
+        for (Eigen::Index c = 0; c < columns; ++c) forces.col(6 * a + c) = nodal(r.col(c), g.col(a));
+      }
+      const double w = scale * fem.weight(e, q);
+      for (int b = 0; columns > 0 && b < n; ++b) {
+        for (int a = 0; a < n; ++a) {
+          const Eigen::Matrix3d block =
+              w * forces.middleCols(6 * a, columns) * forces.middleCols(6 * b, columns).transpose();
+          fem.add_block(k, e, a, b, block);
+        }
+      }
+    }
+  }
+}
+
+Eigen::MatrixXd apply_strain_stiffness(const Discretisation& fem, const StrainFactorField& factor,
+                                       const StrainRows& strains) {
+  const int n = fem.nodes_per_element(), points = fem.points_per_element();
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(fem.dof_count(), strains.cols());
+  for (int e = 0; e < fem.element_count(); ++e) {
+    for (int q = 0; q < points; ++q) {
+      const StrainFactor r = factor(e, q);
+      if (r.cols() == 0) continue;
+      const Eigen::Index at = 6 * (static_cast<Eigen::Index>(e) * points + q);
+      const Eigen::MatrixXd stress = fem.weight(e, q) * (r * (r.transpose() * strains.middleRows<6>(at)));
+      const auto g = fem.gradient(e, q);
+      for (int a = 0; a < n; ++a) {
+        for (Eigen::Index c = 0; c < stress.cols(); ++c) {
+          result.block<3, 1>(3 * fem.elements()(a, e), c) += nodal(stress.col(c), g.col(a));
+        }
+      }
+    }
+  }
+  return result;
+}
+
+Eigen::MatrixXd project_strain_stiffness(const Discretisation& fem, const StrainFactorField& factor,
+                                         const StrainRows& strains) {
+  constexpr Eigen::Index block = 1024;  // rows that are gathered before they are multiplied
+  const int points = fem.points_per_element();
+  const Eigen::Index m = strains.cols();
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(m, m);
+  StrainRows rows(block + 6, m);
+  Eigen::Index count = 0;
+  const auto flush = [&] {
+    if (count > 0) result.selfadjointView<Eigen::Lower>().rankUpdate(rows.topRows(count).transpose());
+    count = 0;
+  };
+  for (int e = 0; e < fem.element_count(); ++e) {
+    for (int q = 0; q < points; ++q) {
+      const StrainFactor r = factor(e, q);
+      if (r.cols() == 0) continue;
+      const Eigen::Index at = 6 * (static_cast<Eigen::Index>(e) * points + q);
+      rows.middleRows(count, r.cols()).noalias() =
+          (std::sqrt(fem.weight(e, q)) * r.transpose()) * strains.middleRows<6>(at);
+      count += r.cols();
+      if (count >= block) flush();
+    }
+  }
+  flush();
+  result.triangularView<Eigen::StrictlyUpper>() = result.transpose();
+  return result;
+}
+
+Eigen::VectorXd stress_force(const Discretisation& fem, const StressField& stress) {
+  Eigen::VectorXd force = Eigen::VectorXd::Zero(fem.dof_count());
+  for (int e = 0; e < fem.element_count(); ++e) {
+    for (int q = 0; q < fem.points_per_element(); ++q) {
+      const Strain s = fem.weight(e, q) * stress(e, q);
+      const auto g = fem.gradient(e, q);
+      for (int a = 0; a < fem.nodes_per_element(); ++a) {
+        force.segment<3>(3 * fem.elements()(a, e)) += nodal(s, g.col(a));
+      }
+    }
+  }
+  return force;
+}
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,216 @@
+// The model's sums at theta.
+#include <algorithm>
+
+#include "tissue_stiffness/forward/model.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+using Terms = std::vector<Coefficient> LinearTerms::*;
+
+double sum_of(const std::vector<Model::Part>& parts, const Eigen::VectorXd& theta, Terms terms) {
+  double sum = 0.0;
+  for (const Model::Part& part : parts) {
+    for (const Coefficient& c : part.terms.*terms) sum += c(part.parameters(theta));
+  }
+  return sum;
+}
+
+double product_of(const std::vector<Model::Part>& parts, const Eigen::VectorXd& theta, Terms terms) {
+  double product = 1.0;
+  for (const Model::Part& part : parts) {
+    for (const Coefficient& c : part.terms.*terms) product *= c(part.parameters(theta));
+  }
+  return product;
+}
+
+void add(SparseMatrix& to, double scale, const SparseMatrix& part) {
+  if (scale == 0.0) return;
+  if (part.nonZeros() == to.nonZeros()) {
+    to += scale * part;
+  } else {
+    add_scaled(to, scale, part);
+  }
+}
+
+}  // namespace
+
+Eigen::VectorXd Model::Part::parameters(const Eigen::VectorXd& theta) const {
+  Eigen::VectorXd own(static_cast<Eigen::Index>(indices.size()));
+  for (std::size_t i = 0; i < indices.size(); ++i) own[static_cast<Eigen::Index>(i)] = theta[indices[i]];
+  return own;
+}
+
+std::vector<char> Model::fixed(const Eigen::VectorXd& theta) const {
+  std::vector<int> holders = holders_;
+  for (const Part& part : parts_) {
+    const std::vector<int> nodes = part.effect->released_nodes();
+    if (nodes.empty() || !part.effect->releases(part.parameters(theta))) continue;
+    for (const int node : nodes) --holders[static_cast<std::size_t>(node)];
+  }
+  std::vector<char> flags(fixed_.size());
+  for (std::size_t i = 0; i < flags.size(); ++i) flags[i] = holders[i / 3] > 0 ? 1 : 0;
+  return flags;
+}
+
+SparseMatrix Model::mass(const Eigen::VectorXd& theta) const {
+  SparseMatrix m = fem_.pattern();
+  const double factor = mass_factor(theta);
+  for (const Part& part : parts_) {
+    if (part.terms.mass.empty()) continue;
+    const Eigen::VectorXd p = part.parameters(theta);
+    for (const MatrixTerm& term : part.terms.mass) add(m, factor * term.coefficient(p), term.matrix);
+  }
+  return m;
+}
+
+SparseMatrix Model::sum_stiffness(const Eigen::VectorXd& theta, bool reference) const {
+  SparseMatrix k = fem_.pattern();
+  for (const Part& part : parts_) {
+    if (part.terms.stiffness.empty() && part.terms.strain_stiffness.empty()) continue;
+    const double share = reference ? 1.0 : 1.0 - finite_share(part, theta);
+    if (share == 0.0) continue;
+    const Eigen::VectorXd p = part.parameters(theta);
+    for (const MatrixTerm& term : part.terms.stiffness) add(k, share * term.coefficient(p), term.matrix);
+    for (const StrainTerm& term : part.terms.strain_stiffness) {
+      const double scale = share * term.coefficient(p);
+      if (scale != 0.0) add_strain_stiffness(fem_, term.at(p), scale, k);
+    }
+  }
+  return k;
+}
+
+SparseMatrix Model::stiffness(const Eigen::VectorXd& theta) const {
+  return sum_stiffness(theta, false);
+}
+
+SparseMatrix Model::reference_stiffness(const Eigen::VectorXd& theta) const {
+  return sum_stiffness(theta, true);
+}
+
+double Model::mass_damping(const Eigen::VectorXd& theta) const {
+  return sum_of(parts_, theta, &LinearTerms::mass_damping);
+}
+
+double Model::stiffness_damping(const Eigen::VectorXd& theta) const {
+  return sum_of(parts_, theta, &LinearTerms::stiffness_damping);
+}
+
+double Model::mass_factor(const Eigen::VectorXd& theta) const {
+  return product_of(parts_, theta, &LinearTerms::mass_factor);
+}
+
+double Model::load_factor(const Eigen::VectorXd& theta) const {
+  return product_of(parts_, theta, &LinearTerms::load_factor);
+}
+
+std::vector<Relaxation> Model::relaxations(const Eigen::VectorXd& theta) const {
+  std::vector<Relaxation> branches;
+  for (const Part& part : parts_) {
+    for (const RelaxationTerm& term : part.terms.relaxation) {
+      const Eigen::VectorXd p = part.parameters(theta);
+      const double modulus = term.modulus(p);
+      if (modulus > 0.0) branches.push_back({modulus, term.time_constant(p)});
+    }
+  }
+  return branches;
+}
+
+Eigen::Vector3d Model::body_acceleration(const Eigen::VectorXd& theta) const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Part& part : parts_) {
+    for (int i = 0; i < 3; ++i) {
+      for (const Coefficient& c : part.terms.acceleration[i]) sum[i] += c(part.parameters(theta));
+    }
+  }
+  return sum;
+}
+
+double Model::finite_share(const Part& part, const Eigen::VectorXd& theta) const {
+  if (!part.effect->has_finite_form()) return 0.0;
+  return finite_law_ ? 1.0 : std::min(1.0, sum_of(parts_, theta, &LinearTerms::finite_share));
+}
+
+double Model::load_value(const LoadTerm& term, const Eigen::VectorXd& p, double load_factor, double time) const {
+  return (term.course ? load_factor : 1.0) * term.value(time, time - first_stamp_, p);
+}
+
+void Model::add_loads(const Eigen::VectorXd& theta, double time, Eigen::VectorXd& force) const {
+  const double factor = load_factor(theta);
+  for (const Part& part : parts_) {
+    if (part.terms.loads.empty()) continue;
+    const Eigen::VectorXd p = part.parameters(theta);
+    const double share = 1.0 - finite_share(part, theta);
+    for (const LoadTerm& term : part.terms.loads) {
+      const double value = share * term.coefficient(p) * load_value(term, p, factor, time);
+      if (value == 0.0) continue;
+      if (term.shaped) {
+        force += value * term.shaped(p);
+      } else {
+        force += value * term.pattern;
+      }
+    }
+  }
+}
+
+void Model::add_nonlinear_force(const Eigen::VectorXd& theta, const Motion& at, Eigen::VectorXd& force) const {
+  Motion motion = at;
+  motion.load_factor = load_factor(theta);
+  for (const Part& part : parts_) {
+    const Eigen::VectorXd p = part.parameters(theta);
+    motion.finite_share = finite_share(part, theta);
+    if (part.effect->nonlinear()) part.effect->add_force(motion, p, force);
+    if (motion.finite_share == 1.0) {
+      part.effect->add_finite_force(motion, p, force);
+    } else if (motion.finite_share > 0.0) {
+      Eigen::VectorXd finite = Eigen::VectorXd::Zero(force.size());
+      part.effect->add_finite_force(motion, p, finite);
+      force += motion.finite_share * finite;
+    }
+  }
+}
+
+void Model::add_nonlinear_stiffness(const Eigen::VectorXd& theta, const Motion& at, SparseMatrix& stiffness) const {
+  Motion motion = at;
+  motion.load_factor = load_factor(theta);
+  for (const Part& part : parts_) {
+    const Eigen::VectorXd p = part.parameters(theta);
+    motion.finite_share = finite_share(part, theta);
+    if (part.effect->nonlinear()) part.effect->add_stiffness(motion, p, stiffness);
+    if (motion.finite_share == 1.0) {
+      part.effect->add_finite_stiffness(motion, p, stiffness);
+    } else if (motion.finite_share > 0.0) {
+      SparseMatrix finite = fem_.pattern();
+      part.effect->add_finite_stiffness(motion, p, finite);
+      stiffness += motion.finite_share * finite;
+    }
+  }
+}
+
+double Model::stored_energy(const Eigen::VectorXd& theta, const Motion& at) const {
+  Motion motion = at;
+  double sum = 0.0;
+  for (const Part& part : parts_) {
+    motion.finite_share = finite_share(part, theta);
+    sum += part.effect->energy(motion, part.parameters(theta));
+  }
+  return sum;
+}
+
+double Model::delay(const Eigen::VectorXd& theta) const {
+  double sum = 0.0;
+  for (const Part& part : parts_) {
+    if (part.effect->observes()) sum += part.effect->delay(part.parameters(theta));
+  }
+  return sum;
+}
+
+ObservedMotion Model::observe(const Eigen::VectorXd& theta, double since, const Eigen::VectorXd& displacement) const {
+  ObservedMotion motion{mesh_, since, displacement};
+  for (const Part& part : parts_) {
+    if (part.effect->observes()) part.effect->observe(part.parameters(theta), motion);
+  }
+  return motion;
+}
+
+}  // namespace tissue_stiffness

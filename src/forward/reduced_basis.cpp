@@ -1,0 +1,204 @@
+#include "tissue_stiffness/forward/reduced_basis.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "tissue_stiffness/fem/sparse_solver.hpp"
+#include "tissue_stiffness/forward/motive_terms.hpp"
+#include "tissue_stiffness/forward/orthonormal_basis.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr double kShift = 1e-6;         // makes the stiffness of a body that nothing holds invertible
+constexpr int kLeading = 4;             // modes that tell what an absent effect would do
+constexpr double kResponseShare = 0.6;  // of the room for absent effects: static responses; dynamic ones fill the rest
+constexpr double kFaint = 1e-12;        // of the strongest response, squared: what is left out
+constexpr double kFree = 1e-9;          // of the highest eigenvalue: below it a body moves freely
+
+void zero_fixed(Eigen::MatrixXd& x, const std::vector<char>& fixed) {
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    if (fixed[static_cast<std::size_t>(i)] != 0) x.row(i).setZero();
+  }
+}
+
+// K^-1 with some nodes held.
+class StaticResponse {
+ public:
+  StaticResponse(SparseMatrix stiffness, const SparseMatrix& mass, std::vector<char> fixed) : fixed_(std::move(fixed)) {
+    const bool held = std::any_of(fixed_.begin(), fixed_.end(), [](char flag) { return flag != 0; });
+    if (!held) stiffness += kShift * stiffness.diagonal().sum() / mass.diagonal().sum() * mass;
+    fix_dofs(stiffness, fixed_, stiffness.diagonal().mean());
+    solver_.factorize(stiffness);
+  }
+  Eigen::MatrixXd operator()(Eigen::MatrixXd loads) const {
+    zero_fixed(loads, fixed_);
+    return solver_.solve(loads);
+  }
+
+ private:
+  std::vector<char> fixed_;
+  SparseSolver solver_;
+};
+
+class Builder {
+ public:
+  Builder(const Model& model, const BasisOptions& options)
+      : model_(model),
+        options_(options),
+        prior_(model),
+        mass_(model.mass(prior_.theta)),
+        stiffness_(model.stiffness(prior_.theta)),
+        held_(stiffness_, mass_, model.fixed(prior_.theta)) {}
+
+  ReducedBasis build() {
+    const Eigen::Index free_dofs = model_.fem().dof_count() / 2;
+    const Eigen::Index room = std::min<Eigen::Index>(std::max(options_.size, options_.largest), free_dofs);
+    OrthonormalBasis basis(mass_, room);
+    const Eigen::MatrixXd acting = acting_loads(model_, prior_, mass_);
+    const auto first = std::min<Eigen::Index>(options_.size, room);
+    if (acting.cols() > 0) extend(basis, held_, acting, stiffness_groups(model_, prior_), first);
+    add_sleeping(basis, acting);
+    if (basis.size() == 0) {
+      throw InputError(model_.settings().name + ": effects", "nothing that moves the body",
+                       "gravity, pressure, traction or an initial velocity");
+    }
+    ReducedBasis result{basis.vectors(), std::vector<int>(static_cast<std::size_t>(basis.size()), -1)};
+    add_supports(basis, acting, result);
+    return result;
+  }
+
+ private:
+  // Static responses to the loads, then to the inertia (and, with several moduli, the stiffnesses) of what was added last.
+  static void extend(OrthonormalBasis& basis, const StaticResponse& respond, const SparseMatrix& mass,
+                     const Eigen::MatrixXd& loads, const std::vector<SparseMatrix>& groups, Eigen::Index size) {
+    Eigen::MatrixXd x = respond(loads);
+    for (;;) {
+      const Eigen::Index before = basis.size();
+      for (Eigen::Index i = 0; i < x.cols() && basis.size() < size; ++i) basis.add(x.col(i));
+      const Eigen::MatrixXd block = basis.vectors().rightCols(basis.size() - before);
+      if (block.cols() == 0 || basis.size() >= size) return;
+      Eigen::MatrixXd next = mass * block;
+      for (const SparseMatrix& k : groups) {
+        next.conservativeResize(Eigen::NoChange, next.cols() + block.cols());
+        next.rightCols(block.cols()) = k * block;
+      }
+      x = respond(std::move(next));
+    }
+  }
+  void extend(OrthonormalBasis& basis, const StaticResponse& respond, const Eigen::MatrixXd& loads,
+              const std::vector<SparseMatrix>& groups, Eigen::Index size) const {
+    extend(basis, respond, mass_, loads, groups, size);
+  }
+
+  // The modes of the basis that the loads move most.
+  Eigen::MatrixXd leading_motion(const OrthonormalBasis& basis, const Eigen::MatrixXd& loads) const {
+    const Eigen::MatrixXd b = basis.vectors();
+    if (b.cols() == 0) return b;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(b.transpose() * (stiffness_ * b));
+    const Eigen::VectorXd& square = eigen.eigenvalues();
+    Eigen::MatrixXd share = eigen.eigenvectors().transpose() * (b.transpose() * loads);
+    for (Eigen::Index k = 0; k < share.rows(); ++k) {
+      share.row(k) *= square[k] > kFree * square[square.size() - 1] ? 1.0 / square[k] : 0.0;
+    }
+    for (Eigen::Index l = 0; l < share.cols(); ++l) {
+      if (const double norm = share.col(l).norm(); norm > 0.0) share.col(l) /= norm;
+    }
+    const Eigen::VectorXd weight = share.rowwise().squaredNorm();
+    std::vector<Eigen::Index> order(static_cast<std::size_t>(weight.size()));
+    std::iota(order.begin(), order.end(), Eigen::Index{0});
+    std::stable_sort(order.begin(), order.end(), [&](auto a, auto c) { return weight[a] > weight[c]; });
+    const Eigen::Index count = std::min<Eigen::Index>(kLeading, b.cols());
+    Eigen::MatrixXd modes(b.rows(), count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const Eigen::Index k = order[static_cast<std::size_t>(i)];
+      modes.col(i) = std::sqrt(weight[k]) * (b * eigen.eigenvectors().col(k));
+    }
+    return modes;
+  }
+
+  // Static responses to the terms that are absent at the prior, each part's scaled to one, beside the basis.
+  void add_sleeping(OrthonormalBasis& basis, const Eigen::MatrixXd& acting) const {
+    const Eigen::MatrixXd motion = leading_motion(basis, acting);
+    const StrainRows rows = strains(model_.fem(), motion);
+    Eigen::MatrixXd responses(mass_.rows(), 0);
+    int parts = 0;
+    for (std::size_t p = 0; p < model_.parts().size(); ++p) {
+      if (!model_.parts()[p].effect->released_nodes().empty()) continue;
+      const Eigen::MatrixXd loads = sleeping_loads(model_, prior_, mass_, p),
+                            forces = sleeping_forces(model_, prior_, p, motion, rows);
+      if (loads.cols() + forces.cols() == 0) continue;
+      ++parts;
+      for (const Eigen::MatrixXd* block : {&loads, &forces}) {
+        if (block->cols() == 0) continue;
+        const Eigen::MatrixXd x = held_(*block);
+        const double norm = std::sqrt((x.array() * (mass_ * x).array()).sum());
+        if (!(norm > 0.0)) continue;
+        responses.conservativeResize(Eigen::NoChange, responses.cols() + x.cols());
+        responses.rightCols(x.cols()) = x / norm;
+      }
+    }
+    if (parts == 0) return;
+    const Eigen::Index room = std::min<Eigen::Index>(std::max(options_.largest - options_.size, 0),
+                                                     static_cast<Eigen::Index>(options_.per_part) * parts);
+    add_common(basis, responses, basis.size() + room);
+  }
+
+  void add_common(OrthonormalBasis& basis, const Eigen::MatrixXd& responses, Eigen::Index size) const {
+    const Eigen::MatrixXd rest = basis.beside(responses);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(rest.transpose() * (mass_ * rest));
+    const Eigen::VectorXd& square = eigen.eigenvalues();
+    const auto statics =
+        basis.size() + static_cast<Eigen::Index>(kResponseShare * static_cast<double>(size - basis.size()));
+    const Eigen::Index before = basis.size();
+    for (Eigen::Index k = square.size() - 1; k >= 0 && basis.size() < statics; --k) {
+      if (!(square[k] > kFaint * square[square.size() - 1])) break;
+      basis.add(rest * eigen.eigenvectors().col(k));
+    }
+    const Eigen::MatrixXd added = basis.vectors().rightCols(basis.size() - before);
+    if (added.cols() > 0) extend(basis, held_, mass_ * added, {}, size);
+  }
+
+  static SparseMatrix springs(const Model::Part& part, const Eigen::VectorXd& p) {
+    SparseMatrix sum = part.terms.stiffness.front().matrix;
+    sum *= part.terms.stiffness.front().coefficient(p);
+    return sum;
+  }
+
+  // For each support that may give way: responses with its nodes on springs; those to the springs cover other compliances.
+  void add_supports(const OrthonormalBasis& held, const Eigen::MatrixXd& acting, ReducedBasis& result) const {
+    const Eigen::VectorXd prior = model_.theta(model_.prior_mean());
+    for (std::size_t p = 0; p < model_.parts().size(); ++p) {
+      const auto& part = model_.parts()[p];
+      if (part.effect->released_nodes().empty() || !model_.estimated(part, {0})) continue;
+      Eigen::VectorXd theta = prior_.theta;
+      const Eigen::VectorXd& soft = part.effect->releases(part.parameters(prior)) ? prior : prior_.generic;
+      for (const int index : part.indices) theta[index] = soft[index];
+      const StaticResponse respond(model_.stiffness(theta), mass_, model_.fixed(theta));
+      const Eigen::Index before = held.size();
+      OrthonormalBasis basis(mass_, before + options_.released);
+      for (Eigen::Index i = 0; i < before; ++i) basis.add(held.vectors().col(i));
+      extend(basis, respond, acting, {springs(part, part.parameters(theta))}, basis.size() + options_.released);
+      const Eigen::Index count = basis.size() - before;
+      result.vectors.conservativeResize(Eigen::NoChange, result.vectors.cols() + count);
+      result.vectors.rightCols(count) = basis.vectors().rightCols(count);
+      result.support.insert(result.support.end(), static_cast<std::size_t>(count), static_cast<int>(p));
+    }
+  }
+
+  const Model& model_;
+  BasisOptions options_;
+  PriorView prior_;
+  SparseMatrix mass_, stiffness_;
+  StaticResponse held_;
+};
+
+}  // namespace
+
+ReducedBasis build_reduced_basis(const Model& model, const BasisOptions& options) {
+  return Builder(model, options).build();
+}
+
+}  // namespace tissue_stiffness

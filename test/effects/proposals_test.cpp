@@ -1,0 +1,123 @@
+// What effects propose of themselves: every proposal is a model file's entry that changes nothing at its absent value.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+#include "../box_model.hpp"
+#include "tissue_stiffness/effects/registry.hpp"
+#include "tissue_stiffness/forward/full_model.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+const std::vector<std::string> kBase{
+    "inertia: {density: 1000}", "elasticity: {law: linear, young_modulus: {prior: 3.0e4, factor: 3}, poisson_ratio: 0.4}",
+    "fixed: {region: clamp}", "traction: {region: tip, topic: /load}"};
+const std::string kObservations =
+    "[{vertices: {topic: /vertices, noise: 1.0e-4}}, {points: {topic: /points, noise: 1.0e-4}}]";
+
+std::vector<Proposal> proposals_of(const EffectSpec& spec, const Model& model) {
+  const ProposalContext context{model.settings(), model.mesh(), model.regions(), 3e4, 0.4, 1000.0, 0.02, 2.0};
+  return spec.proposals ? spec.proposals(context) : std::vector<Proposal>{};
+}
+
+struct Swing {
+  Eigen::VectorXd displacement;
+  double delay, outward;
+};
+
+Swing swing(const std::vector<std::string>& effects, const TetMesh& mesh) {
+  Model model(box_settings(effects, kObservations), mesh);
+  for (auto& course : model.courses()) {
+    if (!course.second->from_file()) course.second->add(0.0, Eigen::VectorXd::LinSpaced(6, 0.01, 0.02));
+  }
+  const Eigen::VectorXd theta = model.theta(model.prior_mean());
+  FullModel::Options options;
+  options.step = 0.005;
+  const auto run = FullModel(model, options).start(theta, 0.0);
+  run->advance(0.02);
+  const ObservedMotion seen = model.observe(theta, 0.02, run->displacement());
+  return {seen.displacement, model.delay(theta), seen.outward};
+}
+
+std::vector<std::string> with(const std::string& effect) {
+  std::vector<std::string> effects = kBase;
+  effects.push_back(effect);
+  return effects;
+}
+
+TEST(Proposals, ChangeNothingAtTheirAbsentValue) {
+  const TetMesh mesh = bar_mesh(2);
+  const Model base(box_settings(kBase, kObservations), mesh);
+  const Swing without = swing(kBase, mesh);
+  for (const EffectSpec& spec : effect_specs()) {
+    for (const Proposal& proposal : proposals_of(spec, base)) {
+      const Swing absent = swing(with(proposal.yaml), mesh);
+      EXPECT_EQ(absent.displacement, without.displacement) << proposal.yaml;
+      EXPECT_EQ(absent.delay, 0.0) << proposal.yaml;
+      EXPECT_EQ(absent.outward, 0.0) << proposal.yaml;
+    }
+  }
+}
+
+TEST(Proposals, EstimateTheirAmplitudeAndNothingElse) {
+  const TetMesh mesh = bar_mesh(2);
+  const Model base(box_settings(kBase, kObservations), mesh);
+  for (const EffectSpec& spec : effect_specs()) {
+    for (const Proposal& proposal : proposals_of(spec, base)) {
+      const Model model(box_settings(with(proposal.yaml), kObservations), mesh);
+      const auto parameter = std::find_if(spec.parameters.begin(), spec.parameters.end(),
+                                          [&](const ParameterSpec& p) { return p.name == proposal.amplitude; });
+      ASSERT_NE(parameter, spec.parameters.end()) << proposal.yaml;
+      ASSERT_EQ(model.free_parameters().size(), 1U + static_cast<std::size_t>(parameter->components)) << proposal.yaml;
+      for (std::size_t i = 1; i < model.free_parameters().size(); ++i) {
+        const FreeParameter& free = model.free_parameters()[i];
+        EXPECT_EQ(free.name.find(spec.name + "." + proposal.amplitude), 0U) << free.name;
+        EXPECT_EQ(free.prior.value, parameter->absent) << proposal.yaml;
+        EXPECT_GT(free.prior.spread, 0.0);
+      }
+    }
+  }
+}
+
+TEST(Proposals, StartARefitThatMovesTheModel) {
+  const TetMesh mesh = bar_mesh(2);
+  const Model base(box_settings(kBase, kObservations), mesh);
+  const Swing without = swing(kBase, mesh);
+  for (const EffectSpec& spec : effect_specs()) {
+    std::map<std::string, int> seen;
+    for (const Proposal& proposal : proposals_of(spec, base)) {
+      EXPECT_EQ(++seen[proposal.yaml], 1) << proposal.yaml << " twice";
+      const Model model(box_settings(with(proposal.refine), kObservations), mesh);
+      EXPECT_GE(model.free_parameters().size(), 2U) << proposal.refine;
+      EXPECT_EQ(proposal.refine.find(spec.name + ":"), 0U) << proposal.refine;
+    }
+  }
+}
+
+TEST(Proposals, AreNotMadeForWhatIsThere) {
+  const TetMesh mesh = bar_mesh(2);
+  const Model base(box_settings(kBase, kObservations), mesh);
+  int effects = 0;
+  for (const EffectSpec& spec : effect_specs()) {
+    const std::vector<Proposal> list = proposals_of(spec, base);
+    if (list.empty()) continue;
+    ++effects;
+    const Model model(box_settings(with(list.front().yaml), kObservations), mesh);
+    for (const Proposal& again : proposals_of(spec, model)) EXPECT_NE(again.yaml, list.front().yaml);
+  }
+  EXPECT_GE(effects, 5);
+}
+
+TEST(Proposals, NeedWhatTheyActOn) {
+  const TetMesh mesh = bar_mesh(2);
+  const Model loose(box_settings({kBase[0], kBase[1], "gravity: {acceleration: [0, 0, -9.81]}"}), mesh);
+  for (const EffectSpec& spec : effect_specs()) {
+    if (spec.name != "elastic_support" && spec.name != "gravity") continue;
+    EXPECT_TRUE(proposals_of(spec, loose).empty()) << spec.name;
+  }
+}
+
+}  // namespace
+}  // namespace tissue_stiffness

@@ -1,0 +1,85 @@
+// Effects that a reduced basis must be prepared for: the reduced model against the full one, at the prior and away from it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "../box_model.hpp"
+#include "full_against_reduced.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+std::vector<std::string> bar_with(const std::vector<std::string>& more) {
+  std::vector<std::string> effects{
+      "inertia: {density: 1000}",
+      "elasticity: {law: linear, poisson_ratio: 0.45, young_modulus: {prior: 3.0e4, factor: 2}}", "fixed: {region: clamp}",
+      "gravity: {acceleration: [0.5, 1, -2]}"};
+  effects.insert(effects.end(), more.begin(), more.end());
+  return effects;
+}
+
+// Error of the reduced model where each estimated parameter (behind the modulus) takes the given values in turn.
+double worst(const std::vector<std::string>& effects, const std::vector<Eigen::VectorXd>& values, double step = 2e-4) {
+  const TetMesh mesh = bar_mesh(4);
+  Model model(box_settings(bar_with(effects)), mesh);
+  model.set_first_stamp(0.1);
+  const ReducedModel reduced(model);
+  double error = 0.0;
+  for (const Eigen::VectorXd& value : values) {
+    Eigen::VectorXd w = model.prior_mean();
+    for (Eigen::Index i = 0; i < value.size(); ++i) {
+      w[i + 1] = model.free_parameters()[static_cast<std::size_t>(i + 1)].to_coordinate(value[i]);
+    }
+    const double here = full_against_reduced(model, reduced, model.theta(w), step);
+    std::printf("%s at %g: %.1e of the motion\n", effects.front().c_str(), value[0], here);
+    error = std::max(error, here);
+  }
+  return error;
+}
+
+Eigen::VectorXd at(std::initializer_list<double> values) {
+  Eigen::VectorXd v(static_cast<Eigen::Index>(values.size()));
+  std::copy(values.begin(), values.end(), v.data());
+  return v;
+}
+
+TEST(ReducedEffects, ViscoelasticityIsExactInTime) {
+  EXPECT_LT(worst({"viscoelasticity: {gamma: {mean: 0, std: 0.5}, tau: {prior: 0.02, factor: 3}}"},
+                  {at({0.0, 0.02}), at({0.5, 0.005}), at({1.0, 0.02}), at({0.3, 0.5})}),
+            1e-3);
+}
+
+TEST(ReducedEffects, SeveralBranchesAddUp) {
+  EXPECT_LT(worst({"viscoelasticity: {gamma: {mean: 0, std: 0.5}, tau: 0.01}",
+                   "viscoelasticity: {gamma: {mean: 0, std: 0.5}, tau: 0.1}"},
+                  {at({0.4, 0.6})}),
+            1e-3);
+}
+
+TEST(ReducedEffects, AClampGivesWay) {
+  EXPECT_LT(worst({"elastic_support: {region: clamp, compliance: {mean: 0, std: 1.0e-7}}"},
+                  {at({0.0}), at({1e-9}), at({1e-7}), at({1e-6})}),
+            5e-3);
+  EXPECT_LT(worst({"elastic_support: {region: clamp, compliance: {prior: 3.0e-7, factor: 3}}"},
+                  {at({3e-8}), at({3e-7}), at({3e-6})}),
+            2e-3);
+}
+
+TEST(ReducedEffects, AKnownComplianceNeedsNoPreparation) {
+  EXPECT_LT(worst({"elastic_support: {region: clamp, compliance: 5.0e-7}", "mass_damping: {alpha: {mean: 0, std: 1}}"},
+                  {at({0.0})}),
+            1e-3);
+}
+
+TEST(ReducedEffects, AFoundationGrowsFromNothing) {
+  EXPECT_LT(worst({"foundation: {region: top, stiffness: {mean: 0, std: 1.0e4}}"}, {at({0.0}), at({5e3}), at({5e4})}),
+            2e-3);
+}
+
+TEST(ReducedEffects, GravityAndMassGrowFromNothing) {
+  EXPECT_LT(worst({"gravity: {acceleration: {mean: [0, 0, 0], std: 3}}"}, {at({3.0, 5.0, 1.0})}), 1e-3);
+  EXPECT_LT(worst({"added_mass: {region: tip, mass: {mean: 0, std: 0.01}}"}, {at({0.0}), at({0.01}), at({0.05})}), 2e-3);
+}
+
+}  // namespace
+}  // namespace tissue_stiffness
