@@ -8,8 +8,10 @@ import time
 
 import yaml
 
+import live_run
+
 MODULUS = 'elasticity.young_modulus'
-STAGES = ('segment', 'predict', 'observe', 'update', 'revisit')
+STAGES = ('segment', 'predict', 'observe', 'update', 'revisit', 'mesh error')
 TIME_LIMIT = 1800  # s a recording
 
 # folder, |E - truth| [%], allowed E [Pa], rms_error within [%] of the noise
@@ -23,6 +25,8 @@ CASES = {
     'foam_ball': ('recordings', 15, (10e3, 30e3), None),
     'tennis_ball': ('recordings', 15, (1e6, 5e6), None),
 }
+LIVE = ('ventricle_echo', 'bar_release')  # played through the nodes too
+SPEED = ('case_01', 'case_06')
 SAME_WITHIN = ('silicone_beam_gravity_a', 'silicone_beam_gravity_b', 5)  # [%]
 
 
@@ -51,11 +55,11 @@ def run(estimate, shared, folder, name, output):
     results['wall'] = time.monotonic() - start
     results['stages'] = {}
     for line in done.stdout.splitlines():
-        words = line.split()
-        if words and words[0] in STAGES:
-            results['stages'][words[0]] = '%s/%s' % (words[1], words[2])
-        if words and words[0] == 'frames':
-            results['rate'] = float(words[-2])
+        for stage in STAGES:
+            if line.startswith(stage + ' '):
+                results['stages'][stage] = '%s/%s' % tuple(line[len(stage):].split()[:2])
+        if line.startswith('frames '):
+            results['rate'] = float(line.split()[-2])
     return results
 
 
@@ -83,26 +87,65 @@ def row(name, results, truth, found):
         'FAIL' if found else 'pass', '; '.join(found) or stages)
 
 
-def main():
-    root = sys.argv[1]
+def compare_live(name, folder, shared, output, offline):
+    """Prints the nodes' estimate beside the tool's; True when the two agree."""
+    source = os.path.join(shared, folder, name)
+    live = live_run.play(os.path.join(source, 'model.yaml'), os.path.join(source, 'recording.bag'),
+                         os.path.join(output, name), TIME_LIMIT)
+    if isinstance(live, str):
+        print('%-24s FAIL: %s' % (name, live), flush=True)
+        return False
+    live, tool = live[MODULUS], offline['parameters'][MODULUS]
+    low, high = tool['interval95']
+    agree = low <= live['mean'] <= high
+    print('%-24s %9.5g  %-20s %6d %9.5g  %-20s %6d  %s' % (
+        name, live['mean'] / 1e3, shown(live), live['frames'], tool['mean'] / 1e3, shown(tool), offline['frames'],
+        'pass' if agree else 'FAIL: outside the tool\'s interval'), flush=True)
+    return agree
+
+
+def shown(entry):
+    return '%.5g..%.5g' % tuple(x / 1e3 for x in entry['interval95'])
+
+
+def print_live(names, options, done):
+    print('\n%-24s %9s  %-20s %6s %9s  %-20s %6s' % (
+        'through the nodes', 'E [kPa]', '95 % [kPa]', 'frames', 'tool', '95 % [kPa]', 'frames'))
+    return sum(not compare_live(name, CASES[name][0], options.shared, options.output, done[name]) for name in names)
+
+
+def print_speed(names, done):
+    """Rows for the README."""
+    print('\n| recording | frames/s | %s |' % ' | '.join('%s, median / p99 [ms]' % stage for stage in STAGES[1:]))
+    print('|---' * (len(STAGES) + 1) + '|')
+    for name in names:
+        stages = [done[name]['stages'].get(stage, '-').replace('/', ' / ') for stage in STAGES[1:]]
+        print('| %s | %.0f | %s |' % (name, done[name]['rate'], ' | '.join(stages)))
+
+
+def read_options(root, arguments):
     parser = argparse.ArgumentParser(prog='acceptance')
     parser.add_argument('--estimate', default=os.path.join(root, 'build/devel/lib/tissue_stiffness/estimate'))
     parser.add_argument('--shared', default=os.path.join(root, '..', 'shared'))
     parser.add_argument('--output', default=os.path.join(root, 'output', 'acceptance'))
+    parser.add_argument('--live', choices=('none', 'images', 'all'), default='images',
+                        help='recordings played through the nodes too: the image recordings %s and %s, or all' % LIVE)
     parser.add_argument('names', nargs='*', metavar='NAME', help='of ' + ', '.join(CASES))
-    options = parser.parse_args(sys.argv[2:])
+    options = parser.parse_args(arguments)
     unknown = [name for name in options.names if name not in CASES]
     if unknown:
         parser.error('found %s; allowed: %s' % (unknown[0], ', '.join(CASES)))
     if not os.path.exists(options.estimate):
         parser.error('%s is missing: run scripts/build first' % options.estimate)
-    if not os.path.isdir(options.shared):
-        print('skipped: no shared recordings in ' + options.shared)
-        return 0
+    return options
+
+
+def run_offline(options):
+    """Prints a row a recording. Results by name of those that gave any, and how many failed."""
     print('%-24s %9s %9s %8s  %-18s %6s %9s %7s  %-9s %s' % (
         'recording', 'E [kPa]', 'truth', 'off [%]', '95 % [kPa]', 'rms/s', 'frames/s', 'wall s', 'verdict',
         'median/p99 [ms]: ' + ', '.join(STAGES)))
-    failed, moduli = 0, {}
+    failed, done = 0, {}
     for name in options.names or CASES:
         bounds = CASES[name]
         truth = read_truth(options.shared, bounds[0], name)
@@ -111,15 +154,32 @@ def main():
             failed += 1
             print('%-24s FAIL: %s' % (name, results), flush=True)
             continue
-        moduli[name] = results['parameters'][MODULUS]['mean']
+        done[name] = results
         found = failures(results, truth, bounds)
         failed += bool(found)
         print(row(name, results, truth, found), flush=True)
+    return done, failed
+
+
+def main():
+    options = read_options(sys.argv[1], sys.argv[2:])
+    if not os.path.isdir(options.shared):
+        print('skipped: no shared recordings in ' + options.shared)
+        return 0
+    done, failed = run_offline(options)
     first, second, limit = SAME_WITHIN
-    if first in moduli and second in moduli:
-        apart = 100 * abs(moduli[first] / moduli[second] - 1)
+    if first in done and second in done:
+        moduli = [done[name]['parameters'][MODULUS]['mean'] for name in (first, second)]
+        apart = 100 * abs(moduli[0] / moduli[1] - 1)
         failed += apart > limit
         print('%s and %s: %.2f %% apart, %s' % (first, second, apart, 'FAIL' if apart > limit else 'pass'))
+    live = {'none': (), 'images': LIVE, 'all': tuple(CASES)}[options.live]
+    live = [name for name in live if name in done]
+    if live:
+        failed += print_live(live, options, done)
+    fast = [name for name in SPEED if name in done]
+    if fast:
+        print_speed(fast, done)
     print('%d failed' % failed if failed else 'all pass')
     return 1 if failed else 0
 

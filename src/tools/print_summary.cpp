@@ -38,7 +38,7 @@ void print_parameters(const Results& results, std::ostream& out) {
 
 void print_stages(const EstimationRun& run, std::ostream& out) {
   print_line(out, "%-12s %12s %12s %12s", "stage", "median [ms]", "p99 [ms]", "total [s]");
-  for (const char* stage : {"segment", "predict", "observe", "update", "revisit"}) {
+  for (const char* stage : {"segment", "predict", "observe", "update", "revisit", "mesh error"}) {
     const auto samples = run.stage_samples.find(stage);
     if (samples == run.stage_samples.end()) continue;
     double sum = 0.0;
