@@ -1,20 +1,14 @@
-// What the model lacks, physics or resolution, must not pass for certainty.
+// What the model lacks must not pass for certainty; see mesh_error_test.cpp for resolution.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "bar.hpp"
-#include "tissue_stiffness/meshing/refine.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
 constexpr double kTruth = 20e3;
-
-ModelSettings assessed(ModelSettings settings) {
-  settings.mesh.discretisation_error = true;
-  return settings;
-}
 
 TEST(MissingDamping, DoesNotBiasTheModulus) {
   const TetMesh mesh = bar_mesh();
@@ -41,26 +35,6 @@ TEST(MissingNothing, LeavesTheFreeRunInCharge) {
   const StepResult last = step_through(estimator, see_all(bar, bar.film(0.0, kFilmed, 100), kNoise, 4));
   EXPECT_LT(last.estimate.parameters.front().std / kTruth, 1e-3);  // a corrected run knows ten times less
   EXPECT_TRUE(holds(last.estimate.parameters.front(), kTruth));
-}
-
-TEST(CoarseMesh, IsCorrectedForAndWidensTheInterval) {
-  const TetMesh coarse = bar_mesh(8, 2, 2);
-  const TetMesh fine = refine(coarse);
-  const ModelSettings model = box_settings(bar_under_gravity(prior(kTruth, 3)));
-  const Experiment bar(model, fine, {kTruth});
-  std::vector<int> ids(static_cast<std::size_t>(coarse.corner_count));
-  for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = static_cast<int>(i);
-  std::mt19937 engine(5);
-  std::vector<Frame> frames;
-  for (const auto& moment : bar.film(0.0, kFilmed, 60)) frames.push_back(see_vertices(bar, moment, ids, kNoise, engine));
-  Estimator plain(model, coarse), honest(assessed(model), coarse);
-  step_through(plain, frames);
-  const StepResult last = step_through(honest, frames);
-  const double bias = value(plain) / kTruth - 1.0, rest = value(honest) / kTruth - 1.0;
-  std::printf("mesh error: %+.3f %% before, %+.3f %% after correction\n", 100.0 * bias, 100.0 * rest);
-  EXPECT_FALSE(holds(plain.estimate().parameters.front(), kTruth));
-  EXPECT_TRUE(holds(last.estimate.parameters.front(), kTruth));
-  EXPECT_LT(std::abs(rest), 0.3 * std::abs(bias));
 }
 
 }  // namespace

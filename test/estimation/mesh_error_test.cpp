@@ -1,0 +1,75 @@
+// A coarse mesh against recordings from a fine one: the interval must carry what the mesh does.
+#include <gtest/gtest.h>
+
+#include "bar.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr double kTruth = 30e3;
+
+ModelSettings settings(bool studied) {
+  ModelSettings out = box_settings(bar_under_gravity(prior(50e3, 3)));
+  out.mesh.discretisation_error = studied;
+  return out;
+}
+
+TetMesh coarse() {
+  return bar_mesh(8, 2, 2);
+}
+
+// Filmed on a mesh three times as fine, seen at the coarse one's vertices.
+std::vector<Frame> recording(int count) {
+  const TetMesh mesh = coarse(), fine = bar_mesh(24, 6, 6);
+  const Experiment bar(settings(false), fine, {kTruth});
+  Eigen::VectorXi own(mesh.corner_count);
+  std::vector<int> ids;
+  for (int i = 0; i < mesh.corner_count; ++i) {
+    Eigen::Index nearest = 0;
+    EXPECT_LT((fine.nodes.colwise() - mesh.nodes.col(i)).colwise().squaredNorm().minCoeff(&nearest), 1e-18);
+    ids.push_back(static_cast<int>(nearest));
+    own[i] = i;
+  }
+  std::mt19937 engine(1);
+  std::vector<Frame> frames;
+  for (const auto& moment : bar.film(0.0, kFilmed, count)) {
+    frames.push_back(see_vertices(bar, moment, ids, kNoise, engine));
+    frames.back().observations.front().ids = own;
+  }
+  return frames;
+}
+
+TEST(MeshError, OfACoarseMeshIsCorrectedAndInTheInterval) {
+  const std::vector<Frame> frames = recording(40);
+  Estimator plain(settings(false), coarse()), studied(settings(true), coarse());
+  step_through(plain, frames);
+  step_through(studied, frames);
+  for (const Estimator* estimator : {&plain, &studied}) {
+    const ParameterEstimate& p = estimator->estimate().parameters.front();
+    std::printf("coarse mesh, %s: E %+.2f %% off, 95 %% %+.2f..%+.2f %%\n", estimator == &plain ? "plain" : "studied",
+                100.0 * (p.mean / kTruth - 1.0), 100.0 * (p.lower95 / kTruth - 1.0), 100.0 * (p.upper95 / kTruth - 1.0));
+  }
+  EXPECT_FALSE(holds(plain.estimate().parameters.front(), kTruth));
+  EXPECT_TRUE(holds(studied.estimate().parameters.front(), kTruth));
+  EXPECT_LT(std::abs(value(studied) - kTruth), 0.5 * std::abs(value(plain) - kTruth));
+}
+
+TEST(MeshError, IsSaidToBeAssessedOrNot) {
+  EXPECT_NE(Estimator(settings(true), bar_mesh()).description().back().find("refined eightfold"), std::string::npos);
+  EXPECT_NE(Estimator(settings(false), bar_mesh()).description().back().find("asks not to"), std::string::npos);
+}
+
+TEST(MeshError, IsForgottenByAResetAndTheSameEveryTime) {
+  const Experiment bar(settings(false), bar_mesh(), {kTruth});
+  const std::vector<Frame> frames = see_all(bar, bar.film(0.0, kFilmed, 20), kNoise, 1);
+  Estimator fresh(settings(true), bar_mesh()), used(settings(true), bar_mesh());
+  step_through(used, frames);
+  used.reset();
+  EXPECT_TRUE(bytes(used) == bytes(fresh));
+  step_through(used, frames);
+  step_through(fresh, frames);
+  EXPECT_TRUE(bytes(used) == bytes(fresh));
+}
+
+}  // namespace
+}  // namespace tissue_stiffness
