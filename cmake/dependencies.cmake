@@ -1,15 +1,26 @@
 # Libraries without a CMake package of their own, and the two that carry a strong copyleft licence.
 
+# find_path and find_library know REQUIRED since CMake 3.18 only.
+function(tissue_stiffness_require)
+  foreach(found ${ARGN})
+    if(NOT ${found})
+      message(FATAL_ERROR "${found}: not found; scripts/install_dependencies installs what is missing")
+    endif()
+  endforeach()
+endfunction()
+
 if(TISSUE_STIFFNESS_TETGEN)
-  find_path(TETGEN_INCLUDE_DIR tetgen.h REQUIRED)
-  find_library(TETGEN_LIBRARY NAMES tet REQUIRED)
+  find_path(TETGEN_INCLUDE_DIR tetgen.h)
+  find_library(TETGEN_LIBRARY NAMES tet)
+  tissue_stiffness_require(TETGEN_INCLUDE_DIR TETGEN_LIBRARY)
   set(TETGEN_LIBRARIES ${TETGEN_LIBRARY})
   set_source_files_properties(src/meshing/tetgen_mesher.cpp PROPERTIES
     COMPILE_DEFINITIONS TISSUE_STIFFNESS_TETGEN)
 endif()
 
-find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
-find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
+find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse)
+find_library(CHOLMOD_LIBRARY cholmod)
+tissue_stiffness_require(CHOLMOD_INCLUDE_DIR CHOLMOD_LIBRARY)
 find_library(OPENBLAS_LIBRARY NAMES openblas PATH_SUFFIXES openblas-pthread)
 add_library(cholmod_solver INTERFACE)
 target_include_directories(cholmod_solver SYSTEM INTERFACE ${CHOLMOD_INCLUDE_DIR})
@@ -24,12 +35,16 @@ if(TISSUE_STIFFNESS_CHOLMOD_SUPERNODAL)
   target_compile_definitions(cholmod_solver INTERFACE TISSUE_STIFFNESS_CHOLMOD_SUPERNODAL)
 endif()
 
-# Ubuntu 20.04's yaml-cpp and TBB packages lack the targets that newer ones have.
+# TBB of 2020 may come without a CMake package.
 if(NOT TARGET TBB::tbb)
+  find_path(TBB_INCLUDE_DIR tbb/parallel_for.h)
+  find_library(TBB_LIBRARY tbb)
+  tissue_stiffness_require(TBB_INCLUDE_DIR TBB_LIBRARY)
   add_library(TBB::tbb INTERFACE IMPORTED)
-  target_link_libraries(TBB::tbb INTERFACE tbb)
+  target_link_libraries(TBB::tbb INTERFACE ${TBB_LIBRARY})
 endif()
 
 if(NOT CLI11_FOUND)
-  find_path(CLI11_INCLUDE_DIR CLI/CLI.hpp REQUIRED)
+  find_path(CLI11_INCLUDE_DIR CLI/CLI.hpp)
+  tissue_stiffness_require(CLI11_INCLUDE_DIR)
 endif()

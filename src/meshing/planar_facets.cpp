@@ -36,7 +36,8 @@ Patches grow_patches(const TriangleSurface& surface, const Eigen::Matrix3Xi& nei
     if (patches.of_triangle[static_cast<std::size_t>(seed)] >= 0) continue;
     const Eigen::Vector3d normal = areas.col(seed).normalized(), point = surface.vertices.col(surface.triangles(0, seed));
     const auto belongs = [&](int t) {
-      for (const int vertex : surface.triangles.col(t)) {
+      for (int i = 0; i < 3; ++i) {
+        const int vertex = surface.triangles(i, t);
         if (std::abs(normal.dot(surface.vertices.col(vertex) - point)) > tolerance) return false;
       }
       return areas.col(t).dot(normal) >= 0.5 * sizes[t] || sizes[t] < tolerance * tolerance;

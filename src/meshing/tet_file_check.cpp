@@ -33,7 +33,9 @@ TetMesh number_corners_first(const TetFile& input, double scale, const std::stri
   enum class Role : char { unused, mid, corner };
   std::vector<Role> roles(static_cast<std::size_t>(input.nodes.cols()), Role::unused);
   for (Eigen::Index i = input.tets.rows(); i-- > 0;) {
-    for (const int node : input.tets.row(i)) roles[static_cast<std::size_t>(node)] = i < 4 ? Role::corner : Role::mid;
+    for (Eigen::Index t = 0; t < input.tets.cols(); ++t) {
+      roles[static_cast<std::size_t>(input.tets(i, t))] = i < 4 ? Role::corner : Role::mid;
+    }
   }
   const auto unused = std::find(roles.begin(), roles.end(), Role::unused);
   if (unused != roles.end()) {

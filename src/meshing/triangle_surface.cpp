@@ -105,13 +105,13 @@ TriangleSurface weld(const TriangleSurface& surface, double tolerance) {
     Eigen::Vector3i corners;
     for (int i = 0; i < 3; ++i) corners[i] = first[static_cast<std::size_t>(surface.triangles(i, t))];
     if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
-    for (int& corner : corners) {
-      int& to = number[static_cast<std::size_t>(corner)];
+    for (int i = 0; i < 3; ++i) {
+      int& to = number[static_cast<std::size_t>(corners[i])];
       if (to < 0) {
         to = vertices++;
-        result.vertices.col(to) = surface.vertices.col(corner);
+        result.vertices.col(to) = surface.vertices.col(corners[i]);
       }
-      corner = to;
+      corners[i] = to;
     }
     result.triangles.col(triangles++) = corners;
   }
