@@ -11,8 +11,8 @@ struct Camera {
   enum class Projection { pinhole, slice };
 
   Projection projection = Projection::pinhole;
-  int width = 0, height = 0;                 ///< [pixel]
-  double fx = 0, fy = 0, cx = 0, cy = 0;     ///< [pixel], or [pixel/m] for a slice
+  int width = 0, height = 0;                                                     ///< [pixel]
+  double fx = 0, fy = 0, cx = 0, cy = 0;                                         ///< [pixel], or [pixel/m] for a slice
   Eigen::Matrix<double, 5, 1> distortion = Eigen::Matrix<double, 5, 1>::Zero();  ///< plumb_bob k1 k2 p1 p2 k3
   Eigen::Isometry3d model_from_sensor = Eigen::Isometry3d::Identity();           ///< tf2's pose of the sensor in `model`
 

@@ -24,10 +24,10 @@ struct ParameterEstimate {
 
 /// Posterior after a frame.
 struct Estimate {
-  double time = 0.0;                          ///< [s] on the recording's clock
+  double time = 0.0;  ///< [s] on the recording's clock
   EstimateState state = EstimateState::no_data;
   std::vector<ParameterEstimate> parameters;
-  Eigen::MatrixXd covariance;                 ///< of the parameters in their own units
+  Eigen::MatrixXd covariance;  ///< of the parameters in their own units
 };
 
 }  // namespace tissue_stiffness

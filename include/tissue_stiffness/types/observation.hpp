@@ -15,9 +15,9 @@ enum class ObservationKind { vertices, markers, points, contour };
 struct Observation {
   int source = 0;
   ObservationKind kind = ObservationKind::vertices;
-  double time = 0.0;           ///< [s] on the recording's clock
-  Eigen::Matrix3Xd points;     ///< positions in the model frame [m]; empty for a contour
-  Eigen::VectorXi ids;         ///< mesh vertex (vertices) or row of `rest` (markers); empty otherwise
+  double time = 0.0;                       ///< [s] on the recording's clock
+  Eigen::Matrix3Xd points;                 ///< positions in the model frame [m]; empty for a contour
+  Eigen::VectorXi ids;                     ///< mesh vertex (vertices) or row of `rest` (markers); empty otherwise
   std::shared_ptr<const Contour> contour;  ///< only for contour
   std::shared_ptr<const Camera> camera;    ///< only for contour
 };

@@ -9,8 +9,8 @@ namespace tissue_stiffness {
 /// appends its mid-edge nodes behind them.
 ///
 /// Node order in a tetrahedron: corners 0-3 with positive volume (x1-x0) x (x2-x0) . (x3-x0) > 0, then the mid nodes of the
-/// edges 01, 12, 02, 03, 13, 23. Node order in a facet: corners 0-2, counter-clockwise seen from outside, then the mid nodes
-/// of 01, 12, 20.
+/// edges 01, 12, 02, 03, 13, 23. Node order in a facet: corners 0-2, counter-clockwise seen from outside, then the mid
+/// nodes of 01, 12, 20.
 struct TetMesh {
   Eigen::Matrix3Xd nodes;     ///< 3 x node count [m]
   Eigen::MatrixXi tets;       ///< 4 or 10 x tetrahedron count
