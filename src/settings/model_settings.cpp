@@ -104,6 +104,14 @@ ModelSettings read_model(const Value& root, const std::string& directory) {
   return model;
 }
 
+void add_effect(ModelSettings& model, const std::string& entry) {
+  EffectSettings effect = read_effect(parse_yaml(entry, "effect"));
+  const auto same = [&](const EffectSettings& other) { return other.name == effect.name; };
+  const auto number = std::count_if(model.effects.begin(), model.effects.end(), same) + 1;
+  effect.label = number == 1 ? effect.name : effect.name + "#" + std::to_string(number);
+  model.effects.push_back(std::move(effect));
+}
+
 ModelSettings load_model(const std::string& file) {
   const std::size_t slash = file.find_last_of('/');
   return read_model(load_yaml(file), slash == std::string::npos ? "." : file.substr(0, slash + 1));

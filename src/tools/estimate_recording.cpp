@@ -2,15 +2,13 @@
 
 #include <chrono>
 #include <cmath>
-#include <deque>
 #include <fstream>
 #include <iterator>
 #include <optional>
 
 #include "tissue_stiffness/estimation/estimator.hpp"
 #include "tissue_stiffness/filter/consistency.hpp"
-#include "tissue_stiffness/meshing/build_mesh.hpp"
-#include "tissue_stiffness/tools/bag_reader.hpp"
+#include "tissue_stiffness/tools/recording_reader.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
@@ -26,42 +24,6 @@ std::string read_text(const std::string& file) {
   std::ifstream stream(file);
   return {std::istreambuf_iterator<char>(stream), {}};
 }
-
-/// The recording with the mesh: reads ahead to the first contour when the mesh is made from it.
-class Recording {
- public:
-  Recording(const std::string& file, const ModelSettings& settings)
-      : reader_(file, settings), mesh_(make_mesh(file, settings)) {
-    reader_.set_vertex_count(mesh_.corner_count);
-  }
-
-  std::optional<Instant> next() {
-    if (ahead_.empty()) return reader_.next();
-    Instant instant = std::move(ahead_.front());
-    ahead_.pop_front();
-    return instant;
-  }
-  const BagReader& reader() const { return reader_; }
-  const TetMesh& mesh() const { return mesh_; }
-
- private:
-  TetMesh make_mesh(const std::string& file, const ModelSettings& settings) {
-    if (settings.mesh.source == MeshSettings::Source::file) return build_mesh(settings.mesh);
-    std::string reason = "no contour observed by the model";
-    while (std::optional<Instant> instant = reader_.next()) {
-      if (!instant->reason.empty()) reason = instant->reason;
-      ahead_.push_back(std::move(*instant));
-      for (const Observation& observation : ahead_.back().frame.observations) {
-        if (observation.contour) return build_mesh(settings.mesh, *observation.contour, *observation.camera);
-      }
-    }
-    throw InputError(file, "no outline to make the mesh from (" + reason + ")", "an image that shows the body");
-  }
-
-  BagReader reader_;
-  std::deque<Instant> ahead_;
-  TetMesh mesh_;
-};
 
 FrameRecord record_of(const Instant& instant, const StepResult& step) {
   FrameRecord record;
@@ -97,7 +59,7 @@ struct NoiseSum {
 /// One run: frames in, records out.
 class Run {
  public:
-  Run(const ModelSettings& settings, Recording& recording)
+  Run(const ModelSettings& settings, RecordingReader& recording)
       : settings_(settings), recording_(recording), estimator_(settings, recording.mesh()) {
     estimator_.set_first_stamp(recording.reader().first_stamp());
   }
@@ -160,7 +122,7 @@ class Run {
   }
 
   const ModelSettings& settings_;
-  Recording& recording_;
+  RecordingReader& recording_;
   Estimator estimator_;
   EstimationRun run_;
   ConsistencySum nis_;
@@ -172,7 +134,7 @@ class Run {
 EstimationRun estimate_recording(const std::string& model_file, const std::string& recording_file, std::size_t max_frames,
                                  const ProgressCallback& progress) {
   const ModelSettings settings = load_model(model_file);
-  Recording recording(recording_file, settings);
+  RecordingReader recording(recording_file, settings);
   const std::size_t all = recording.reader().frame_count();
   const std::size_t total = max_frames > 0 ? std::min(max_frames, all) : all;
   Run run(settings, recording);

@@ -14,20 +14,31 @@ namespace tissue_stiffness {
 struct MeshSettings {
   enum class Source { file, revolve, extrude };
   Source source = Source::file;
-  std::string file;                ///< absolute, or relative to the model file's folder (resolved by the reader)
-  double scale = 1.0;              ///< file unit -> m
-  double max_edge_length = 0.0;    ///< [m]; 0: as the surface is
-  int order = 2;                   ///< 2: 10-node tetrahedra, 1: 4-node
+  std::string file;                  ///< absolute, or relative to the model file's folder (resolved by the reader)
+  double scale = 1.0;                ///< file unit -> m
+  double max_edge_length = 0.0;      ///< [m]; 0: as the surface is
+  int order = 2;                     ///< 2: 10-node tetrahedra, 1: 4-node
   bool discretisation_error = true;  ///< find out what the mesh does to the estimate, correct it, widen the interval
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< revolve: direction of the axis of revolution in `model`
-  double depth = 0.0;              ///< extrude: thickness along the viewing direction [m]
+  double depth = 0.0;                               ///< extrude: thickness along the viewing direction [m]
 };
 
-struct BoxShape { Eigen::Vector3d min, max; };
-struct SphereShape { Eigen::Vector3d center; double radius; };
-struct EllipsoidShape { Eigen::Vector3d center, radii; };
-struct HalfSpaceShape { Eigen::Vector3d point, normal; };  ///< inside: (x - point) . normal <= 0
-struct VertexShape { std::vector<int> vertices; };
+struct BoxShape {
+  Eigen::Vector3d min, max;
+};
+struct SphereShape {
+  Eigen::Vector3d center;
+  double radius;
+};
+struct EllipsoidShape {
+  Eigen::Vector3d center, radii;
+};
+struct HalfSpaceShape {
+  Eigen::Vector3d point, normal;
+};  ///< inside: (x - point) . normal <= 0
+struct VertexShape {
+  std::vector<int> vertices;
+};
 
 struct RegionSettings {
   std::string name;
@@ -36,9 +47,9 @@ struct RegionSettings {
 
 /// One entry of `effects`. Its keys are checked against the effect's spec by the effects layer.
 struct EffectSettings {
-  std::string name;       ///< effect, e.g. "elasticity"
-  std::string label;      ///< name, or name#2 for the second entry of the same effect
-  Value arguments;        ///< the map behind the name
+  std::string name;   ///< effect, e.g. "elasticity"
+  std::string label;  ///< name, or name#2 for the second entry of the same effect
+  Value arguments;    ///< the map behind the name
 };
 
 struct SegmentationSettings {
@@ -51,13 +62,13 @@ struct ObservationSettings {
   enum class Kind { vertices, markers, points, contour };
   enum class Projection { silhouette, slice };
   Kind kind = Kind::vertices;
-  std::string topic;           ///< point cloud topic, or the image topic of a contour
-  std::string camera_info;     ///< contour only
-  double noise = 0.0;          ///< 1-sigma [m]
-  Eigen::Matrix3Xd rest;       ///< markers: rest positions [m]
+  std::string topic;        ///< point cloud topic, or the image topic of a contour
+  std::string camera_info;  ///< contour only
+  double noise = 0.0;       ///< 1-sigma [m]
+  Eigen::Matrix3Xd rest;    ///< markers: rest positions [m]
   SegmentationSettings segmentation;
   Projection projection = Projection::silhouette;
-  std::string region;          ///< contour: part of the surface the outline belongs to; empty: all
+  std::string region;  ///< contour: part of the surface the outline belongs to; empty: all
 };
 
 struct TimeSettings {
@@ -75,20 +86,23 @@ enum class EstimatorKind { unscented, paper };
 
 /// A whole model file.
 struct ModelSettings {
-  std::string name;        ///< file or parameter namespace, for messages
-  std::string directory;   ///< relative files are looked up here
+  std::string name;       ///< file or parameter namespace, for messages
+  std::string directory;  ///< relative files are looked up here
   MeshSettings mesh;
   std::vector<RegionSettings> regions;
   std::vector<EffectSettings> effects;
   std::vector<ObservationSettings> observations;
   TimeSettings time;
   InitialSettings initial;
-  EstimatorKind estimator = EstimatorKind::unscented;   ///< key `estimator: unscented | paper`
+  EstimatorKind estimator = EstimatorKind::unscented;  ///< key `estimator: unscented | paper`
 };
 
 /// Reads every key but the effects' arguments, which the effects layer checks. Unknown, missing and out-of-range keys throw
 /// InputError.
 ModelSettings read_model(const Value& root, const std::string& directory);
+
+/// Appends one entry of `effects`, as YAML: "viscous_damping: {beta: 0.01}". Throws InputError for what is no such entry.
+void add_effect(ModelSettings& model, const std::string& entry);
 
 /// read_model of a YAML file; relative paths count from the file's folder.
 ModelSettings load_model(const std::string& file);

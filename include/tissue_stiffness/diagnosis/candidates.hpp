@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tissue_stiffness/diagnosis/scores.hpp"
+#include "tissue_stiffness/diagnosis/study.hpp"
+#include "tissue_stiffness/effects/proposal.hpp"
+
+namespace tissue_stiffness {
+
+/// One way in which one effect may be missing, and how the measured rows would change with it.
+struct Candidate {
+  std::string effect;
+  Proposal proposal;
+  Tangent tangent;
+};
+
+/// Everything that the library proposes for the fitted base model. The tangents of all linear ones come from one reduced
+/// model that holds them all at their absent values; the others get a model each.
+std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd& w, const Study::Rows& rows);
+
+/// d rows / d w of the fitted base model, in sigmas: N x free parameters.
+Eigen::MatrixXd base_tangents(const Study& base, const Eigen::VectorXd& w, const Eigen::VectorXd& std,
+                              const Study::Rows& rows);
+
+}  // namespace tissue_stiffness

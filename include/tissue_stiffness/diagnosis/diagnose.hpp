@@ -1,0 +1,25 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tissue_stiffness/diagnosis/study.hpp"
+#include "tissue_stiffness/types/diagnosis.hpp"
+
+namespace tissue_stiffness {
+
+struct DiagnosisOptions {
+  std::vector<std::string> add;  ///< effects to add in turn, whatever the verdict
+  bool automatic = false;        ///< keep adding the best while the held-out error proves it
+  int most_steps = 3;            ///< of automatic adding
+  std::function<void(const std::string&)> progress = [](const std::string&) {};  ///< what is being done
+};
+
+/// Compares the fitted model's free run with the recording, ranks what the library offers as missing, proves the best by
+/// refitting it and looking at held-out frames. Throws InputError for a recording too short to hold anything out, or an
+/// effect to add that the library does not propose for this model.
+Diagnosis diagnose(const ModelSettings& settings, const TetMesh& mesh, const Recording& recording,
+                   const DiagnosisOptions& options);
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace tissue_stiffness {
+
+/// A missing effect as the residual sees it: one column a component of its amplitude.
+struct Tangent {
+  Eigen::MatrixXd columns;  ///< N x components: d rows / d amplitude, in sigmas per unit
+  Eigen::VectorXd prior_std;
+};
+
+/// What the residual says of one tangent.
+struct Score {
+  Eigen::VectorXd amplitude;      ///< least squares, (x^T x)^-1 x^T e
+  double log_bayes_factor = 0.0;  ///< of adding it with its prior, for independent noise of one sigma
+  double p_value = 1.0;           ///< of its amplitude being zero, errors correlated in time (HAC)
+  double size = 0.0;              ///< rms over rows of what it explains [sigma]
+  double explained = 0.0;         ///< share of the residual's sum of squares
+  double cosine_with(const Score& other) const;
+  Eigen::VectorXd direction;  ///< N: what it explains, unit length; zero when nothing is left of it
+};
+
+/// Scores on the residual e, after what `known` (N x p) explains is projected off residual and tangents alike.
+///   log BF = 1/2 b^T (I + G)^-1 b - 1/2 log |I + G|,  G = D x^T x D, b = D x^T e, D = diag(prior_std)
+/// with the squared sigma taken as max(1, `variance`); the p-value is Wald's with the Newey-West variance of the frames'
+/// scores g_t = x_t^T (e_t - x_t theta). `offsets`: first row of each frame, N at the end.
+class Scorer {
+ public:
+  Scorer(const Eigen::VectorXd& residual, const Eigen::MatrixXd& known, std::vector<Eigen::Index> offsets, double variance);
+
+  Score score(const Tangent& tangent) const;
+  /// Two effects at once, for pairs that only explain the residual together.
+  Score score(const Tangent& a, const Tangent& b) const;
+  /// rms over rows of what is left of a column after the projection [its unit].
+  double remaining(const Eigen::VectorXd& column) const;
+  const Eigen::VectorXd& residual() const { return residual_; }
+
+ private:
+  Eigen::MatrixXd project(const Eigen::MatrixXd& x) const;
+  double p_value(const Eigen::VectorXd& x, const Eigen::VectorXd& left) const;
+
+  Eigen::MatrixXd basis_;  ///< orthonormal, of `known`
+  Eigen::VectorXd residual_;
+  std::vector<Eigen::Index> offsets_;
+  double variance_;
+};
+
+/// log of the mean of exp(values), without overflow.
+double log_mean_exp(const std::vector<double>& values);
+
+}  // namespace tissue_stiffness

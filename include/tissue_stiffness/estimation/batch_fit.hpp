@@ -1,0 +1,21 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "tissue_stiffness/estimation/choose_correction.hpp"
+
+namespace tissue_stiffness {
+
+/// The most probable parameters of a whole recording.
+struct BatchFit {
+  Eigen::VectorXd w;           ///< filter coordinates
+  Eigen::MatrixXd covariance;  ///< of w, as wide as the misfit asks
+  double cost = 0.0;           ///< sum of squared errors over sigma at w, the prior's included
+};
+
+/// Gauss-Newton on the free run's posterior from `start`, linearised over `spread` (filter coordinates) at first and over a
+/// few posterior standard deviations later. Steps that do not lower the cost are cut. Throws NumericalError when the run at
+/// `start` diverges.
+BatchFit fit_batch(const FitProblem& problem, const Eigen::VectorXd& start, const Eigen::VectorXd& spread);
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+
+#include "tissue_stiffness/types/diagnosis.hpp"
+
+namespace tissue_stiffness {
+
+/// What a diagnosis is about, for its report.
+struct DiagnosisTexts {
+  std::string model, recording, command_line;  ///< names as given
+  std::string model_text, next_model_text;     ///< the model files
+};
+
+/// `diagnosis.json`: verdict, set, candidates[], where, when, steps[], next_experiment, final. A number that does not exist
+/// is null. Everything but `seconds` is the same for the same input.
+std::string diagnosis_json(const Diagnosis& diagnosis);
+
+/// `report.html`: one page that needs no network and no script; light and dark.
+std::string diagnosis_html(const Diagnosis& diagnosis, const DiagnosisTexts& texts);
+
+/// Makes the folder when it is missing and writes diagnosis.json, model_next.yaml and report.html. Throws InputError when a
+/// file cannot be written.
+void write_diagnosis(const Diagnosis& diagnosis, const DiagnosisTexts& texts, const std::string& directory);
+
+/// One sentence for people: what is missing, what it would explain, what looks the same.
+std::string diagnosis_sentence(const Diagnosis& diagnosis);
+
+}  // namespace tissue_stiffness

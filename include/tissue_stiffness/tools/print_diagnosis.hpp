@@ -1,0 +1,12 @@
+#pragma once
+
+#include <iosfwd>
+
+#include "tissue_stiffness/types/diagnosis.hpp"
+
+namespace tissue_stiffness {
+
+/// The closing table of `diagnose`.
+void print_diagnosis(const Diagnosis& diagnosis, std::ostream& out);
+
+}  // namespace tissue_stiffness

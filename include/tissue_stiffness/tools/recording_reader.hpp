@@ -1,0 +1,36 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <string>
+
+#include "tissue_stiffness/diagnosis/study.hpp"
+#include "tissue_stiffness/tools/bag_reader.hpp"
+#include "tissue_stiffness/types/tet_mesh.hpp"
+
+namespace tissue_stiffness {
+
+/// A bag with the model's mesh: reads ahead to the first contour when the mesh is made from it. Throws as BagReader and
+/// build_mesh do.
+class RecordingReader {
+ public:
+  RecordingReader(const std::string& file, const ModelSettings& settings);
+
+  /// Nothing at the end.
+  std::optional<Instant> next();
+  const BagReader& reader() const { return reader_; }
+  const TetMesh& mesh() const { return mesh_; }
+
+ private:
+  TetMesh make_mesh(const std::string& file, const ModelSettings& settings);
+
+  BagReader reader_;
+  std::deque<Instant> ahead_;
+  TetMesh mesh_;
+};
+
+/// Everything that is left in the bag, without frames that hold nothing or come before the body's rest. Throws InputError
+/// when no frame is left.
+Recording read_recording(RecordingReader& reader, const ModelSettings& settings, const std::string& file);
+
+}  // namespace tissue_stiffness

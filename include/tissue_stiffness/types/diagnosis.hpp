@@ -1,0 +1,49 @@
+#pragma once
+
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace tissue_stiffness {
+
+/// One effect of the library, judged as the one that the model misses.
+struct MissingEffect {
+  std::string effect;
+  std::string entry;                         ///< of the model file's `effects`, as its proposal was scored
+  std::map<std::string, double> parameters;  ///< by name, of the refit where there was one, else the tangent's
+  double log_bayes_factor = 0.0;             ///< over all ways in which the effect may be missing
+  double p_value = 1.0;
+  double size = 0.0;                                                     ///< rms of what it explains [sigma]
+  double explained = 0.0;                                                ///< share of the residual's sum of squares
+  double held_out_rms_before = 0.0;                                      ///< [m]
+  double held_out_rms_after = std::numeric_limits<double>::quiet_NaN();  ///< [m]; NaN without a refit
+  struct Twin {
+    std::string effect;
+    double cosine = 0.0;
+  };
+  std::vector<Twin> confusable_with;
+};
+
+/// A model on the way from the given one to the proposed one.
+struct DiagnosisStep {
+  std::vector<std::string> effects;                               ///< added so far
+  std::map<std::string, double> parameters;                       ///< by name
+  double train_rms = 0.0, held_out_rms = 0.0, noise_floor = 0.0;  ///< [m]
+};
+
+/// Which physics a model misses. `verdict`: adequate, missing, numerics, unexplained.
+struct Diagnosis {
+  std::string verdict;
+  std::vector<std::string> set;  ///< the winner and what the data cannot tell from it
+  std::vector<MissingEffect> candidates;
+  std::string where, when;
+  std::vector<DiagnosisStep> steps;
+  std::string next_experiment;
+  std::string final_verdict;
+  std::vector<std::string> final_effects;
+  std::vector<std::string> entries;  ///< of the accepted effects, for the model file
+  double seconds = 0.0;
+};
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,145 @@
+#include "tissue_stiffness/diagnosis/candidates.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tissue_stiffness/effects/registry.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr double kProbe = 0.02;  // of a prior's standard deviation: amplitude at which tangents are read
+
+ProposalContext context_of(const Study& base, const Eigen::VectorXd& w) {
+  const Model& model = base.model();
+  double modulus = 0.0, ratio = 0.0, density = 0.0;
+  const Eigen::VectorXd theta = model.theta(w);
+  for (const auto& part : model.parts()) {
+    const Eigen::VectorXd values = part.parameters(theta);
+    if (part.label == "elasticity") modulus = values[0], ratio = values[1];
+    if (part.label == "inertia") density = values[0];
+  }
+  const std::vector<Frame>& frames = base.recording().frames;
+  const double duration = frames.back().time - base.recording().first_stamp;
+  return {model.settings(),
+          model.mesh(),
+          model.regions(),
+          modulus,
+          ratio,
+          density,
+          duration / static_cast<double>(frames.size()),
+          duration};
+}
+
+Eigen::VectorXd difference(const Study::Rows& changed, const Study::Rows& base, double amplitude) {
+  return base.used.cwiseProduct(changed.predicted - base.predicted) / amplitude;
+}
+
+// Free parameters that the model has beyond the base's, in order.
+std::vector<Eigen::Index> added_parameters(const Study& study, const Study& base) {
+  std::vector<Eigen::Index> added;
+  for (std::size_t i = 0; i < study.model().free_parameters().size(); ++i) {
+    if (base.index(study.model().free_parameters()[i].name) < 0) added.push_back(static_cast<Eigen::Index>(i));
+  }
+  return added;
+}
+
+// The base's fit in the coordinates of a model that holds more; what is more stays at its prior.
+Eigen::VectorXd extend(const Study& study, const Study& base, const Eigen::VectorXd& w) {
+  Eigen::VectorXd out = study.model().prior_mean();
+  for (std::size_t i = 0; i < base.model().free_parameters().size(); ++i) {
+    out[study.index(base.model().free_parameters()[i].name)] = w[static_cast<Eigen::Index>(i)];
+  }
+  return out;
+}
+
+// Tangents of the added parameters of one study, `components` columns for each candidate in turn.
+void read_tangents(const Study& study, const Study& base, const Eigen::VectorXd& w,
+                   const std::vector<Candidate*>& candidates) {
+  const Eigen::VectorXd start = extend(study, base, w);
+  const Study::Rows rest = study.rows(start);
+  const std::vector<Eigen::Index> added = added_parameters(study, base);
+  Eigen::MatrixXd columns(rest.error.size(), static_cast<Eigen::Index>(added.size()));
+  tbb::parallel_for(std::size_t{0}, added.size(), [&](std::size_t j) {
+    const double amplitude = kProbe * study.model().prior_std()[added[j]];
+    Eigen::VectorXd moved = start;
+    moved[added[j]] += amplitude;
+    columns.col(static_cast<Eigen::Index>(j)) = difference(study.rows(moved), rest, amplitude);
+  });
+  Eigen::Index at = 0;
+  const Eigen::Index each = static_cast<Eigen::Index>(added.size() / candidates.size());
+  std::vector<Eigen::Index> counts;
+  for (const Candidate* candidate : candidates) {
+    const EffectSpec& spec = effect_spec({candidate->effect, candidate->effect, {}});
+    Eigen::Index components = each;
+    for (const ParameterSpec& parameter : spec.parameters) {
+      if (parameter.name == candidate->proposal.amplitude) components = parameter.components;
+    }
+    counts.push_back(components);
+  }
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    Tangent& tangent = candidates[c]->tangent;
+    tangent.columns = columns.middleCols(at, counts[c]);
+    tangent.prior_std.resize(counts[c]);
+    for (Eigen::Index i = 0; i < counts[c]; ++i) {
+      tangent.prior_std[i] = study.model().prior_std()[added[static_cast<std::size_t>(at + i)]];
+    }
+    at += counts[c];
+  }
+}
+
+bool stays_linear(const Study& base, const Candidate& candidate) {
+  ModelSettings settings = base.model().settings();
+  add_effect(settings, candidate.proposal.yaml);
+  return !Model(settings, base.model().mesh()).nonlinear();
+}
+
+}  // namespace
+
+std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd& w, const Study::Rows&) {
+  const ProposalContext context = context_of(base, w);
+  std::vector<Candidate> all;
+  std::vector<std::size_t> together, alone;
+  for (const EffectSpec& spec : effect_specs()) {
+    if (!spec.proposals) continue;
+    bool first = true, linear = true;
+    for (Proposal& proposal : spec.proposals(context)) {
+      all.push_back({spec.name, std::move(proposal), {}});
+      if (first) linear = !base.model().nonlinear() && stays_linear(base, all.back());
+      first = false;
+      (linear ? together : alone).push_back(all.size() - 1);
+    }
+  }
+  const auto study_of = [&](const std::vector<std::size_t>& members, bool enrich) {
+    ModelSettings settings = base.model().settings();
+    std::vector<Candidate*> candidates;
+    for (const std::size_t c : members) {
+      add_effect(settings, all[c].proposal.yaml);
+      candidates.push_back(&all[c]);
+    }
+    BasisOptions options;
+    if (enrich) options.per_part = 4;
+    const Study study(settings, base.model().mesh(), base.recording(), options);
+    read_tangents(study, base, w, candidates);
+  };
+  if (!together.empty()) study_of(together, true);
+  for (const std::size_t c : alone) study_of({c}, false);
+  return all;
+}
+
+Eigen::MatrixXd base_tangents(const Study& base, const Eigen::VectorXd& w, const Eigen::VectorXd& std,
+                              const Study::Rows& rows) {
+  Eigen::MatrixXd out(rows.error.size(), w.size());
+  tbb::parallel_for(Eigen::Index{0}, w.size(), [&](Eigen::Index i) {
+    const double step = std::max(0.5 * std[i], 1e-6);
+    Eigen::VectorXd up = w, down = w;
+    up[i] += step;
+    down[i] -= step;
+    out.col(i) = rows.used.cwiseProduct(base.rows(up).predicted - base.rows(down).predicted) / (2.0 * step);
+  });
+  return out;
+}
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,55 @@
+#include "tissue_stiffness/estimation/batch_fit.hpp"
+
+#include "tissue_stiffness/estimation/compare.hpp"
+#include "tissue_stiffness/filter/anchored_filter.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr int kMostIterations = 25;
+constexpr int kMostCuts = 5;
+constexpr double kLongestStep = 1.0;  // prior standard deviations at once
+constexpr double kSmallStep = 0.02;   // posterior standard deviations: converged
+constexpr double kFloor = 1e-4;       // of the prior's standard deviation: smallest span of the sigma points
+constexpr double kGain = 1e-5;        // relative fall of the cost below which it is over
+
+void run(const FitProblem& problem, AnchoredFilter& filter, const Eigen::VectorXd& anchor, const Eigen::VectorXd& spread) {
+  filter.move_anchor(anchor, spread);
+  Ensemble ensemble(problem.model, problem.forward, problem.operators);
+  ensemble.restart(filter.sigma_points(), problem.start);
+  for (const Frame& frame : problem.frames) {
+    ensemble.advance(frame.time);
+    const Ensemble::Predicted p = ensemble.predict(frame);
+    filter.update(p.central.measured, p.rows, p.central.sigma.cwiseAbs2(), row_weights(p.central));
+  }
+}
+
+}  // namespace
+
+BatchFit fit_batch(const FitProblem& problem, const Eigen::VectorXd& start, const Eigen::VectorXd& spread) {
+  const Eigen::VectorXd prior = problem.model.prior_std();
+  AnchoredFilter filter(problem.model.prior_mean(), prior);
+  run(problem, filter, start, spread);
+  for (int k = 0; k < kMostIterations; ++k) {
+    const Eigen::VectorXd std = filter.covariance().diagonal().cwiseSqrt();
+    const Eigen::VectorXd limit = kLongestStep * prior;
+    Eigen::VectorXd move = (filter.mean() - filter.anchor()).cwiseMax(-limit).cwiseMin(limit);
+    if ((move.array().abs() < kSmallStep * std.array()).all()) break;
+    const Eigen::VectorXd next = (2.0 * std).cwiseMin(filter.spread()).cwiseMax(kFloor * prior);
+    const AnchoredFilter before = filter;
+    bool better = false;
+    for (int cut = 0; cut < kMostCuts && !better; ++cut, move *= 0.3) {
+      run(problem, filter, before.anchor() + move, next);
+      better = filter.cost() < before.cost();
+    }
+    if (!better) {
+      run(problem, filter, before.anchor(), next);
+      if (next.isApprox(before.spread())) break;
+      continue;
+    }
+    if (before.cost() - filter.cost() < kGain * before.cost()) break;
+  }
+  return {filter.anchor(), filter.covariance(), filter.cost()};
+}
+
+}  // namespace tissue_stiffness

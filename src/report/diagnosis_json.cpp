@@ -1,0 +1,60 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tissue_stiffness/report/write_diagnosis.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+using nlohmann::json;
+
+json number(double value) {
+  return std::isfinite(value) ? json(value) : json(nullptr);
+}
+
+json numbers(const std::map<std::string, double>& values) {
+  json out = json::object();
+  for (const auto& [name, value] : values) out[name] = number(value);
+  return out;
+}
+
+json candidate_json(const MissingEffect& c) {
+  json twins = json::array();
+  for (const auto& twin : c.confusable_with) twins.push_back({{"effect", twin.effect}, {"cosine", number(twin.cosine)}});
+  return {{"effect", c.effect},
+          {"entry", c.entry},
+          {"parameters", numbers(c.parameters)},
+          {"log_bayes_factor", number(c.log_bayes_factor)},
+          {"p_value", number(c.p_value)},
+          {"size", number(c.size)},
+          {"explained", number(c.explained)},
+          {"held_out_rms_before", number(c.held_out_rms_before)},
+          {"held_out_rms_after", number(c.held_out_rms_after)},
+          {"confusable_with", twins}};
+}
+
+}  // namespace
+
+std::string diagnosis_json(const Diagnosis& d) {
+  json candidates = json::array(), steps = json::array();
+  for (const MissingEffect& c : d.candidates) candidates.push_back(candidate_json(c));
+  for (const DiagnosisStep& s : d.steps) {
+    steps.push_back({{"effects", s.effects},
+                     {"parameters", numbers(s.parameters)},
+                     {"train_rms", number(s.train_rms)},
+                     {"held_out_rms", number(s.held_out_rms)},
+                     {"noise_floor", number(s.noise_floor)}});
+  }
+  const json root = {{"verdict", d.verdict},
+                     {"set", d.set},
+                     {"candidates", candidates},
+                     {"where", d.where},
+                     {"when", d.when},
+                     {"steps", steps},
+                     {"next_experiment", d.next_experiment},
+                     {"final", {{"verdict", d.final_verdict}, {"effects", d.final_effects}}},
+                     {"seconds", number(d.seconds)}};
+  return root.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,46 @@
+#include "tissue_stiffness/settings/extend_model.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <filesystem>
+
+#include "tissue_stiffness/types/error.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+// `file` keys, wherever they are: the mesh's, a course's.
+void make_absolute(YAML::Node node, const std::string& directory) {
+  if (node.IsSequence()) {
+    for (YAML::Node item : node) make_absolute(item, directory);
+  }
+  if (!node.IsMap()) return;
+  for (auto entry : node) {
+    if (entry.first.Scalar() == "file" && entry.second.IsScalar()) {
+      entry.second = (std::filesystem::absolute(directory) / entry.second.Scalar()).lexically_normal().string();
+    } else {
+      make_absolute(entry.second, directory);
+    }
+  }
+}
+
+}  // namespace
+
+std::string extend_model(const std::string& text, const std::vector<std::string>& entries, const std::string& directory) {
+  try {
+    YAML::Node model = YAML::Load(text);
+    make_absolute(model, directory);
+    for (const std::string& entry : entries) {
+      YAML::Node effect = YAML::Load(entry);
+      effect.begin()->second.SetStyle(YAML::EmitterStyle::Flow);
+      model["effects"].push_back(effect);
+    }
+    YAML::Emitter out;
+    out << model;
+    return std::string(out.c_str()) + "\n";
+  } catch (const YAML::Exception& error) {
+    throw InputError("the model's text", error.what(), "a model file");
+  }
+}
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,44 @@
+#include "tissue_stiffness/tools/print_diagnosis.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <ostream>
+#include <string>
+
+#include "tissue_stiffness/report/write_diagnosis.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr std::size_t kShown = 8;  // candidates in the table
+
+std::string line(const char* pattern, const std::string& name, double a, double b, double c, double d) {
+  char text[200];
+  std::snprintf(text, sizeof text, pattern, name.c_str(), a, b, c, d);
+  return text;
+}
+
+}  // namespace
+
+void print_diagnosis(const Diagnosis& d, std::ostream& out) {
+  out << diagnosis_sentence(d) << "\nwhere         " << d.where << "\nwhen          " << d.when << "\n";
+  out << "candidate                 explains   held-out [mm]   log evidence          p\n";
+  for (std::size_t i = 0; i < d.candidates.size() && i < kShown; ++i) {
+    const MissingEffect& c = d.candidates[i];
+    out << line("%-24s %8.1f %%  %14.3f  %13.1f  %9.2g\n", c.effect, 100.0 * c.explained, 1e3 * c.held_out_rms_after,
+                c.log_bayes_factor, c.p_value);
+  }
+  out << "model                     held-out [mm]   fitted [mm]   noise [mm]\n";
+  for (const DiagnosisStep& s : d.steps) {
+    const std::string name = s.effects.empty() ? "as given" : "+ " + s.effects.back();
+    out << line("%-24s %14.3f  %12.3f  %11.3f%.0s\n", name, 1e3 * s.held_out_rms, 1e3 * s.train_rms, 1e3 * s.noise_floor,
+                0.0);
+    for (const auto& [parameter, value] : s.parameters) {
+      if (parameter.find("young_modulus") != std::string::npos)
+        out << "  " << parameter << " = " << value / 1e3 << " kPa\n";
+    }
+  }
+  out << "final         " << d.final_verdict << "; " << std::lround(d.seconds) << " s\n";
+}
+
+}  // namespace tissue_stiffness
