@@ -31,9 +31,10 @@ const std::map<std::string, std::set<std::string>> kAllowed = [] {
   add("forward", {"effects", "meshing"});
   add("filter", {"types"});
   add("estimation", {"forward", "filter"});
+  add("diagnosis", {"estimation"});
   add("report", {"settings"});
   add("nodes", {"estimation", "segmentation", "report"});
-  add("tools", {"nodes"});
+  add("tools", {"nodes", "diagnosis"});
   return allowed;
 }();
 

@@ -25,7 +25,8 @@ struct Score {
 /// Scores on the residual e, after what `known` (N x p) explains is projected off residual and tangents alike.
 ///   log BF = 1/2 b^T (I + G)^-1 b - 1/2 log |I + G|,  G = D x^T x D, b = D x^T e, D = diag(prior_std)
 /// with the squared sigma taken as max(1, `variance`); the p-value is Wald's with the Newey-West variance of the frames'
-/// scores g_t = x_t^T (e_t - x_t theta). `offsets`: first row of each frame, N at the end.
+/// scores g_t = x_t^T (e_t - x_t theta), its critical values widened for the bandwidth (Kiefer & Vogelsang 2005).
+/// `offsets`: first row of each frame, N at the end.
 class Scorer {
  public:
   Scorer(const Eigen::VectorXd& residual, const Eigen::MatrixXd& known, std::vector<Eigen::Index> offsets, double variance);

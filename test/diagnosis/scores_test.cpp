@@ -1,0 +1,115 @@
+#include "tissue_stiffness/diagnosis/scores.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr Eigen::Index kFrames = 80, kRowsEach = 30, kRows = kFrames * kRowsEach;
+
+std::vector<Eigen::Index> offsets() {
+  std::vector<Eigen::Index> out;
+  for (Eigen::Index t = 0; t <= kFrames; ++t) out.push_back(t * kRowsEach);
+  return out;
+}
+
+// Independent in space; in time an autoregression with coefficient `memory`, of unit variance.
+Eigen::VectorXd noise(std::mt19937& engine, double memory) {
+  std::normal_distribution<double> normal;
+  Eigen::VectorXd e(kRows);
+  for (Eigen::Index r = 0; r < kRows; ++r) {
+    const double fresh = normal(engine);
+    e[r] = r < kRowsEach ? fresh : memory * e[r - kRowsEach] + std::sqrt(1.0 - memory * memory) * fresh;
+  }
+  return e;
+}
+
+// A motion of the whole body that rings at `frequency` and dies over `life` frames.
+Eigen::MatrixXd ringing(double frequency, double life, unsigned seed = 1) {
+  std::mt19937 engine(seed);
+  std::normal_distribution<double> normal;
+  Eigen::VectorXd shape(kRowsEach);
+  for (double& s : shape) s = normal(engine);
+  Eigen::MatrixXd x(kRows, 1);
+  for (Eigen::Index t = 0; t < kFrames; ++t) {
+    const double course = std::exp(-static_cast<double>(t) / life) * std::sin(frequency * static_cast<double>(t));
+    x.block(t * kRowsEach, 0, kRowsEach, 1) = course * shape;
+  }
+  return x;
+}
+
+Tangent tangent(const Eigen::MatrixXd& columns, double prior = 1.0) {
+  return {columns, Eigen::VectorXd::Constant(columns.cols(), prior)};
+}
+
+TEST(Scores, RecoverTheAmplitudeAndTheShareExplained) {
+  std::mt19937 engine(2);
+  const Eigen::MatrixXd x = ringing(0.3, 30.0);
+  const Eigen::VectorXd e = 2.5 * x.col(0) + noise(engine, 0.0);
+  const Score score = Scorer(e, Eigen::MatrixXd(kRows, 0), offsets(), 1.0).score(tangent(x));
+  const double std = 1.0 / x.norm();
+  EXPECT_NEAR(score.amplitude[0], 2.5, 4.0 * std);
+  EXPECT_NEAR(score.explained, 6.25 * x.squaredNorm() / e.squaredNorm(), 0.05);
+  EXPECT_NEAR(score.size, 2.5 * x.norm() / std::sqrt(static_cast<double>(kRows)), 0.1);
+  EXPECT_LT(score.p_value, 1e-6);
+  EXPECT_GT(score.log_bayes_factor, 100.0);
+}
+
+TEST(Scores, LogBayesFactorIsTheClosedFormOfOneColumn) {
+  std::mt19937 engine(3);
+  const Eigen::MatrixXd x = ringing(0.2, 50.0);
+  const Eigen::VectorXd e = noise(engine, 0.0);
+  const double prior = 0.7;
+  const double gram = prior * prior * x.squaredNorm(), b = prior * x.col(0).dot(e);
+  const double expected = 0.5 * b * b / (1.0 + gram) - 0.5 * std::log1p(gram);
+  const Score score = Scorer(e, Eigen::MatrixXd(kRows, 0), offsets(), 1.0).score(tangent(x, prior));
+  EXPECT_NEAR(score.log_bayes_factor, expected, 1e-9 * std::abs(expected));
+}
+
+TEST(Scores, GiveNothingToWhatIsAlreadyEstimated) {
+  std::mt19937 engine(4);
+  const Eigen::MatrixXd known = ringing(0.25, 40.0);
+  const Eigen::VectorXd e = 3.0 * known.col(0) + noise(engine, 0.0);
+  const Score score = Scorer(e, known, offsets(), 1.0).score(tangent(2.0 * known));
+  EXPECT_EQ(score.log_bayes_factor, 0.0);
+  EXPECT_EQ(score.p_value, 1.0);
+}
+
+TEST(Scores, SeeTwinsAsTwins) {
+  std::mt19937 engine(5);
+  const Eigen::MatrixXd a = ringing(0.3, 30.0), b = ringing(0.3, 33.0), c = ringing(0.9, 30.0, 7);
+  const Scorer scorer(a.col(0) + noise(engine, 0.0), Eigen::MatrixXd(kRows, 0), offsets(), 1.0);
+  EXPECT_GT(scorer.score(tangent(a)).cosine_with(scorer.score(tangent(b))), 0.95);
+  EXPECT_LT(scorer.score(tangent(a)).cosine_with(scorer.score(tangent(c))), 0.3);
+}
+
+// The p-value must mean what it says whether or not the errors are correlated in time; a naive one does not.
+TEST(Scores, PValuesAreCalibratedForCorrelatedErrors) {
+  const Eigen::MatrixXd x = ringing(0.15, 200.0);
+  for (const double memory : {0.0, 0.6}) {
+    std::mt19937 engine(6);
+    int below = 0, naive = 0;
+    const int draws = 600;
+    for (int k = 0; k < draws; ++k) {
+      const Eigen::VectorXd e = noise(engine, memory);
+      const Score score = Scorer(e, Eigen::MatrixXd(kRows, 0), offsets(), 1.0).score(tangent(x));
+      below += score.p_value < 0.05 ? 1 : 0;
+      naive += std::abs(score.amplitude[0]) * x.norm() > 1.96 ? 1 : 0;
+    }
+    std::printf("memory %.1f: p < 5 %% in %.1f %% of draws, naively %.1f %%\n", memory, 100.0 * below / draws,
+                100.0 * naive / draws);
+    EXPECT_GT(below, 0.03 * draws);
+    EXPECT_LT(below, 0.10 * draws);
+  }
+}
+
+TEST(LogMeanExp, SurvivesLargeNumbers) {
+  EXPECT_NEAR(log_mean_exp({1e5, 1e5}), 1e5, 1e-9);
+  EXPECT_NEAR(log_mean_exp({0.0, std::log(3.0)}), std::log(2.0), 1e-12);
+}
+
+}  // namespace
+}  // namespace tissue_stiffness
