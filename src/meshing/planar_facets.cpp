@@ -49,7 +49,8 @@ Patches grow_patches(const TriangleSurface& surface, const Eigen::Matrix3Xi& nei
     for (; !stack.empty(); ++size) {
       const int t = stack.back();
       stack.pop_back();
-      for (const int next : neighbours.col(t)) {
+      for (int i = 0; i < 3; ++i) {
+        const int next = neighbours(i, t);
         if (patches.of_triangle[static_cast<std::size_t>(next)] >= 0 || !belongs(next)) continue;
         patches.of_triangle[static_cast<std::size_t>(next)] = patch;
         stack.push_back(next);
