@@ -4,6 +4,12 @@
 
 namespace tissue_stiffness {
 
+std::shared_ptr<Course> load_csv(const Value& course, int components, const EffectContext& context) {
+  std::string file = course.at("file").as_text();
+  if (!file.empty() && file[0] != '/') file = context.settings.directory + "/" + file;
+  return std::make_shared<Course>(Course::from_csv(file, components));
+}
+
 std::shared_ptr<Course> load_course(const Value& arguments, LoadInput::Kind kind, const EffectContext& context) {
   const int components = kind == LoadInput::Kind::pressure ? 1 : 6;
   if (arguments.has("topic") == arguments.has("course")) {
@@ -11,10 +17,10 @@ std::shared_ptr<Course> load_course(const Value& arguments, LoadInput::Kind kind
                      "one of the two");
   }
   if (arguments.has("course")) {
-    std::string file = arguments.at("course").at("file").as_text();
-    if (!file.empty() && file[0] != '/') file = context.settings.directory + "/" + file;
-    auto course = std::make_shared<Course>(Course::from_csv(file, components));
-    context.courses["file:" + file] = course;
+    auto& course = context.courses["file:" + arguments.at("course").at("file").as_text()];
+    if (course == nullptr || course->components() != components) {
+      course = load_csv(arguments.at("course"), components, context);
+    }
     return course;
   }
   const std::string topic = arguments.at("topic").as_text();

@@ -70,6 +70,10 @@ class ContourOperator : public ObservationOperator {
     return out;
   }
 
+  std::vector<int> nodes(const Observation&) const override {
+    return {triangles_.nodes.data(), triangles_.nodes.data() + triangles_.nodes.size()};
+  }
+
  private:
   std::vector<OutlineSegment> model_outline(const Camera& camera, const Eigen::VectorXd& u) const {
     Eigen::Matrix3Xd positions = mesh_.nodes + Eigen::Map<const Eigen::Matrix3Xd>(u.data(), 3, mesh_.node_count());

@@ -52,6 +52,15 @@ class MarkerOperator : public ObservationOperator {
     return p;
   }
 
+  std::vector<int> nodes(const Observation& observation) const override {
+    std::vector<int> list;
+    for (Eigen::Index i = 0; i < observation.ids.size(); ++i) {
+      const auto tet = mesh_.tets.col(attachments_[static_cast<std::size_t>(observation.ids[i])].tet);
+      list.insert(list.end(), tet.data(), tet.data() + tet.size());
+    }
+    return list;
+  }
+
  private:
   Attachment attach(const Eigen::Vector3d& marker) const {
     SurfacePoint best = closest_surface_point(mesh_, marker);

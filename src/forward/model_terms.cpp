@@ -156,6 +156,7 @@ void Model::add_loads(const Eigen::VectorXd& theta, double time, Eigen::VectorXd
 void Model::add_nonlinear_force(const Eigen::VectorXd& theta, const Motion& at, Eigen::VectorXd& force) const {
   Motion motion = at;
   motion.load_factor = load_factor(theta);
+  motion.since = motion.time - first_stamp_;
   for (const Part& part : parts_) {
     const Eigen::VectorXd p = part.parameters(theta);
     motion.finite_share = finite_share(part, theta);
@@ -173,6 +174,7 @@ void Model::add_nonlinear_force(const Eigen::VectorXd& theta, const Motion& at, 
 void Model::add_nonlinear_stiffness(const Eigen::VectorXd& theta, const Motion& at, SparseMatrix& stiffness) const {
   Motion motion = at;
   motion.load_factor = load_factor(theta);
+  motion.since = motion.time - first_stamp_;
   for (const Part& part : parts_) {
     const Eigen::VectorXd p = part.parameters(theta);
     motion.finite_share = finite_share(part, theta);

@@ -143,6 +143,29 @@ std::vector<SparseMatrix> stiffness_groups(const Model& model, const PriorView& 
   return sums;
 }
 
+std::vector<SparseMatrix> sleeping_stiffness(const Model& model, const PriorView& prior) {
+  std::vector<SparseMatrix> list;
+  for (const auto& part : model.parts()) {
+    if (!part.effect->released_nodes().empty()) continue;
+    const Eigen::VectorXd p = part.parameters(prior.theta), generic = part.parameters(prior.generic);
+    SparseMatrix sum = model.fem().pattern();
+    bool any = false;
+    const auto sleeps = [&](const Coefficient& c) { return c(p) == 0.0 && c(generic) != 0.0; };
+    for (const auto& term : part.terms.stiffness) {
+      if (!sleeps(term.coefficient)) continue;
+      add_scaled(sum, term.coefficient(generic), term.matrix);
+      any = true;
+    }
+    for (const auto& term : part.terms.strain_stiffness) {
+      if (!sleeps(term.coefficient)) continue;
+      add_strain_stiffness(model.fem(), term.at(p), term.coefficient(generic), sum);
+      any = true;
+    }
+    if (any) list.push_back(std::move(sum));
+  }
+  return list;
+}
+
 Eigen::MatrixXd sleeping_forces(const Model& model, const PriorView& prior, std::size_t index, const Eigen::MatrixXd& u,
                                 const StrainRows& strains) {
   const auto& part = model.parts()[index];

@@ -1,5 +1,7 @@
 #include "tissue_stiffness/forward/observation_operator.hpp"
 
+#include <set>
+
 namespace tissue_stiffness {
 
 std::vector<std::unique_ptr<ObservationOperator>> make_observation_operators(const Model& model) {
@@ -21,6 +23,18 @@ std::vector<std::unique_ptr<ObservationOperator>> make_observation_operators(con
     }
   }
   return operators;
+}
+
+std::vector<int> observed_nodes(const std::vector<std::unique_ptr<ObservationOperator>>& operators,
+                                const std::vector<Frame>& frames) {
+  std::set<int> all;
+  for (const Frame& frame : frames) {
+    for (const Observation& observation : frame.observations) {
+      const std::vector<int> nodes = operators[static_cast<std::size_t>(observation.source)]->nodes(observation);
+      all.insert(nodes.begin(), nodes.end());
+    }
+  }
+  return {all.begin(), all.end()};
 }
 
 Prediction concatenate(const std::vector<Prediction>& parts) {

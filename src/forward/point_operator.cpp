@@ -41,6 +41,10 @@ class PointOperator : public ObservationOperator {
     return p;
   }
 
+  std::vector<int> nodes(const Observation&) const override {
+    return {triangles_.nodes.data(), triangles_.nodes.data() + triangles_.nodes.size()};
+  }
+
  private:
   Eigen::Matrix3d corners(Eigen::Index t, const Eigen::VectorXd& u) const {
     Eigen::Matrix3d x;

@@ -15,6 +15,7 @@ namespace {
 constexpr double kShift = 1e-6;         // makes the stiffness of a body that nothing holds invertible
 constexpr int kLeading = 4;             // modes that tell what an absent effect would do
 constexpr double kResponseShare = 0.6;  // of the room for absent effects: static responses; dynamic ones fill the rest
+constexpr int kFew = 3;                 // absent effects that may grow large: their stiffness acts on what is added, too
 constexpr double kFaint = 1e-12;        // of the strongest response, squared: what is left out
 constexpr double kFree = 1e-9;          // of the highest eigenvalue: below it a body moves freely
 
@@ -77,7 +78,7 @@ class Builder {
     Eigen::MatrixXd x = respond(loads);
     for (;;) {
       const Eigen::Index before = basis.size();
-      for (Eigen::Index i = 0; i < x.cols() && basis.size() < size; ++i) basis.add(x.col(i));
+      basis.add(std::move(x), size);
       const Eigen::MatrixXd block = basis.vectors().rightCols(basis.size() - before);
       if (block.cols() == 0 || basis.size() >= size) return;
       Eigen::MatrixXd next = mass * block;
@@ -123,42 +124,65 @@ class Builder {
   void add_sleeping(OrthonormalBasis& basis, const Eigen::MatrixXd& acting) const {
     const Eigen::MatrixXd motion = leading_motion(basis, acting);
     const StrainRows rows = strains(model_.fem(), motion);
-    Eigen::MatrixXd responses(mass_.rows(), 0);
+    std::vector<Eigen::MatrixXd> blocks;
     int parts = 0;
     for (std::size_t p = 0; p < model_.parts().size(); ++p) {
       if (!model_.parts()[p].effect->released_nodes().empty()) continue;
-      const Eigen::MatrixXd loads = sleeping_loads(model_, prior_, mass_, p),
-                            forces = sleeping_forces(model_, prior_, p, motion, rows);
-      if (loads.cols() + forces.cols() == 0) continue;
-      ++parts;
-      for (const Eigen::MatrixXd* block : {&loads, &forces}) {
-        if (block->cols() == 0) continue;
-        const Eigen::MatrixXd x = held_(*block);
-        const double norm = std::sqrt((x.array() * (mass_ * x).array()).sum());
-        if (!(norm > 0.0)) continue;
-        responses.conservativeResize(Eigen::NoChange, responses.cols() + x.cols());
-        responses.rightCols(x.cols()) = x / norm;
+      const std::size_t before = blocks.size();
+      for (Eigen::MatrixXd block :
+           {sleeping_loads(model_, prior_, mass_, p), sleeping_forces(model_, prior_, p, motion, rows)}) {
+        if (block.cols() > 0) blocks.push_back(std::move(block));
       }
+      if (blocks.size() > before) ++parts;
     }
     if (parts == 0) return;
     const Eigen::Index room = std::min<Eigen::Index>(std::max(options_.largest - options_.size, 0),
                                                      static_cast<Eigen::Index>(options_.per_part) * parts);
-    add_common(basis, responses, basis.size() + room);
+    std::vector<SparseMatrix> groups;
+    if (parts <= kFew) groups = sleeping_stiffness(model_, prior_);
+    add_common(basis, scaled_responses(blocks), groups, basis.size() + room);
   }
 
-  void add_common(OrthonormalBasis& basis, const Eigen::MatrixXd& responses, Eigen::Index size) const {
+  // K^-1 times all blocks side by side, each block's responses scaled to one.
+  Eigen::MatrixXd scaled_responses(const std::vector<Eigen::MatrixXd>& blocks) const {
+    Eigen::Index columns = 0;
+    for (const Eigen::MatrixXd& block : blocks) columns += block.cols();
+    Eigen::MatrixXd x(mass_.rows(), columns);
+    Eigen::Index at = 0;
+    for (const Eigen::MatrixXd& block : blocks) {
+      x.middleCols(at, block.cols()) = block;
+      at += block.cols();
+    }
+    x = held_(std::move(x));
+    const Eigen::RowVectorXd squares = (x.array() * (mass_ * x).array()).colwise().sum();
+    at = 0;
+    for (const Eigen::MatrixXd& block : blocks) {
+      const double square = squares.segment(at, block.cols()).sum();
+      if (square > 0.0) x.middleCols(at, block.cols()) /= std::sqrt(square);
+      at += block.cols();
+    }
+    return x;
+  }
+
+  void add_common(OrthonormalBasis& basis, const Eigen::MatrixXd& responses, const std::vector<SparseMatrix>& groups,
+                  Eigen::Index size) const {
     const Eigen::MatrixXd rest = basis.beside(responses);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(rest.transpose() * (mass_ * rest));
     const Eigen::VectorXd& square = eigen.eigenvalues();
     const auto statics =
         basis.size() + static_cast<Eigen::Index>(kResponseShare * static_cast<double>(size - basis.size()));
     const Eigen::Index before = basis.size();
-    for (Eigen::Index k = square.size() - 1; k >= 0 && basis.size() < statics; --k) {
-      if (!(square[k] > kFaint * square[square.size() - 1])) break;
-      basis.add(rest * eigen.eigenvectors().col(k));
-    }
+    const auto strong =
+        std::min<Eigen::Index>((square.array() > kFaint * square[square.size() - 1]).count(), statics - before);
+    basis.add(rest * eigen.eigenvectors().rightCols(strong).rowwise().reverse(), statics);
     const Eigen::MatrixXd added = basis.vectors().rightCols(basis.size() - before);
-    if (added.cols() > 0) extend(basis, held_, mass_ * added, {}, size);
+    if (added.cols() == 0) return;
+    Eigen::MatrixXd loads = mass_ * added;
+    for (const SparseMatrix& k : groups) {
+      loads.conservativeResize(Eigen::NoChange, loads.cols() + added.cols());
+      loads.rightCols(added.cols()) = k * added;
+    }
+    extend(basis, held_, loads, groups, size);
   }
 
   static SparseMatrix springs(const Model::Part& part, const Eigen::VectorXd& p) {
@@ -179,7 +203,7 @@ class Builder {
       const StaticResponse respond(model_.stiffness(theta), mass_, model_.fixed(theta));
       const Eigen::Index before = held.size();
       OrthonormalBasis basis(mass_, before + options_.released);
-      for (Eigen::Index i = 0; i < before; ++i) basis.add(held.vectors().col(i));
+      basis.add(held.vectors(), before);
       extend(basis, respond, acting, {springs(part, part.parameters(theta))}, basis.size() + options_.released);
       const Eigen::Index count = basis.size() - before;
       result.vectors.conservativeResize(Eigen::NoChange, result.vectors.cols() + count);

@@ -76,11 +76,12 @@ void ReducedModel::project_part(std::size_t index) {
   const Eigen::MatrixXd& b = basis_.vectors;
   Projected& out = projected_[index];
   const Eigen::VectorXd p = part.parameters(model_.theta(model_.prior_mean()));
-  Eigen::MatrixX3d unit = unit_motion(b.rows()), loose = unit;
-  for (Eigen::Index i = 0; i < loose.rows(); ++i) {
-    if (model_.fixed()[static_cast<std::size_t>(i)] != 0) loose.row(i).setZero();
-  }
   for (const auto& term : part.terms.mass) {
+    const Eigen::MatrixX3d unit = unit_motion(b.rows());
+    Eigen::MatrixX3d loose = unit;
+    for (Eigen::Index i = 0; i < loose.rows(); ++i) {
+      if (model_.fixed()[static_cast<std::size_t>(i)] != 0) loose.row(i).setZero();
+    }
     out.mass.push_back(project_matrix(term.matrix, b));
     out.weight.push_back(b.transpose() * (term.matrix * unit));
     out.momentum.push_back(b.transpose() * (term.matrix * loose));
@@ -190,6 +191,24 @@ Eigen::VectorXd ReducedModel::load(std::size_t part, std::size_t term, const Eig
 
 std::unique_ptr<Trajectory> ReducedModel::start(const Eigen::VectorXd& theta, double start) const {
   return std::make_unique<ReducedTrajectory>(*this, theta, start);
+}
+
+void ReducedModel::focus(const std::vector<int>& nodes) {
+  focus_ = nodes;
+  in_focus_.resize(3 * static_cast<Eigen::Index>(nodes.size()), basis_.vectors.cols());
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    in_focus_.middleRows<3>(3 * static_cast<Eigen::Index>(i)) = basis_.vectors.middleRows<3>(3 * nodes[i]);
+  }
+}
+
+Eigen::VectorXd ReducedModel::displacement(const Eigen::VectorXd& coordinates) const {
+  if (focus_.empty()) return basis_.vectors * coordinates;
+  const Eigen::VectorXd seen = in_focus_ * coordinates;
+  Eigen::VectorXd u = Eigen::VectorXd::Zero(basis_.vectors.rows());
+  for (std::size_t i = 0; i < focus_.size(); ++i) {
+    u.segment<3>(3 * focus_[i]) = seen.segment<3>(3 * static_cast<Eigen::Index>(i));
+  }
+  return u;
 }
 
 std::string ReducedModel::description() const {

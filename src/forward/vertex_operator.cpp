@@ -35,6 +35,10 @@ class VertexOperator : public ObservationOperator {
     return p;
   }
 
+  std::vector<int> nodes(const Observation& observation) const override {
+    return {observation.ids.data(), observation.ids.data() + observation.ids.size()};
+  }
+
  private:
   const TetMesh& mesh_;
   std::string topic_;

@@ -34,10 +34,11 @@ std::string text(const ParameterSpec& parameter, double value) {
 // A value that does something on the bar, or one inside the bounds and away from their ends.
 std::string example(const EffectSpec& spec, const ParameterSpec& parameter) {
   static const Arguments typical{
-      {"viscoelasticity.gamma", "0.5"},
-      {"viscoelasticity.tau", "0.01"},
-      {"elastic_support.compliance", "1.0e-6"},
-      {"foundation.stiffness", "1.0e5"},
+      {"viscoelasticity.gamma", "0.5"},         {"viscoelasticity.tau", "0.01"},
+      {"elastic_support.compliance", "1.0e-6"}, {"foundation.stiffness", "1.0e5"},
+      {"stiff_inclusion.excess", "2"},          {"stiff_inclusion.center", "[0.03, 0.01, 0.01]"},
+      {"stiff_inclusion.radius", "0.012"},      {"fibre_reinforcement.modulus", "2.0e4"},
+      {"active_contraction.amplitude", "800"},  {"compressibility.shift", "0.05"},
   };
   const auto known = typical.find(spec.name + "." + parameter.name);
   if (known != typical.end()) return known->second;
@@ -56,7 +57,11 @@ Arguments example_arguments(const EffectSpec& spec, const std::string& law = "li
   for (const ParameterSpec& parameter : spec.parameters) {
     if (parameter.presence == ParameterSpec::Default::required) arguments[parameter.name] = example(spec, parameter);
   }
-  const Arguments known{{"law", law}, {"point", "[0.03, 0, 0]"}, {"normal", "[1, 0.2, 0.1]"}, {"topic", "/load"}};
+  const Arguments known{{"law", law},
+                        {"point", "[0.03, 0, 0]"},
+                        {"normal", "[1, 0.2, 0.1]"},
+                        {"topic", "/load"},
+                        {"direction", "[1, 0.5, 0.2]"}};
   for (const auto& key : spec.keys) {
     if (optional(key.second)) continue;
     if (key.first == "region") arguments["region"] = spec.name == "elastic_support" ? "clamp" : region;
@@ -197,13 +202,18 @@ Eigen::VectorXd large_displacement(const TetMesh& mesh) {
   return u;
 }
 
+// Under finite strain, 0.1 s after the first stamp.
+Motion motion(const Eigen::VectorXd& u, const Eigen::VectorXd& v) {
+  return {0.1, u, v, 1.0, 1.0, 0.1};
+}
+
 // Everything in a part's force that is not linear, under finite strain.
 Eigen::VectorXd nonlinear_force(const Model& model, const Eigen::VectorXd& u) {
   const Model::Part& part = model.parts().back();
   const Eigen::VectorXd p = part.parameters(model.theta(model.prior_mean())), v = Eigen::VectorXd::Zero(u.size());
   Eigen::VectorXd f = Eigen::VectorXd::Zero(u.size());
-  part.effect->add_force({0.1, u, v, 1.0}, p, f);
-  part.effect->add_finite_force({0.1, u, v, 1.0}, p, f);
+  part.effect->add_force(motion(u, v), p, f);
+  part.effect->add_finite_force(motion(u, v), p, f);
   return f;
 }
 
@@ -211,8 +221,8 @@ SparseMatrix nonlinear_tangent(const Model& model, const Eigen::VectorXd& u) {
   const Model::Part& part = model.parts().back();
   const Eigen::VectorXd p = part.parameters(model.theta(model.prior_mean())), v = Eigen::VectorXd::Zero(u.size());
   SparseMatrix k = model.fem().pattern();
-  part.effect->add_stiffness({0.1, u, v, 1.0}, p, k);
-  part.effect->add_finite_stiffness({0.1, u, v, 1.0}, p, k);
+  part.effect->add_stiffness(motion(u, v), p, k);
+  part.effect->add_finite_stiffness(motion(u, v), p, k);
   return k;
 }
 

@@ -81,5 +81,30 @@ TEST(ReducedEffects, GravityAndMassGrowFromNothing) {
   EXPECT_LT(worst({"added_mass: {region: tip, mass: {mean: 0, std: 0.01}}"}, {at({0.0}), at({0.01}), at({0.05})}), 2e-3);
 }
 
+TEST(ReducedEffects, FibresGrowFromNothingAndTurn) {
+  const std::string head = "fibre_reinforcement: {direction: [1, 0, 0], modulus: {mean: 0, std: 2.0e4}, angle: ";
+  EXPECT_LT(worst({head + "0.5}"}, {at({0.0}), at({1e4}), at({4e4})}), 2e-3);
+  EXPECT_LT(worst({head + "{mean: 0.5, std: 0.3}}"}, {at({1e4, 0.2}), at({2e4, 0.5}), at({4e4, 0.9})}), 5e-3);
+}
+
+TEST(ReducedEffects, AnInclusionGrowsFromNothingAndWanders) {
+  const std::string head = "stiff_inclusion: {excess: {mean: 0, std: 2}, ";
+  EXPECT_LT(worst({head + "center: [0.03, 0.01, 0.01], radius: 0.012}"}, {at({0.0}), at({1.0}), at({4.0})}), 1e-2);
+  EXPECT_LT(worst({head + "center: {mean: [0.03, 0.01, 0.01], std: 0.004}, radius: {prior: 0.012, factor: 1.3}}"},
+                  {at({1.0, 0.03, 0.01, 0.01, 0.012}), at({3.0, 0.035, 0.012, 0.009, 0.014})}),
+            2e-2);
+}
+
+TEST(ReducedEffects, FibresContract) {
+  EXPECT_LT(worst({"active_contraction: {direction: circumferential, amplitude: {mean: 0, std: 500}, "
+                   "period: {prior: 0.2, factor: 1.5}, onset: {mean: 0.02, std: 0.02}, angle: {mean: 0.7, std: 0.3}}"},
+                  {at({500.0, 0.2, 0.02, 0.7}), at({1500.0, 0.3, -0.03, 1.0})}),
+            5e-3);
+}
+
+TEST(ReducedEffects, AShiftOfPoissonsRatio) {
+  EXPECT_LT(worst({"compressibility: {shift: {mean: 0, std: 0.05}}"}, {at({-0.1}), at({0.03})}), 4e-3);
+}
+
 }  // namespace
 }  // namespace tissue_stiffness

@@ -62,6 +62,7 @@ struct Motion {
   const Eigen::VectorXd& velocity;      ///< 3n [m/s]
   double finite_share = 0.0;            ///< of finite strain, 0 to 1
   double load_factor = 1.0;             ///< of every measured load
+  double since = 0.0;                   ///< the recording's first stamp [s]
 };
 
 /// What a sensor makes of the motion. Effects of the observation change it in place, in the order of the model file.

@@ -16,11 +16,12 @@ struct ProposalContext {
   const ModelSettings& settings;  ///< of the model that may lack something
   const TetMesh& mesh;
   const std::map<std::string, Region>& regions;
-  double young_modulus;   ///< where the estimate stands [Pa]
-  double poisson_ratio;   ///< [-]
-  double density;         ///< [kg/m^3]
-  double frame_interval;  ///< [s]
-  double duration;        ///< of the recording [s]
+  double young_modulus;              ///< where the estimate stands [Pa]
+  double poisson_ratio;              ///< [-]
+  double density;                    ///< [kg/m^3]
+  double frame_interval;             ///< [s]
+  double duration;                   ///< of the recording [s]
+  std::vector<double> periods = {};  ///< rhythms to try [s]; empty: some that fit the recording
 
   bool holds(const std::string& effect) const;
   /// Effects of that name, in order.

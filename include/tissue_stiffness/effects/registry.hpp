@@ -21,6 +21,9 @@ namespace effects {
 /// Time course of a measured load from the keys `topic` or `course: {file}`. Registers the topic in context.inputs.
 std::shared_ptr<Course> load_course(const Value& arguments, LoadInput::Kind kind, const EffectContext& context);
 
+/// A course from {file: ...}, looked up in the model file's folder. Times count from the recording's first stamp.
+std::shared_ptr<Course> load_csv(const Value& course, int components, const EffectContext& context);
+
 /// The library: every effect's spec, in the order of effects.def.
 const std::vector<EffectSpec>& effect_specs();
 

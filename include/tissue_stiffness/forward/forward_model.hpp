@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "tissue_stiffness/forward/model.hpp"
 
@@ -29,6 +30,8 @@ class ForwardModel {
   virtual ~ForwardModel() = default;
   /// At rest (or at the initial velocity), undeformed, at `start` [s].
   virtual std::unique_ptr<Trajectory> start(const Eigen::VectorXd& theta, double start) const = 0;
+  /// Runs that start from now on need to tell where these nodes are, no others: what is cheaper may leave those at rest.
+  virtual void focus(const std::vector<int>&) {}
   /// What it is, in one line.
   virtual std::string description() const = 0;
 };

@@ -26,6 +26,9 @@ Eigen::MatrixXd sleeping_loads(const Model& model, const PriorView& prior, const
 /// Stiffness at the prior in groups whose ratio may change; empty when they all scale together.
 std::vector<SparseMatrix> stiffness_groups(const Model& model, const PriorView& prior);
 
+/// Stiffness of each part that is zero at the prior, away from it.
+std::vector<SparseMatrix> sleeping_stiffness(const Model& model, const PriorView& prior);
+
 /// Forces of a part's sleeping or movable terms when the body moves as the columns of u: dK u and dM u, 3n each.
 Eigen::MatrixXd sleeping_forces(const Model& model, const PriorView& prior, std::size_t part, const Eigen::MatrixXd& u,
                                 const StrainRows& strains);

@@ -18,6 +18,8 @@ class ObservationOperator {
   virtual void check(const Observation& observation) const = 0;
   /// Rows depend on the observation alone, so predictions for different u line up. NaN where the model has no counterpart.
   virtual Prediction predict(const Observation& observation, const Eigen::VectorXd& u) const = 0;
+  /// Mesh nodes that a prediction of it depends on.
+  virtual std::vector<int> nodes(const Observation& observation) const = 0;
   /// Outline of the model in the sensor's image, as separate segments (u0, v0, u1, v1) [pixel]; empty for other sensors.
   virtual Eigen::Matrix4Xd outline(const Observation&, const Eigen::VectorXd&) const { return {}; }
 };
@@ -30,6 +32,10 @@ std::unique_ptr<ObservationOperator> make_vertex_operator(const Model& model, co
 std::unique_ptr<ObservationOperator> make_marker_operator(const Model& model, const ObservationSettings& settings);
 std::unique_ptr<ObservationOperator> make_point_operator(const Model& model, const ObservationSettings& settings);
 std::unique_ptr<ObservationOperator> make_contour_operator(const Model& model, const ObservationSettings& settings);
+
+/// Nodes that predictions of these frames depend on, ascending.
+std::vector<int> observed_nodes(const std::vector<std::unique_ptr<ObservationOperator>>& operators,
+                                const std::vector<Frame>& frames);
 
 /// Joins the predictions of a frame's observations.
 Prediction concatenate(const std::vector<Prediction>& parts);

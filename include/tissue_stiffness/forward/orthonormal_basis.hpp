@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "tissue_stiffness/fem/discretisation.hpp"
 
@@ -13,7 +15,6 @@ class OrthonormalBasis {
   OrthonormalBasis(const SparseMatrix& mass, Eigen::Index capacity)
       : mass_(mass), vectors_(mass.rows(), capacity), weighted_(mass.rows(), capacity) {}
 
-  bool full() const { return size_ == vectors_.cols(); }
   Eigen::Index size() const { return size_; }
   auto vectors() const { return vectors_.leftCols(size_); }
 
@@ -26,22 +27,34 @@ class OrthonormalBasis {
     return x;
   }
 
-  /// False when the basis is full or x no new direction.
-  bool add(const Eigen::VectorXd& x) {
-    constexpr double dependent = 1e-7;  // of its norm: what a new direction keeps at least
-    if (full()) return false;
-    const double before = std::sqrt(x.dot(mass_ * x));
-    if (!(before > 0.0)) return false;
-    const Eigen::VectorXd rest = beside(x / before);
-    const Eigen::VectorXd weighted = mass_ * rest;
-    const double after = std::sqrt(rest.dot(weighted));
-    if (!(after > dependent)) return false;
-    vectors_.col(size_) = rest / after;
-    weighted_.col(size_++) = weighted / after;
-    return true;
+  /// Adds the columns' new directions, at most until `size` vectors are there.
+  void add(Eigen::MatrixXd x, Eigen::Index size) {
+    const Eigen::Index before = size_;
+    const Eigen::RowVectorXd norms = (x.array() * (mass_ * x).array()).colwise().sum().sqrt();
+    for (Eigen::Index i = 0; i < x.cols(); ++i) {
+      if (norms[i] > 0.0) x.col(i) /= norms[i];
+    }
+    x = beside(std::move(x));
+    for (Eigen::Index i = 0; i < x.cols() && size_ < std::min(size, vectors_.cols()); ++i) {
+      if (norms[i] > 0.0) add_one(x.col(i), before);
+    }
   }
 
  private:
+  // x stands off the first `before` vectors already.
+  void add_one(Eigen::VectorXd x, Eigen::Index before) {
+    constexpr double dependent = 1e-7;  // of its norm: what a new direction keeps at least
+    for (int pass = 0; pass < 2; ++pass) {
+      const Eigen::VectorXd share = weighted_.middleCols(before, size_ - before).transpose() * x;
+      x.noalias() -= vectors_.middleCols(before, size_ - before) * share;
+    }
+    const Eigen::VectorXd weighted = mass_ * x;
+    const double norm = std::sqrt(x.dot(weighted));
+    if (!(norm > dependent)) return;
+    vectors_.col(size_) = x / norm;
+    weighted_.col(size_++) = weighted / norm;
+  }
+
   const SparseMatrix& mass_;
   Eigen::MatrixXd vectors_, weighted_;  // the second: M times the first
   Eigen::Index size_ = 0;

@@ -15,7 +15,7 @@ struct ReducedBasis {
 
 struct BasisOptions {
   int size = 48;      ///< vectors from the loads that act at the prior
-  int per_part = 16;  ///< more for each effect that is absent at the prior, or whose place or angle is estimated
+  int per_part = 32;  ///< more for each effect that is absent at the prior, or whose place or angle is estimated
   int largest = 160;  ///< with those; supports that may give way come on top
   int released = 40;  ///< for each support that may give way
 };

@@ -28,11 +28,14 @@ class ReducedModel : public ForwardModel {
   explicit ReducedModel(const Model& model, const BasisOptions& options = {});
 
   std::unique_ptr<Trajectory> start(const Eigen::VectorXd& theta, double start) const override;
+  void focus(const std::vector<int>& nodes) override;
   std::string description() const override;
 
   const Model& model() const { return model_; }
   /// 3n x basis size.
   const Eigen::MatrixXd& basis() const { return basis_.vectors; }
+  /// Nodal displacement of basis coordinates, 3n; zero away from the focus.
+  Eigen::VectorXd displacement(const Eigen::VectorXd& coordinates) const;
   /// Kept for the last few theta that differ in mass or stiffness.
   std::shared_ptr<const ReducedModes> modes(const Eigen::VectorXd& theta) const;
   /// Basis coordinates of a load term's pattern.
@@ -56,6 +59,8 @@ class ReducedModel : public ForwardModel {
 
   const Model& model_;
   ReducedBasis basis_;
+  std::vector<int> focus_;            ///< nodes; empty: all
+  Eigen::MatrixXd in_focus_;          ///< their rows of the basis
   std::vector<Projected> projected_;  ///< a part each
   StrainRows strains_;                ///< of the basis, where a term needs them for each theta
   mutable std::mutex mutex_;

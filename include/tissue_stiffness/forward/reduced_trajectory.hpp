@@ -17,7 +17,7 @@ class ReducedTrajectory : public Trajectory {
 
   void advance(double time) override;
   double time() const override { return time_; }
-  Eigen::VectorXd displacement() const override { return reduced_.basis() * coordinates(); }
+  Eigen::VectorXd displacement() const override { return reduced_.displacement(coordinates()); }
   Eigen::VectorXd velocity() const override { return reduced_.basis() * (modes_->shapes * state_.col(1)); }
   /// Displacement as coordinates of the reduced basis.
   Eigen::VectorXd coordinates() const { return modes_->shapes * state_.col(0); }

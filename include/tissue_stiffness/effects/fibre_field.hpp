@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tissue_stiffness/effects/effect.hpp"
+
+namespace tissue_stiffness {
+
+/// Straight line about which fibres wind.
+struct Axis {
+  Eigen::Vector3d point, direction;
+};
+
+/// Through the body's centroid, along the principal axis that differs most from the other two: the axis of a body of
+/// revolution, the length of a bar. z where no axis stands out.
+Axis principal_axis(const TetMesh& mesh);
+
+/// Unit directions of fibres at the quadrature points, from the keys `direction` ([x, y, z], circumferential, longitudinal
+/// or radial), `axis` and `center`, and two angles: a = cos(tilt) (cos(angle) e1 + sin(angle) e2) + sin(tilt) e3. e1 is the
+/// direction asked for; about an axis e2 leads from circumferential to longitudinal (or back) and e3 is radial, so that
+/// `angle` is the helix angle.
+class FibreField {
+ public:
+  /// Throws InputError for a direction that is none.
+  FibreField(const Value& arguments, const EffectContext& context);
+
+  Eigen::Vector3d direction(int e, int q, double angle, double tilt) const;
+
+  /// The keys, for an effect's spec, and its parameters `angle` and `tilt`.
+  static std::vector<std::pair<std::string, std::string>> keys();
+  static std::vector<ParameterSpec> angles();
+  /// Directions worth trying on a body: the `direction: ...` entry and an angle each.
+  struct Trial {
+    std::string direction;
+    double angle;
+  };
+  static std::vector<Trial> trials(const TetMesh& mesh);
+
+ private:
+  enum class Kind { fixed, circumferential, longitudinal, radial };
+  Eigen::Matrix3d frame(const Eigen::Vector3d& position) const;
+
+  const Discretisation& fem_;
+  Kind kind_ = Kind::fixed;
+  Eigen::Matrix3d fixed_ = Eigen::Matrix3d::Identity();
+  Axis axis_;
+};
+
+/// Tension along the fibres [Pa] (second Piola-Kirchhoff) and its derivative, for the Green strain along them.
+struct FibreTension {
+  double value, slope;
+};
+using FibreLaw = std::function<FibreTension(double strain)>;
+/// Direction at a quadrature point.
+using FibreDirections = std::function<Eigen::Vector3d(int e, int q)>;
+
+/// Fibres under finite strain: subtracts the internal force int S (F a) (a . grad N) dV, S = tension((|F a|^2 - 1) / 2),
+/// and adds its derivative (Holzapfel 2000, sec. 6.7).
+void add_fibre_force(const Discretisation& fem, const FibreDirections& directions, const FibreLaw& law,
+                     const Eigen::VectorXd& u, Eigen::VectorXd& force);
+void add_fibre_stiffness(const Discretisation& fem, const FibreDirections& directions, const FibreLaw& law,
+                         const Eigen::VectorXd& u, SparseMatrix& stiffness);
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,120 @@
+// Fibres that pull by themselves, in a rhythm of their own.
+#include <algorithm>
+#include <cmath>
+
+#include "tissue_stiffness/effects/fibre_field.hpp"
+#include "tissue_stiffness/effects/registry.hpp"
+
+namespace tissue_stiffness::effects {
+namespace {
+
+enum Index { kAmplitude, kPeriod, kOnset, kDuration, kSharpness, kAngle, kTilt };
+
+// An arch over the active part of each period, nothing before the onset.
+double twitch(double time, const Parameters& p) {
+  const double since = time - p[kOnset];
+  if (since <= 0.0) return 0.0;
+  const double within = since - p[kPeriod] * std::floor(since / p[kPeriod]);
+  const double part = within / std::min(p[kDuration], p[kPeriod]);
+  return part < 1.0 ? std::pow(std::sin(M_PI * part), p[kSharpness]) : 0.0;
+}
+
+class ActiveContraction : public Effect {
+ public:
+  ActiveContraction(const Value& arguments, const EffectContext& context) : fem_(context.fem), fibres_(arguments, context) {
+    if (arguments.has("course")) course_ = load_csv(arguments.at("course"), 1, context);
+  }
+
+  void linear_terms(LinearTerms& out) const override {
+    LoadTerm load;
+    load.coefficient = [](const Parameters& p) { return p[kAmplitude]; };
+    load.activation = [this](double time, const Parameters& p) { return activation(time, p); };
+    load.shaped = [this](const Parameters& p) {
+      const FibreDirections along = directions(p);
+      return Eigen::VectorXd(-stress_force(fem_, [&](int e, int q) { return strain_of(along(e, q)); }));
+    };
+    load.shape = {kAngle, kTilt};
+    out.loads.push_back(std::move(load));
+  }
+  bool has_finite_form() const override { return true; }
+  void add_finite_force(const Motion& motion, const Parameters& p, Eigen::VectorXd& force) const override {
+    const double now = p[kAmplitude] * activation(motion.since, p);
+    if (now != 0.0) add_fibre_force(fem_, directions(p), constant(now), motion.displacement, force);
+  }
+  void add_finite_stiffness(const Motion& motion, const Parameters& p, SparseMatrix& stiffness) const override {
+    const double now = p[kAmplitude] * activation(motion.since, p);
+    if (now != 0.0) add_fibre_stiffness(fem_, directions(p), constant(now), motion.displacement, stiffness);
+  }
+
+ private:
+  double activation(double time, const Parameters& p) const { return course_ ? course_->value(time, 0) : twitch(time, p); }
+  FibreDirections directions(const Parameters& p) const {
+    const double angle = p[kAngle], tilt = p[kTilt];
+    return [this, angle, tilt](int e, int q) { return fibres_.direction(e, q, angle, tilt); };
+  }
+  static FibreLaw constant(double tension) {
+    return [tension](double) { return FibreTension{tension, 0.0}; };
+  }
+
+  const Discretisation& fem_;
+  FibreField fibres_;
+  std::shared_ptr<const Course> course_;
+};
+
+constexpr double kCycles[] = {1.0, 2.0, 3.0, 4.0, 6.0};    // in the recording, where no rhythm is known
+constexpr double kPhases[] = {0.0, 1.0 / 3.0, 2.0 / 3.0};  // of the period
+
+std::vector<double> periods(const ProposalContext& context) {
+  if (!context.periods.empty()) return context.periods;
+  std::vector<double> list;
+  for (const double cycles : kCycles) list.push_back(context.duration / cycles);
+  return list;
+}
+
+// Arches half a period long, at a few rhythms and phases.
+std::vector<Proposal> propose(const ProposalContext& context) {
+  if (context.holds("active_contraction")) return {};
+  const double scale = 0.03 * context.young_modulus;
+  std::vector<Proposal> list;
+  for (const FibreField::Trial& trial : FibreField::trials(context.mesh)) {
+    if (trial.angle != 0.0 || trial.direction == "radial") continue;
+    const std::string head = "active_contraction: {direction: " + trial.direction;
+    for (const double period : periods(context)) {
+      for (const double phase : kPhases) {
+        const double onset = phase * period, arch = 0.5 * period;
+        list.push_back({head + ", period: " + yaml(period) + ", onset: " + yaml(onset) + ", duration: " + yaml(arch) +
+                            ", amplitude: " + normal(0.0, scale) + "}",
+                        "amplitude",
+                        head + ", period: " + log_normal(period, 1.15) + ", onset: " + normal(onset, 0.2 * period) +
+                            ", duration: " + log_normal(arch, 1.5) + ", amplitude: " + normal(scale, 2.0 * scale) + "}"});
+      }
+    }
+  }
+  return list;
+}
+
+}  // namespace
+
+EffectSpec active_contraction_spec() {
+  EffectSpec spec;
+  spec.name = "active_contraction";
+  spec.summary = "fibres that pull in a rhythm of their own, an arch in each period; below zero they push";
+  spec.formula = "stress T f(t) a a^T, f = sin^n(pi x / d) for x = (t - t0) mod P < d, else 0; nothing before t0";
+  spec.source = "active stress, Smith et al. 2004; t counts from the recording's first stamp";
+  spec.parameters = {{"amplitude", "T", "Pa", -1e9, 1e9, ParameterSpec::Default::required, 0.0, 0.0, 1},
+                     {"period", "P", "s", 1e-3, 1e6, ParameterSpec::Default::optional, 1.0, NAN, 1},
+                     {"onset", "t0", "s", -1e6, 1e6, ParameterSpec::Default::optional, 0.0, NAN, 1},
+                     {"duration", "d", "s", 1e-3, 1e6, ParameterSpec::Default::optional, 1e6, NAN, 1},
+                     {"sharpness", "n", "-", 1.0, 20.0, ParameterSpec::Default::optional, 2.0, NAN, 1}};
+  for (const ParameterSpec& angle : FibreField::angles()) spec.parameters.push_back(angle);
+  spec.keys = FibreField::keys();
+  spec.keys.push_back({"course", "{file: a.csv} with rows of time [s], f [-]; instead of the rhythm"});
+  spec.proposals = propose;
+  return spec;
+}
+
+std::unique_ptr<Effect> make_active_contraction(const Value& arguments, const EffectContext& context) {
+  return std::make_unique<ActiveContraction>(arguments, context);
+}
+
+}  // namespace tissue_stiffness::effects

@@ -1,0 +1,74 @@
+// One family of fibres that resists being stretched.
+#include "tissue_stiffness/effects/fibre_field.hpp"
+#include "tissue_stiffness/effects/registry.hpp"
+
+namespace tissue_stiffness::effects {
+namespace {
+
+class FibreReinforcement : public Effect {
+ public:
+  FibreReinforcement(const Value& arguments, const EffectContext& context)
+      : fem_(context.fem), fibres_(arguments, context) {}
+
+  void linear_terms(LinearTerms& out) const override {
+    StrainTerm term;
+    term.factor = [this](int e, int q, const Parameters& p) {
+      return StrainFactor(strain_of(fibres_.direction(e, q, p[1], p[2])));
+    };
+    term.coefficient = [](const Parameters& p) { return p[0]; };
+    term.shape = {1, 2};
+    out.strain_stiffness.push_back(std::move(term));
+  }
+  bool has_finite_form() const override { return true; }
+  void add_finite_force(const Motion& motion, const Parameters& p, Eigen::VectorXd& force) const override {
+    if (p[0] != 0.0) add_fibre_force(fem_, directions(p), law(p[0]), motion.displacement, force);
+  }
+  void add_finite_stiffness(const Motion& motion, const Parameters& p, SparseMatrix& stiffness) const override {
+    if (p[0] != 0.0) add_fibre_stiffness(fem_, directions(p), law(p[0]), motion.displacement, stiffness);
+  }
+
+ private:
+  FibreDirections directions(const Parameters& p) const {
+    const double angle = p[1], tilt = p[2];
+    return [this, angle, tilt](int e, int q) { return fibres_.direction(e, q, angle, tilt); };
+  }
+  static FibreLaw law(double modulus) {
+    return [modulus](double strain) { return FibreTension{modulus * strain, modulus}; };
+  }
+
+  const Discretisation& fem_;
+  FibreField fibres_;
+};
+
+std::vector<Proposal> propose(const ProposalContext& context) {
+  if (context.holds("fibre_reinforcement")) return {};
+  const double scale = 0.5 * context.young_modulus;
+  std::vector<Proposal> list;
+  for (const FibreField::Trial& trial : FibreField::trials(context.mesh)) {
+    const std::string head = "fibre_reinforcement: {direction: " + trial.direction + ", ";
+    list.push_back({head + "angle: " + yaml(trial.angle) + ", modulus: " + normal(0.0, scale) + "}", "modulus",
+                    head + "angle: " + normal(trial.angle, 0.3) + ", modulus: " + log_normal(scale, 3.0) + "}"});
+  }
+  return list;
+}
+
+}  // namespace
+
+EffectSpec fibre_reinforcement_spec() {
+  EffectSpec spec;
+  spec.name = "fibre_reinforcement";
+  spec.summary = "one family of fibres that resists being stretched (and, alike, pressed)";
+  spec.formula = "energy k/2 (a . eps a)^2; under finite strain k/2 ((|F a|^2 - 1)/2)^2";
+  spec.source = "standard reinforcing model, Holzapfel 2000, sec. 6.7";
+  spec.parameters = {{"modulus", "k", "Pa", 0.0, 1e12, ParameterSpec::Default::required, 0.0, 0.0, 1}};
+  for (const ParameterSpec& angle : FibreField::angles()) spec.parameters.push_back(angle);
+  spec.keys = FibreField::keys();
+  spec.proposals = propose;
+  return spec;
+}
+
+std::unique_ptr<Effect> make_fibre_reinforcement(const Value& arguments, const EffectContext& context) {
+  return std::make_unique<FibreReinforcement>(arguments, context);
+}
+
+}  // namespace tissue_stiffness::effects

@@ -1,0 +1,110 @@
+// A ball of other stiffness in the body.
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "tissue_stiffness/effects/registry.hpp"
+#include "tissue_stiffness/effects/solids.hpp"
+#include "tissue_stiffness/effects/spread_points.hpp"
+
+namespace tissue_stiffness::effects {
+namespace {
+
+enum Index { kExcess, kX, kY, kZ, kRadius, kOwn };
+constexpr double kEdge = 0.25;  // of an element's edge: half the width of the ball's edge, so that places can be estimated
+constexpr int kPlaces = 24;     // tried in a body
+constexpr double kSmall = 0.4, kLarge = 0.75;  // of the distance between places: radii tried
+
+double mean_edge(const Discretisation& fem) {
+  return std::cbrt(6.0 * std::sqrt(2.0) * fem.volume() / fem.element_count());
+}
+
+class StiffInclusion : public Effect {
+ public:
+  explicit StiffInclusion(const EffectContext& context)
+      : fem_(context.fem), solids_(context, kOwn), half_width_(kEdge * mean_edge(context.fem)) {}
+
+  bool needs_elasticity() const override { return true; }
+  void linear_terms(LinearTerms& out) const override {
+    for (std::size_t s = 0; s < solids_.count(); ++s) {
+      StrainTerm term;
+      term.factor = [this, s](int e, int q, const Parameters& p) {
+        const double share = solids_.holds(s, e) ? inside(e, q, p) : 0.0;
+        if (share == 0.0) return StrainFactor(6, 0);
+        const Lame unit = lame(1.0, solids_.ratio(s, p));
+        return StrainFactor(std::sqrt(share) * isotropic_factor(unit.lambda, unit.mu));
+      };
+      term.coefficient = [this, s](const Parameters& p) { return p[kExcess] * solids_.modulus(s, p); };
+      term.shape = {kX, kY, kZ, kRadius, solids_.ratio_index(s)};
+      out.strain_stiffness.push_back(std::move(term));
+    }
+  }
+  bool has_finite_form() const override { return true; }
+  void add_finite_force(const Motion& motion, const Parameters& p, Eigen::VectorXd& force) const override {
+    for (std::size_t s = 0; p[kExcess] != 0.0 && s < solids_.count(); ++s) {
+      const Lame c = lame(solids_.modulus(s, p), solids_.ratio(s, p));
+      solids_.finite(s).add_force(c, motion.displacement, scale(p), force);
+    }
+  }
+  void add_finite_stiffness(const Motion& motion, const Parameters& p, SparseMatrix& stiffness) const override {
+    for (std::size_t s = 0; p[kExcess] != 0.0 && s < solids_.count(); ++s) {
+      const Lame c = lame(solids_.modulus(s, p), solids_.ratio(s, p));
+      solids_.finite(s).add_stiffness(c, motion.displacement, scale(p), stiffness);
+    }
+  }
+
+ private:
+  // 1 inside, 0 outside, a smooth step between.
+  double inside(int e, int q, const Parameters& p) const {
+    const double distance = (fem_.position(e, q) - Eigen::Vector3d(p.segment<3>(kX))).norm();
+    const double x = std::clamp(0.5 + 0.5 * (p[kRadius] - distance) / half_width_, 0.0, 1.0);
+    return x * x * x * (10.0 - 15.0 * x + 6.0 * x * x);
+  }
+  PointLaw scale(const Parameters& p) const {
+    const Eigen::VectorXd own = p;
+    return [this, own](int e, int q, double) { return StressScale{own[kExcess] * inside(e, q, own), 0.0}; };
+  }
+
+  const Discretisation& fem_;
+  Solids solids_;
+  double half_width_;
+};
+
+// Places spread evenly over the body, two sizes each.
+std::vector<Proposal> propose(const ProposalContext& context) {
+  if (context.holds("stiff_inclusion")) return {};
+  const SpreadPoints places = spread_points(context.mesh, kPlaces);
+  std::vector<Proposal> list;
+  for (Eigen::Index i = 0; i < places.points.cols(); ++i) {
+    const Eigen::Vector3d center = places.points.col(i);
+    for (const double size : {kSmall, kLarge}) {
+      const double radius = size * places.distance;
+      list.push_back({"stiff_inclusion: {center: " + yaml(center) + ", radius: " + yaml(radius) +
+                          ", excess: " + normal(0.0, 2.0) + "}",
+                      "excess",
+                      "stiff_inclusion: {center: " + normal(center, 0.5 * places.distance) +
+                          ", radius: " + log_normal(radius, 1.5) + ", excess: " + normal(1.0, 3.0) + "}"});
+    }
+  }
+  return list;
+}
+
+}  // namespace
+
+EffectSpec stiff_inclusion_spec() {
+  EffectSpec spec;
+  spec.name = "stiff_inclusion";
+  spec.summary = "a ball whose modulus is 1 + excess times that of the tissue around; softer below zero";
+  spec.formula = "excess x the elastic stress inside, a smooth step over half an element's edge between";
+  spec.source = "Eshelby 1957: inhomogeneity";
+  spec.parameters = {{"excess", "r - 1", "-", -0.99, 1e4, ParameterSpec::Default::required, 0.0, 0.0, 1},
+                     {"center", "c", "m", -1e3, 1e3, ParameterSpec::Default::required, 0.0, NAN, 3},
+                     {"radius", "R", "m", 1e-6, 1e3, ParameterSpec::Default::required, 0.0, NAN, 1}};
+  spec.proposals = propose;
+  return spec;
+}
+
+std::unique_ptr<Effect> make_stiff_inclusion(const Value&, const EffectContext& context) {
+  return std::make_unique<StiffInclusion>(context);
+}
+
+}  // namespace tissue_stiffness::effects
