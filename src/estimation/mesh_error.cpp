@@ -1,7 +1,5 @@
 #include "tissue_stiffness/estimation/mesh_error.hpp"
 
-#include <variant>
-
 #include "tissue_stiffness/estimation/ensemble.hpp"
 #include "tissue_stiffness/filter/anchored_filter.hpp"
 #include "tissue_stiffness/forward/reduced_model.hpp"
@@ -15,18 +13,18 @@ constexpr int kMostIterations = 6;
 constexpr double kLongestStep = 0.1;  // prior standard deviations at once
 constexpr int kMostNodes = 6000;      // refined eightfold: what still factorises in seconds and within 2 GB
 
-TetMesh finer(const TetMesh& mesh) {
-  TetMesh smooth = mesh;
-  smooth_boundary(smooth);
-  return refine(smooth);
-}
-
 void drive(const MeshError::Question& question, Model& model) {
   for (const auto& [topic, course] : question.courses) *model.courses().at(topic) = course;
   model.set_first_stamp(question.first_stamp);
 }
 
 }  // namespace
+
+TetMesh finer(const TetMesh& mesh) {
+  TetMesh smooth = mesh;
+  smooth_boundary(smooth);
+  return refine(smooth);
+}
 
 struct MeshError::Studies {
   Model coarse, fine;
@@ -35,20 +33,14 @@ struct MeshError::Studies {
 
   Studies(const ModelSettings& settings, const TetMesh& mesh)
       : coarse(settings, mesh),
-        fine(settings, finer(mesh)),
+        fine(settings, finer(mesh), refine(coarse.regions(), mesh, finer(mesh))),
         coarse_runs(coarse),
         fine_runs(fine),
         operators(make_observation_operators(coarse)) {}
 };
 
-std::string MeshError::why_not(const ModelSettings& settings, const TetMesh& mesh) {
-  if (mesh.node_count() > kMostNodes) return "the mesh has more than " + std::to_string(kMostNodes) + " nodes";
-  for (const RegionSettings& region : settings.regions) {
-    if (std::holds_alternative<VertexShape>(region.shape)) {
-      return "region " + region.name + " lists vertices, which a finer mesh has between them too";
-    }
-  }
-  return "";
+std::string MeshError::why_not(const TetMesh& mesh) {
+  return mesh.node_count() > kMostNodes ? "the mesh has more than " + std::to_string(kMostNodes) + " nodes" : "";
 }
 
 MeshError::MeshError(const ModelSettings& settings, const TetMesh& mesh)

@@ -267,7 +267,7 @@ class UnscentedScheme : public Scheme {
   std::string why_no_mesh_study() const {
     if (!model_->settings().mesh.discretisation_error) return "the model file asks not to";
     if (model_->nonlinear()) return "the model is not linear";
-    return MeshError::why_not(model_->settings(), model_->mesh());
+    return MeshError::why_not(model_->mesh());
   }
 
   // What the mesh does to the estimate, asked anew whenever the recording has doubled; in the background when a node runs.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -102,6 +103,69 @@ TetMesh refine(const TetMesh& mesh) {
   }
   set_boundary_facets(fine, "refined mesh");
   return fine;
+}
+
+namespace {
+
+using Triple = std::array<int, 3>;
+
+Triple sorted(Triple triple) {
+  std::sort(triple.begin(), triple.end());
+  return triple;
+}
+
+std::set<Triple> children_of_facets(const TetMesh& parent, const std::vector<int>& facets) {
+  std::set<Triple> out;
+  for (const int f : facets) {
+    const auto n = [&](int i) { return parent.facets(i, f); };
+    for (const Triple& child :
+         {Triple{n(0), n(3), n(5)}, Triple{n(3), n(1), n(4)}, Triple{n(5), n(4), n(2)}, Triple{n(3), n(4), n(5)}}) {
+      out.insert(sorted(child));
+    }
+  }
+  return out;
+}
+
+// An edge's middle is inside when both its ends are.
+void add_middles(const TetMesh& mesh, std::vector<char>& inside) {
+  for (int t = 0; mesh.quadratic() && t < mesh.tet_count(); ++t) {
+    for (int e = 0; e < 6; ++e) {
+      const auto in = [&](int local) { return inside[static_cast<std::size_t>(mesh.tets(local, t))] != 0; };
+      const auto middle = static_cast<std::size_t>(mesh.tets(4 + e, t));
+      if (in(kTetEdges[e][0]) && in(kTetEdges[e][1])) inside[middle] = 1;
+    }
+  }
+}
+
+Region refine(const Region& region, const TetMesh& mesh, const TetMesh& parent, const TetMesh& refined) {
+  Region out;
+  std::vector<char> inside(static_cast<std::size_t>(std::max(parent.node_count(), refined.node_count())), 0);
+  for (const int node : region.nodes) inside[static_cast<std::size_t>(node)] = 1;
+  if (!mesh.quadratic()) add_middles(parent, inside);
+  add_middles(refined, inside);
+  for (int node = 0; node < refined.node_count(); ++node) {
+    if (inside[static_cast<std::size_t>(node)] != 0) out.nodes.push_back(node);
+  }
+  const std::set<Triple> facets = children_of_facets(parent, region.facets);
+  for (int f = 0; f < refined.facet_count(); ++f) {
+    const Triple corners{refined.facets(0, f), refined.facets(1, f), refined.facets(2, f)};
+    if (facets.count(sorted(corners)) == 1) out.facets.push_back(f);
+  }
+  for (const int tet : region.tets) {
+    for (int child = 0; child < 8; ++child) out.tets.push_back(8 * tet + child);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::map<std::string, Region> refine(const std::map<std::string, Region>& regions, const TetMesh& mesh,
+                                     const TetMesh& refined) {
+  TetMesh parent = mesh;
+  elevate(parent);
+  std::map<std::string, Region> out;
+  for (const auto& [name, region] : regions) out[name] = refine(region, mesh, parent, refined);
+  return out;
 }
 
 }  // namespace tissue_stiffness

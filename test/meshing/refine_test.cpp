@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tissue_stiffness/meshing/box_mesh.hpp"
+#include "tissue_stiffness/meshing/build_mesh.hpp"
 #include "tissue_stiffness/meshing/surface.hpp"
 
 namespace tissue_stiffness {
@@ -37,6 +38,22 @@ TEST(Refine, FollowsCurvedEdges) {
     const Eigen::Vector3d x = fine.nodes.col(i);
     const double rest = x.z() - 0.1 * x.x() * x.x();
     EXPECT_NEAR(std::round(8.0 * rest), 8.0 * rest, 1e-12);
+  }
+}
+
+TEST(Refine, KeepsRegionsWhateverShapeTheyHad) {
+  for (const int order : {1, 2}) {
+    const TetMesh coarse = make_box_mesh({0.1, 0.02, 0.02}, 4, 1, 1, order);
+    const TetMesh fine = refine(coarse);
+    const RegionSettings clamp{"clamp", BoxShape{{-1, -1, -1}, {1e-6, 1, 1}}};
+    const RegionSettings near{"near", BoxShape{{-1, -1, -1}, {0.0500001, 1, 1}}};
+    const auto regions = resolve_regions({clamp, near}, coarse), wanted = resolve_regions({clamp, near}, fine);
+    const auto found = refine(regions, coarse, fine);
+    for (const std::string name : {"clamp", "near"}) {
+      EXPECT_EQ(found.at(name).nodes, wanted.at(name).nodes) << name;
+      EXPECT_EQ(found.at(name).facets, wanted.at(name).facets) << name;
+      EXPECT_EQ(found.at(name).tets, wanted.at(name).tets) << name;
+    }
   }
 }
 

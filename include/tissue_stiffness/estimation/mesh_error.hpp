@@ -13,13 +13,17 @@
 
 namespace tissue_stiffness {
 
+/// The same body with every tetrahedron cut into eight and flat facets bent to the smooth surface they stand for. Nodes keep
+/// their numbers.
+TetMesh finer(const TetMesh& mesh);
+
 /// What the mesh does to the parameters. The model runs once more on a mesh with every tetrahedron cut into eight and flat
 /// facets bent to the smooth surface they stand for; fitted to that run, the estimator's own mesh would be off by `shift`.
 /// Linear models of moderate size only: `why_not` says what stands against it.
 class MeshError {
  public:
   /// Empty when the study can be made.
-  static std::string why_not(const ModelSettings& settings, const TetMesh& mesh);
+  static std::string why_not(const TetMesh& mesh);
 
   /// Throws as Model does.
   MeshError(const ModelSettings& settings, const TetMesh& mesh);

@@ -34,6 +34,8 @@ class Model {
  public:
   /// Throws InputError for effects or regions that do not fit.
   Model(const ModelSettings& settings, const TetMesh& mesh);
+  /// With the regions' parts of the mesh as given, whatever shapes the settings have for them.
+  Model(const ModelSettings& settings, const TetMesh& mesh, std::map<std::string, Region> regions);
   Model(const Model&) = delete;
   Model& operator=(const Model&) = delete;
 

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <map>
+#include <string>
+
 #include "tissue_stiffness/types/tet_mesh.hpp"
 
 namespace tissue_stiffness {
@@ -8,5 +11,10 @@ namespace tissue_stiffness {
 /// octahedron). Corners keep their numbers; a 10-node mesh's mid-edge nodes become corners at the same numbers, curved
 /// edges stay, and new mid-edge nodes lie on the quadratic geometry.
 TetMesh refine(const TetMesh& mesh);
+
+/// The same parts of the body on refine(mesh): the children of a region's facets and tetrahedra, whatever shape the region
+/// was cut out with.
+std::map<std::string, Region> refine(const std::map<std::string, Region>& regions, const TetMesh& mesh,
+                                     const TetMesh& refined);
 
 }  // namespace tissue_stiffness
