@@ -18,12 +18,25 @@ struct Start {
   Eigen::VectorXd w, spread;
 };
 
-// The base's fit, and the proposal's prior; with the tangent's amplitude in its place where that is allowed.
-std::vector<Start> starts(const Study& study, const Study& base, const Eigen::VectorXd& w, const Ranked& candidate) {
+// The tangent's amplitude of an added parameter; NaN where it has none. Amplitudes' components come in order.
+double tangent_value(const FreeParameter& parameter, const std::vector<Addition>& additions,
+                     std::vector<Eigen::Index>& taken) {
+  for (std::size_t k = 0; k < additions.size(); ++k) {
+    const Candidate& way = *additions[k].way;
+    if (parameter.name.rfind(way.effect, 0) != 0) continue;
+    if (parameter.name.find("." + way.proposal.amplitude) == std::string::npos) continue;
+    if (taken[k] < additions[k].amplitude.size()) return additions[k].amplitude[taken[k]++];
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+// The base's fit, and the proposals' priors; with the tangents' amplitudes in their place where that is allowed.
+std::vector<Start> starts(const Study& study, const Study& base, const Eigen::VectorXd& w,
+                          const std::vector<Addition>& additions) {
   const auto& free = study.model().free_parameters();
   Start prior{study.model().prior_mean(), kAddedSpread * study.model().prior_std()};
   Start tangent = prior;
-  Eigen::Index component = 0;
+  std::vector<Eigen::Index> taken(additions.size(), 0);
   bool differs = false;
   for (std::size_t i = 0; i < free.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
@@ -31,9 +44,8 @@ std::vector<Start> starts(const Study& study, const Study& base, const Eigen::Ve
     if (known >= 0) {
       prior.w[k] = w[known];
       prior.spread[k] = kBaseSpread * study.model().prior_std()[k];
-    } else if (free[i].name.find("." + candidate.best->proposal.amplitude) != std::string::npos &&
-               component < candidate.score.amplitude.size()) {
-      const double value = std::clamp(candidate.score.amplitude[component++], free[i].lower, free[i].upper);
+    } else if (const double amplitude = tangent_value(free[i], additions, taken); std::isfinite(amplitude)) {
+      const double value = std::clamp(amplitude, free[i].lower, free[i].upper);
       const bool allowed = free[i].prior.kind != Quantity::Kind::log_normal || value > 0.0;
       tangent.w[k] = allowed ? free[i].to_coordinate(value) : prior.w[k];
       differs = differs || allowed;
@@ -46,11 +58,11 @@ std::vector<Start> starts(const Study& study, const Study& base, const Eigen::Ve
 }
 
 // "name: {key: value, ...}" with every estimated parameter's quantity replaced by its fit.
-std::string fitted_entry(const Study& study, const Study& base, const BatchFit& fit, const std::string& entry) {
-  std::string out = entry;
+std::string fitted_entry(const Study& study, const Study& base, const BatchFit& fit, const Candidate& way) {
+  std::string out = way.proposal.refine;
   for (std::size_t i = 0; i < study.model().free_parameters().size(); ++i) {
     const FreeParameter& p = study.model().free_parameters()[i];
-    if (base.index(p.name) >= 0) continue;
+    if (base.index(p.name) >= 0 || p.name.rfind(way.effect, 0) != 0) continue;
     const std::string key = p.name.substr(p.name.rfind('.') + 1);
     const auto k = static_cast<Eigen::Index>(i);
     const double width = kPriorWidth * std::sqrt(fit.covariance(k, k));
@@ -74,13 +86,13 @@ std::string fitted_entry(const Study& study, const Study& base, const BatchFit& 
 
 }  // namespace
 
-Refit refit(const Study& base, const Eigen::VectorXd& w, const Ranked& candidate) {
+Refit refit(const Study& base, const Eigen::VectorXd& w, const std::vector<Addition>& additions) {
   ModelSettings settings = base.model().settings();
-  add_effect(settings, candidate.best->proposal.refine);
+  for (const Addition& addition : additions) add_effect(settings, addition.way->proposal.refine);
   const Study study(settings, base.model().mesh(), base.recording());
   std::optional<BatchFit> best;
   std::string reason;
-  for (const Start& start : starts(study, base, w, candidate)) {
+  for (const Start& start : starts(study, base, w, additions)) {
     try {
       BatchFit fit = study.fit(start.w, start.spread, false);
       if (!best || fit.cost < best->cost) best = std::move(fit);
@@ -88,11 +100,13 @@ Refit refit(const Study& base, const Eigen::VectorXd& w, const Ranked& candidate
       reason = error.what();
     }
   }
-  if (!best) throw NumericalError(candidate.effect + " cannot be refitted: " + reason);
+  if (!best) throw NumericalError(additions.front().way->effect + " cannot be refitted: " + reason);
   const Study::Rows rows = study.rows(best->w);
   Refit out;
-  out.effect = candidate.effect;
-  out.entry = fitted_entry(study, base, *best, candidate.best->proposal.refine);
+  for (const Addition& addition : additions) {
+    out.effects.push_back(addition.way->effect);
+    out.entries.push_back(fitted_entry(study, base, *best, *addition.way));
+  }
   for (std::size_t i = 0; i < study.model().free_parameters().size(); ++i) {
     const FreeParameter& p = study.model().free_parameters()[i];
     out.parameters[p.name] = p.to_value(best->w[static_cast<Eigen::Index>(i)]);

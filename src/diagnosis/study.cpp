@@ -4,6 +4,7 @@
 
 #include "tissue_stiffness/estimation/compare.hpp"
 #include "tissue_stiffness/estimation/coordinate_scan.hpp"
+#include "tissue_stiffness/meshing/build_mesh.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -21,9 +22,13 @@ std::vector<Frame> Recording::training() const {
 }
 
 Study::Study(const ModelSettings& settings, const TetMesh& mesh, const Recording& recording, const BasisOptions& basis)
+    : Study(settings, mesh, resolve_regions(settings.regions, mesh), recording, basis) {}
+
+Study::Study(const ModelSettings& settings, const TetMesh& mesh, std::map<std::string, Region> regions,
+             const Recording& recording, const BasisOptions& basis)
     : recording_(recording),
       training_(recording.training()),
-      model_(settings, mesh),
+      model_(settings, mesh, std::move(regions)),
       operators_(make_observation_operators(model_)) {
   model_.set_first_stamp(recording.first_stamp);
   for (const LoadSample& sample : recording.loads) {
@@ -38,7 +43,8 @@ Study::Study(const ModelSettings& settings, const TetMesh& mesh, const Recording
 }
 
 FitProblem Study::problem(const std::vector<Frame>& frames) const {
-  return {model_, *forward_, operators_, frames, recording_.first_stamp + model_.settings().time.start};
+  return {
+      model_, *forward_, operators_, frames, recording_.first_stamp + model_.settings().time.start, recording_.checkpoint};
 }
 
 Study::Rows Study::rows(const Eigen::VectorXd& w) const {
@@ -49,6 +55,7 @@ Study::Rows Study::rows(const Eigen::VectorXd& w) const {
   Rows out;
   out.offsets.push_back(0);
   for (const Frame& frame : recording_.frames) {
+    recording_.checkpoint();
     run.advance(frame.time);
     predictions.push_back(run.predict(frame).central);
     out.offsets.push_back(out.offsets.back() + predictions.back().measured.size());

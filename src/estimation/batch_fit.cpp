@@ -18,6 +18,7 @@ void run(const FitProblem& problem, AnchoredFilter& filter, const Eigen::VectorX
   Ensemble ensemble(problem.model, problem.forward, problem.operators);
   ensemble.restart(filter.sigma_points(), problem.start);
   for (const Frame& frame : problem.frames) {
+    problem.checkpoint();
     ensemble.advance(frame.time);
     const Ensemble::Predicted p = ensemble.predict(frame);
     filter.update(p.central.measured, p.rows, p.central.sigma.cwiseAbs2(), row_weights(p.central));

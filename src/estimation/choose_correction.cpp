@@ -26,6 +26,7 @@ FreeFit free_fit(const FitProblem& problem, const Eigen::VectorXd& w) {
   const auto run = problem.forward.start(problem.model.theta(w), problem.start);
   FreeFit fit;
   for (const Frame& frame : problem.frames) {
+    problem.checkpoint();
     run->advance(frame.time);
     const Prediction p = predict_frame(problem.operators, frame, run->displacement());
     const Eigen::ArrayXd e = ((p.measured - p.predicted).cwiseQuotient(p.sigma)).array();

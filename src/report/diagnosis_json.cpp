@@ -33,6 +33,27 @@ json candidate_json(const MissingEffect& c) {
           {"confusable_with", twins}};
 }
 
+json numbers(const std::vector<double>& values) {
+  json out = json::array();
+  for (const double value : values) out.push_back(number(value));
+  return out;
+}
+
+json parts_json(const ErrorParts& parts) {
+  return {{"total", number(parts.total)},
+          {"noise", number(parts.noise)},
+          {"numerical", number(parts.numerical)},
+          {"structured", number(parts.structured)}};
+}
+
+json residual_json(const ResidualViews& r) {
+  return {
+      {"time", numbers(r.time)},           {"frame_rms", numbers(r.frame_rms)}, {"nodes", r.nodes},
+      {"node_rms", numbers(r.node_rms)},   {"amplitude", numbers(r.amplitude)}, {"amplitude_rms", numbers(r.amplitude_rms)},
+      {"frequency", numbers(r.frequency)}, {"power", numbers(r.power)},         {"phase", numbers(r.phase)},
+      {"phase_rms", numbers(r.phase_rms)}};
+}
+
 }  // namespace
 
 std::string diagnosis_json(const Diagnosis& d) {
@@ -50,6 +71,8 @@ std::string diagnosis_json(const Diagnosis& d) {
                      {"candidates", candidates},
                      {"where", d.where},
                      {"when", d.when},
+                     {"how_much", {{"metres", parts_json(d.metres)}, {"sigmas", parts_json(d.sigmas)}}},
+                     {"residual", residual_json(d.residual)},
                      {"steps", steps},
                      {"next_experiment", d.next_experiment},
                      {"final", {{"verdict", d.final_verdict}, {"effects", d.final_effects}}},

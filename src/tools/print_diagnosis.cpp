@@ -22,6 +22,8 @@ std::string line(const char* pattern, const std::string& name, double a, double 
 
 void print_diagnosis(const Diagnosis& d, std::ostream& out) {
   out << diagnosis_sentence(d) << "\nwhere         " << d.where << "\nwhen          " << d.when << "\n";
+  out << line("error         %s%.3f mm rms: noise %.3f, beyond noise %.3f, of the mesh %.3f\n", "", 1e3 * d.metres.total,
+              1e3 * d.metres.noise, 1e3 * d.metres.structured, 1e3 * d.metres.numerical);
   out << "candidate                 explains   held-out [mm]   log evidence          p\n";
   for (std::size_t i = 0; i < d.candidates.size() && i < kShown; ++i) {
     const MissingEffect& c = d.candidates[i];

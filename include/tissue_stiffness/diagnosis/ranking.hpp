@@ -20,10 +20,27 @@ struct Ranked {
 /// All effects that are proposed, most evidence first. `floor`: rms that the numerics may explain [sigma].
 std::vector<Ranked> rank(const Scorer& scorer, const std::vector<Candidate>& candidates, double floor);
 
-/// A fit of the base model with one proposal more.
+/// A way in which an effect may be missing, and how strongly as the tangents have it.
+struct Addition {
+  const Candidate* way = nullptr;
+  Eigen::VectorXd amplitude;
+};
+
+/// Two effects at once.
+struct RankedPair {
+  Addition first, second;
+  double evidence = 0.0;  ///< log Bayes factor of both
+  double gain = 0.0;      ///< beyond that of the better one alone
+};
+
+/// All pairs of effects, most evidence first. Every pair of the few best ways in which each
+/// effect may be missing is scored.
+std::vector<RankedPair> rank_pairs(const Scorer& scorer, const std::vector<Candidate>& candidates);
+
+/// A fit of the base model with one or two proposals more.
 struct Refit {
-  std::string effect;
-  std::string entry;                                 ///< for the model file: estimated parameters with their fit as prior
+  std::vector<std::string> effects;
+  std::vector<std::string> entries;                  ///< for the model file: estimated parameters with their fit as prior
   std::map<std::string, double> parameters;          ///< of the whole model, by name
   double train_rms = 0.0, held_out_rms = 0.0;        ///< [m]
   double train_sigmas = 0.0, held_out_sigmas = 0.0;  ///< the same over sigma
@@ -31,8 +48,8 @@ struct Refit {
   int added_parameters = 0;
 };
 
-/// Fits the training frames by full simulation, from the base's fit and the proposal's own start. Throws NumericalError
+/// Fits the training frames by full simulation, from the base's fit and the proposals' own starts. Throws NumericalError
 /// when no start can be run.
-Refit refit(const Study& base, const Eigen::VectorXd& w, const Ranked& candidate);
+Refit refit(const Study& base, const Eigen::VectorXd& w, const std::vector<Addition>& additions);
 
 }  // namespace tissue_stiffness

@@ -5,29 +5,20 @@
 #include <string>
 #include <vector>
 
+#include "tissue_stiffness/diagnosis/recording.hpp"
 #include "tissue_stiffness/estimation/batch_fit.hpp"
 #include "tissue_stiffness/forward/reduced_model.hpp"
-#include "tissue_stiffness/types/load_sample.hpp"
 
 namespace tissue_stiffness {
-
-/// A recording in memory: what a diagnosis runs again and again.
-struct Recording {
-  std::vector<Frame> frames;  ///< in order of time, none before the body's rest
-  std::vector<LoadSample> loads;
-  double first_stamp = 0.0;  ///< [s]
-
-  /// Blocks of frames are set aside, so that neither a fit nor its success is judged by what it saw: the third and the
-  /// sixth sixth of the recording.
-  std::vector<Frame> training() const;
-  bool held_out(std::size_t frame) const { return (6 * frame / frames.size()) % 3 == 2; }
-};
 
 /// One model against one recording: free runs and fits. Linear models in their reduced basis, others in full.
 class Study {
  public:
   /// Throws as Model does.
   Study(const ModelSettings& settings, const TetMesh& mesh, const Recording& recording, const BasisOptions& basis = {});
+  /// With the regions' parts of the mesh as given.
+  Study(const ModelSettings& settings, const TetMesh& mesh, std::map<std::string, Region> regions,
+        const Recording& recording, const BasisOptions& basis = {});
   Study(const Study&) = delete;
   Study& operator=(const Study&) = delete;
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -15,6 +16,8 @@ struct FitProblem {
   const std::vector<std::unique_ptr<ObservationOperator>>& operators;
   const std::vector<Frame>& frames;
   double start;  ///< [s]
+  /// Called before every frame; what it throws ends the fit.
+  std::function<void()> checkpoint = [] {};
 };
 
 /// Sum over rows of the square error of the free run, in sigmas, each row's growing slower beyond the robust limit.

@@ -32,12 +32,31 @@ struct DiagnosisStep {
   double train_rms = 0.0, held_out_rms = 0.0, noise_floor = 0.0;  ///< [m]
 };
 
+/// How much of the free run's error is what, rms over rows [m], and the same over sigma.
+struct ErrorParts {
+  double total = 0.0, noise = 0.0;
+  double numerical = 0.0;   ///< what a finer mesh would change, of what the parameters cannot take up
+  double structured = 0.0;  ///< beyond noise: root of total^2 - noise^2
+};
+
+/// The free run's error seen from several sides, rms over sigma; 1 is noise.
+struct ResidualViews {
+  std::vector<double> time, frame_rms;           ///< [s] since the first stamp, one entry a frame
+  std::vector<int> nodes;                        ///< mesh nodes that were seen
+  std::vector<double> node_rms;                  ///< one a node
+  std::vector<double> amplitude, amplitude_rms;  ///< upper end of each fifth of the frames by motion [m]
+  std::vector<double> frequency, power;          ///< [Hz], share of the error; empty when frames differ in their rows
+  std::vector<double> phase, phase_rms;          ///< of the motion's strongest frequency [rad]; empty as above
+};
+
 /// Which physics a model misses. `verdict`: adequate, missing, numerics, unexplained.
 struct Diagnosis {
   std::string verdict;
   std::vector<std::string> set;  ///< the winner and what the data cannot tell from it
   std::vector<MissingEffect> candidates;
   std::string where, when;
+  ErrorParts metres, sigmas;
+  ResidualViews residual;  ///< of the given model
   std::vector<DiagnosisStep> steps;
   std::string next_experiment;
   std::string final_verdict;

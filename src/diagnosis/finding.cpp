@@ -1,0 +1,223 @@
+#include "tissue_stiffness/diagnosis/finding.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tissue_stiffness/types/error.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr std::size_t kRefits = 6;      // candidates that are simulated anew
+constexpr std::size_t kPairs = 3;       // and pairs
+constexpr double kRemainder = 0.25;     // of the mesh's error that a mesh twice as fine still has, or more
+constexpr double kTwin = 0.9;           // cosine above which two effects look alike
+constexpr double kSameEvidence = 5.0;   // log evidence within which refits are not told apart
+constexpr double kAdequate = 1.1;       // rms in sigmas up to which a residual may be noise
+constexpr double kExplains = 0.8;       // of the structured part: less is no explanation
+constexpr double kHeldOutGain = 0.995;  // of the held-out rms: what an accepted effect must fall below
+
+double rows_used(const Study::Rows& rows) {
+  return static_cast<double>((rows.used.array() > 0.0).count());
+}
+
+// Evidence of a refit after Schwarz, errors counted as large as the best refit leaves them.
+double evidence(const Refit& refit, double rows, double variance) {
+  return -0.5 * refit.cost / variance - 0.5 * refit.added_parameters * std::log(rows);
+}
+
+/// One look, step by step.
+class Look {
+ public:
+  Look(const Fitted& base, const DiagnosisOptions& options)
+      : base_(base), options_(options), rows_(rows_used(base.rows)), cost_(base.rows.error.squaredNorm()) {
+    options.progress("tangents of the library");
+    const Eigen::VectorXd std = base.fit.covariance.diagonal().cwiseSqrt();
+    candidates_ = find_candidates(*base.study, base.fit.w, base.rows);
+    Eigen::MatrixXd known = base_tangents(*base.study, base.fit.w, std, base.rows);
+    options.progress("what a finer mesh would change");
+    const Eigen::VectorXd mesh = mesh_residual(*base.study, base.fit.w, base.rows);
+    const Scorer bare(base.rows.error, known, base.rows.offsets, 1.0);
+    floor_ = bare.remaining(mesh);
+    mesh_score_ = bare.score(Tangent{mesh, Eigen::VectorXd::Ones(1)});
+    // An effect has to explain what the mesh does not.
+    known.conservativeResize(Eigen::NoChange, known.cols() + 1);
+    known.rightCols<1>() = mesh;
+    scorer_ = std::make_unique<Scorer>(base.rows.error, known, base.rows.offsets, 1.0);
+    ranked_ = rank(*scorer_, candidates_, kRemainder * floor_);
+  }
+
+  Finding find(const std::vector<std::string>& wanted) {
+    require_proposed(wanted);
+    refit_singles(wanted);
+    Finding out;
+    out.verdict = judge();
+    if (out.verdict == "unexplained" && wanted.empty()) {
+      refit_pairs();
+      out.verdict = judge();
+    }
+    out.floor = floor_;
+    if (out.verdict == "missing" || out.verdict == "unexplained") out.set = set();
+    describe_all(out.effects);
+    out.refits = refits_;
+    return out;
+  }
+
+ private:
+  void require_proposed(const std::vector<std::string>& wanted) const;
+  void refit_singles(const std::vector<std::string>& wanted);
+  void refit_pairs();
+  void add_refit(const std::vector<Addition>& additions);
+  void sort_refits();
+  std::string judge() const;
+  std::vector<std::string> set() const;
+  void describe_all(std::vector<MissingEffect>& out) const;
+  MissingEffect describe(const Ranked& r) const;
+  double structured() const { return std::max(0.0, cost_ - rows_); }
+
+  const Fitted& base_;
+  const DiagnosisOptions& options_;
+  const double rows_, cost_;
+  std::vector<Candidate> candidates_;
+  std::unique_ptr<Scorer> scorer_;
+  double floor_ = 0.0;
+  Score mesh_score_;
+  std::vector<Ranked> ranked_;
+  std::vector<Refit> refits_;
+};
+
+void Look::require_proposed(const std::vector<std::string>& wanted) const {
+  for (const std::string& effect : wanted) {
+    if (std::none_of(ranked_.begin(), ranked_.end(), [&](const Ranked& r) { return r.effect == effect; })) {
+      throw InputError("--add", effect, "an effect that the library proposes for this model");
+    }
+  }
+}
+
+void Look::add_refit(const std::vector<Addition>& additions) {
+  std::string names;
+  for (const Addition& a : additions) names += (names.empty() ? "" : " and ") + a.way->effect;
+  options_.progress("refit with " + names);
+  try {
+    refits_.push_back(refit(*base_.study, base_.fit.w, additions));
+  } catch (const NumericalError&) {
+    base_.study->recording().checkpoint();  // a study that was ended; else a model that cannot be run explains nothing
+  }
+}
+
+void Look::refit_singles(const std::vector<std::string>& wanted) {
+  for (const Ranked& r : ranked_) {
+    const bool asked = std::find(wanted.begin(), wanted.end(), r.effect) != wanted.end();
+    if (!asked && (!r.declared || refits_.size() >= kRefits || !wanted.empty())) continue;
+    add_refit({{r.best, r.score.amplitude}});
+  }
+  sort_refits();
+}
+
+void Look::refit_pairs() {
+  std::size_t done = 0;
+  for (const RankedPair& pair : rank_pairs(*scorer_, candidates_)) {
+    if (done++ == kPairs) break;
+    if (pair.gain < kSameEvidence) continue;
+    for (const Addition* member : {&pair.first, &pair.second}) {  // a pair has to beat its better half
+      const bool known = std::any_of(refits_.begin(), refits_.end(),
+                                     [&](const Refit& r) { return r.effects.front() == member->way->effect; });
+      if (!known) add_refit({*member});
+    }
+    add_refit({pair.first, pair.second});
+  }
+  sort_refits();
+}
+
+void Look::sort_refits() {
+  double lowest = cost_;
+  for (const Refit& r : refits_) lowest = std::min(lowest, r.cost);
+  const double variance = std::max(1.0, lowest / rows_);
+  std::stable_sort(refits_.begin(), refits_.end(), [&](const Refit& a, const Refit& b) {
+    return evidence(a, rows_, variance) > evidence(b, rows_, variance);
+  });
+}
+
+std::string Look::judge() const {
+  const bool noise = cost_ < kAdequate * kAdequate * rows_;
+  const double by_mesh = mesh_score_.explained * cost_;
+  const bool found = !refits_.empty() && proven(base_, refits_.front());
+  if (!found) {
+    if (noise) return "adequate";
+    return by_mesh > kExplains * structured() ? "numerics" : "unexplained";
+  }
+  const double explained = cost_ - refits_.front().cost;
+  if (structured() > 0.0 && explained < kExplains * structured()) {
+    return by_mesh > explained ? "numerics" : "unexplained";
+  }
+  return by_mesh > explained ? "numerics" : "missing";
+}
+
+std::vector<std::string> Look::set() const {
+  std::vector<std::string> set;
+  if (refits_.empty()) return set;
+  const double variance = std::max(1.0, refits_.front().cost / rows_);
+  const double best = evidence(refits_.front(), rows_, variance);
+  for (const Refit& r : refits_) {
+    const bool larger = r.effects.size() > refits_.front().effects.size();
+    if (larger || best - evidence(r, rows_, variance) >= kSameEvidence) continue;
+    for (const std::string& effect : r.effects) {
+      if (std::find(set.begin(), set.end(), effect) == set.end()) set.push_back(effect);
+    }
+  }
+  return set;
+}
+
+MissingEffect Look::describe(const Ranked& r) const {
+  MissingEffect out;
+  out.effect = r.effect;
+  out.entry = r.best->proposal.yaml;
+  out.log_bayes_factor = r.evidence;
+  out.p_value = r.score.p_value;
+  out.size = r.score.size;
+  out.explained = r.score.explained;
+  for (Eigen::Index i = 0; i < r.score.amplitude.size(); ++i) {
+    const std::string suffix = r.score.amplitude.size() > 1 ? std::string("_") + "xyz"[i] : "";
+    out.parameters[r.effect + "." + r.best->proposal.amplitude + suffix] = r.score.amplitude[i];
+  }
+  out.held_out_rms_before = rms_error(base_.rows, base_.study->recording(), true);
+  for (const Refit& refit : refits_) {
+    const auto at = std::find(refit.effects.begin(), refit.effects.end(), r.effect);
+    if (at == refit.effects.end()) continue;
+    out.parameters = refit.parameters;
+    out.held_out_rms_after = refit.held_out_rms;
+    out.explained = 1.0 - refit.cost / cost_;
+    out.entry = refit.entries[static_cast<std::size_t>(at - refit.effects.begin())];
+    break;  // the best of its refits
+  }
+  for (const Ranked& other : ranked_) {
+    if (other.effect == r.effect) continue;
+    const double cosine = r.score.cosine_with(other.score);
+    if (cosine > kTwin) out.confusable_with.push_back({other.effect, cosine});
+  }
+  return out;
+}
+
+// Refitted ones first, in the order of their refits; then the others, by the tangents' evidence.
+void Look::describe_all(std::vector<MissingEffect>& out) const {
+  std::vector<std::string> order;
+  for (const Refit& refit : refits_) order.insert(order.end(), refit.effects.begin(), refit.effects.end());
+  for (const Ranked& r : ranked_) order.push_back(r.effect);
+  for (const std::string& effect : order) {
+    if (std::any_of(out.begin(), out.end(), [&](const MissingEffect& known) { return known.effect == effect; })) continue;
+    out.push_back(
+        describe(*std::find_if(ranked_.begin(), ranked_.end(), [&](const Ranked& r) { return r.effect == effect; })));
+  }
+}
+
+}  // namespace
+
+bool proven(const Fitted& base, const Refit& refit) {
+  return refit.held_out_sigmas < kHeldOutGain * rms_sigmas(base.rows, base.study->recording(), true);
+}
+
+Finding look(const Fitted& base, const std::vector<std::string>& wanted, const DiagnosisOptions& options) {
+  return Look(base, options).find(wanted);
+}
+
+}  // namespace tissue_stiffness
