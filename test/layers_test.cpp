@@ -33,8 +33,8 @@ const std::map<std::string, std::set<std::string>> kAllowed = [] {
   add("estimation", {"forward", "filter"});
   add("diagnosis", {"estimation"});
   add("report", {"settings"});
-  add("nodes", {"estimation", "segmentation", "report"});
-  add("tools", {"nodes", "diagnosis"});
+  add("nodes", {"diagnosis", "segmentation", "report"});
+  add("tools", {"nodes"});
   return allowed;
 }();
 

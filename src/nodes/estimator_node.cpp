@@ -22,7 +22,8 @@ std::string shown(const Estimate& estimate) {
 }
 
 NodeSettings read_settings(const ros::NodeHandle& private_node) {
-  return read_node_settings(private_node, {"model_frame", "load_timeout", "transform_timeout", "queue_size"});
+  return read_node_settings(private_node, {"model_frame", "load_timeout", "transform_timeout", "queue_size",
+                                           "diagnosis_period", "diagnosis_window"});
 }
 
 }  // namespace
@@ -37,7 +38,17 @@ EstimatorNode::EstimatorNode(ros::NodeHandle node, const NodeSettings& settings)
       poses_(settings.own.text_or("model_frame", "model"), settings.own.number_or("transform_timeout", 0.1, 0, 60, "s")),
       queue_(std::chrono::duration<double>(settings.own.number_or("load_timeout", 0.1, 0, 60, "s")), queue_size_),
       inputs_(node, settings_, poses_, queue_, diagnostics_),
-      outputs_(node, poses_.model_frame()) {
+      outputs_(node, poses_.model_frame()),
+      running_(settings_) {
+  const ModelCheck::Options check{settings.own.number_or("diagnosis_period", 10, 0, 1e6, "s"),
+                                  settings.own.number_or("diagnosis_window", 20, 1, 1e5, "s")};
+  services_ = std::make_unique<ModelServices>(node, poses_.model_frame(), check, [this](const ModelSettings& changed) {
+    {
+      const std::lock_guard<std::mutex> lock(changes_mutex_);
+      model_ = changed;
+    }
+    queue_.wake();
+  });
   if (settings_.mesh.source != MeshSettings::Source::file) inputs_.listen(queue_size_);
   reset_service_ = node.advertiseService("reset", &EstimatorNode::on_reset, this);
   mesh_subscriber_ = node.subscribe("mesh", 1, &EstimatorNode::on_mesh, this);
@@ -47,7 +58,7 @@ EstimatorNode::EstimatorNode(ros::NodeHandle node, const NodeSettings& settings)
 
 EstimatorNode::~EstimatorNode() {
   {
-    const std::lock_guard<std::mutex> lock(mesh_mutex_);
+    const std::lock_guard<std::mutex> lock(changes_mutex_);
     stopped_ = true;
   }
   mesh_arrived_.notify_all();
@@ -58,7 +69,7 @@ EstimatorNode::~EstimatorNode() {
 void EstimatorNode::on_mesh(const TetMeshConstPtr& message) {
   try {
     TetMesh mesh = to_mesh(*message, "mesh");
-    const std::lock_guard<std::mutex> lock(mesh_mutex_);
+    const std::lock_guard<std::mutex> lock(changes_mutex_);
     mesh_ = std::move(mesh);
     mesh_arrived_.notify_all();
   } catch (const InputError& error) {
@@ -94,10 +105,7 @@ void EstimatorNode::work() {
   build(*first);
   inputs_.listen(queue_size_);
   while (const auto work = queue_.take()) {
-    if (const auto mesh = new_mesh()) {
-      build(*mesh);
-      queue_.restart();
-    } else {
+    if (take_changes()) {
       diagnostics_.set("frames waiting", std::to_string(queue_.waiting() + 1));  // this one included
       process(*work);
       diagnostics_.set("frames waiting", std::to_string(queue_.waiting()));
@@ -106,23 +114,56 @@ void EstimatorNode::work() {
 }
 
 std::optional<TetMesh> EstimatorNode::wait_for_mesh() {
-  std::unique_lock<std::mutex> lock(mesh_mutex_);
+  std::unique_lock<std::mutex> lock(changes_mutex_);
   mesh_arrived_.wait(lock, [this] { return stopped_ || mesh_; });
   return stopped_ ? std::nullopt : std::exchange(mesh_, std::nullopt);
 }
 
-std::optional<TetMesh> EstimatorNode::new_mesh() {
-  const std::lock_guard<std::mutex> lock(mesh_mutex_);
-  return std::exchange(mesh_, std::nullopt);
+bool EstimatorNode::take_changes() {
+  std::optional<TetMesh> mesh;
+  std::optional<ModelSettings> model;
+  {
+    const std::lock_guard<std::mutex> lock(changes_mutex_);
+    mesh = std::exchange(mesh_, std::nullopt);
+    model = std::exchange(model_, std::nullopt);
+  }
+  if (model) running_ = *model;
+  if (mesh) {
+    build(*mesh);
+    queue_.restart();
+    return false;
+  }
+  if (model) {
+    build(TetMesh(estimator_->mesh()));
+    run_again();
+  }
+  return true;
 }
 
 void EstimatorNode::build(const TetMesh& mesh) {
-  estimator_ = std::make_unique<Estimator>(settings_, mesh);
+  estimator_ = std::make_unique<Estimator>(running_, mesh);
   estimator_->work_in_background();
+  services_->start(running_, mesh);
   inputs_.set_vertex_count(mesh.corner_count);
-  outputs_.prepare(settings_, mesh);
+  outputs_.prepare(running_, mesh);
   for (const std::string& line : estimator_->description()) ROS_INFO("%s", line.c_str());
   diagnostics_.state(DiagnosticStatus::OK, to_string(EstimateState::no_data));
+}
+
+// A changed model goes through the kept frames of this run, so that what was measured is not lost.
+void EstimatorNode::run_again() {
+  const Recording recording = services_->check().recording();
+  estimator_->set_first_stamp(recording.first_stamp);
+  for (const LoadSample& load : recording.loads) estimator_->add_load(load);
+  StepResult result;
+  const Frame* last = nullptr;
+  for (const Frame& frame : recording.frames) {
+    result = estimator_->step(frame);
+    if (result.used) last = &frame;
+  }
+  if (last == nullptr) return;
+  report(result);
+  outputs_.publish(*estimator_, result, *last, ros::Time(last->time));
 }
 
 void EstimatorNode::start_lap(const ros::Time& first_stamp) {
@@ -134,6 +175,7 @@ void EstimatorNode::start_lap(const ros::Time& first_stamp) {
   }
   estimator_->reset();
   estimator_->set_first_stamp(first_stamp.toSec());
+  services_->check().start_lap(first_stamp.toSec());
 }
 
 void EstimatorNode::process(const FrameQueue::Work& work) {
@@ -145,14 +187,21 @@ void EstimatorNode::process(const FrameQueue::Work& work) {
       diagnostics_.bad_message(error.what());
     }
   };
-  for (const auto& load : work.loads) left_out([&] { estimator_->add_load(load()); });
+  for (const auto& load : work.loads)
+    left_out([&] {
+      const LoadSample sample = load();
+      estimator_->add_load(sample);
+      services_->check().add(sample);
+    });
   Frame frame;
   frame.time = work.stamp.toSec();
   for (const auto& make : work.observations) left_out([&] { frame.observations.push_back(make()); });
   if (frame.observations.empty()) return;
   const StepResult result = estimator_->step(frame);
   report(result);
-  if (result.used) outputs_.publish(*estimator_, result, frame, work.stamp);
+  if (!result.used) return;
+  services_->check().add(frame);
+  outputs_.publish(*estimator_, result, frame, work.stamp);
 }
 
 void EstimatorNode::report(const StepResult& result) {

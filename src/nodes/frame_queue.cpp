@@ -73,6 +73,7 @@ bool FrameQueue::complete(const Place& frame) const {
 std::optional<FrameQueue::Work> FrameQueue::take() {
   std::unique_lock<std::mutex> lock(mutex_);
   while (!stopped_) {
+    if (std::exchange(woken_, false)) return Work();
     if (frames_.empty()) {
       changed_.wait(lock);
       continue;
@@ -120,6 +121,12 @@ void FrameQueue::restart() {
   loads_.clear();
   for (auto& [name, topic] : topics_) topic.seen = false;
   ++newest_lap_;
+}
+
+void FrameQueue::wake() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  woken_ = true;
+  changed_.notify_all();
 }
 
 void FrameQueue::stop() {

@@ -112,6 +112,17 @@ void add_effect(ModelSettings& model, const std::string& entry) {
   model.effects.push_back(std::move(effect));
 }
 
+void remove_effect(ModelSettings& model, const std::string& name) {
+  const auto last = std::find_if(model.effects.rbegin(), model.effects.rend(),
+                                 [&](const EffectSettings& effect) { return effect.name == name; });
+  if (last == model.effects.rend()) {
+    std::string names;
+    for (const EffectSettings& effect : model.effects) names += (names.empty() ? "" : ", ") + effect.name;
+    throw InputError("effect", name, "one of the model's: " + names);
+  }
+  model.effects.erase(std::next(last).base());
+}
+
 ModelSettings load_model(const std::string& file) {
   const std::size_t slash = file.find_last_of('/');
   return read_model(load_yaml(file), slash == std::string::npos ? "." : file.substr(0, slash + 1));

@@ -13,6 +13,7 @@
 #include "tissue_stiffness/estimation/estimator.hpp"
 #include "tissue_stiffness/nodes/estimator_inputs.hpp"
 #include "tissue_stiffness/nodes/estimator_outputs.hpp"
+#include "tissue_stiffness/nodes/model_services.hpp"
 #include "tissue_stiffness/nodes/ros_settings.hpp"
 
 namespace tissue_stiffness {
@@ -24,8 +25,11 @@ namespace tissue_stiffness {
 /// When stamps jump back (a bag that loops, a simulated clock that is reset) the estimator starts from the prior again and
 /// `previous_estimate` of /diagnostics keeps what the run before had found.
 ///
+/// Beside the frames it looks for what the model misses, and takes effects in and out of the running model: ModelServices.
+///
 /// Private parameters: `model` (a file) or the model's keys; `model_frame` ("model"), `load_timeout` (0.1 s: how long a
-/// frame waits for the loads and other sensors up to its stamp), `transform_timeout` (0.1 s), `queue_size` (100 frames).
+/// frame waits for the loads and other sensors up to its stamp), `transform_timeout` (0.1 s), `queue_size` (100 frames),
+/// `diagnosis_period` (10 s; 0: on request only), `diagnosis_window` (20 s of frames that a check sees).
 class EstimatorNode {
  public:
   EstimatorNode(ros::NodeHandle node, const ros::NodeHandle& private_node);
@@ -42,29 +46,34 @@ class EstimatorNode {
   void run();
   void work();
   std::optional<TetMesh> wait_for_mesh();
-  std::optional<TetMesh> new_mesh();
+  /// What has to happen before the next frame: a mesh that came, a model that was changed.
+  bool take_changes();
   void build(const TetMesh& mesh);
+  void run_again();
   void start_lap(const ros::Time& first_stamp);
   void process(const FrameQueue::Work& work);
   void report(const StepResult& result);
 
-  ModelSettings settings_;
+  const ModelSettings settings_;  ///< as given
   std::uint32_t queue_size_;
   Diagnostics diagnostics_;
   SensorPoses poses_;
   FrameQueue queue_;
   EstimatorInputs inputs_;
   EstimatorOutputs outputs_;
-  std::unique_ptr<Estimator> estimator_;  ///< the worker's alone
+  ModelSettings running_;  ///< with what was added; the worker's alone, as the estimator
+  std::unique_ptr<Estimator> estimator_;
 
-  std::mutex mesh_mutex_;
+  std::mutex changes_mutex_;
   std::condition_variable mesh_arrived_;
   std::optional<TetMesh> mesh_;
+  std::optional<ModelSettings> model_;
   bool stopped_ = false;
 
   std::atomic<int> exit_code_{0};
   ros::Subscriber mesh_subscriber_;
   ros::ServiceServer reset_service_;
+  std::unique_ptr<ModelServices> services_;
   std::thread worker_;
 };
 

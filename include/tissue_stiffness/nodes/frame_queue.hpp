@@ -49,8 +49,10 @@ class FrameQueue {
   void add_observation(const std::string& topic, const ros::Time& stamp, MakeObservation make);
   void add_load(const std::string& topic, const ros::Time& stamp, MakeLoad make);
 
-  /// Waits for the next frame. Nothing after stop().
+  /// Waits for the next frame. Nothing after stop(); work without observations after wake().
   std::optional<Work> take();
+  /// Lets take() return although no frame is there.
+  void wake();
 
   /// Forgets what waits; the next message starts a new lap.
   void restart();
@@ -91,7 +93,7 @@ class FrameQueue {
   int newest_lap_ = 0;
   int taken_lap_ = -1;
   std::size_t dropped_ = 0;
-  bool stopped_ = false;
+  bool stopped_ = false, woken_ = false;
 };
 
 }  // namespace tissue_stiffness

@@ -104,6 +104,9 @@ ModelSettings read_model(const Value& root, const std::string& directory);
 /// Appends one entry of `effects`, as YAML: "viscous_damping: {beta: 0.01}". Throws InputError for what is no such entry.
 void add_effect(ModelSettings& model, const std::string& entry);
 
+/// Removes the last effect of that name. Throws InputError when there is none.
+void remove_effect(ModelSettings& model, const std::string& name);
+
 /// read_model of a YAML file; relative paths count from the file's folder.
 ModelSettings load_model(const std::string& file);
 

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <ros/callback_queue.h>
+#include <ros/node_handle.h>
+#include <ros/spinner.h>
+
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tissue_stiffness/AddEffect.h"
+#include "tissue_stiffness/ListEffects.h"
+#include "tissue_stiffness/RemoveEffect.h"
+#include "tissue_stiffness/nodes/messages.hpp"
+#include "tissue_stiffness/nodes/model_check.hpp"
+
+namespace tissue_stiffness {
+
+/// The running model as seen from outside: topic `diagnosis` (latched), services `diagnose`, `add_effect`, `remove_effect`,
+/// `list_effects`. They are served by a thread of their own, so that a long answer delays no frame.
+class ModelServices {
+ public:
+  /// Gets a changed model that fits the mesh; it is to run from now on.
+  using Change = std::function<void(const ModelSettings&)>;
+
+  ModelServices(const ros::NodeHandle& node, std::string model_frame, const ModelCheck::Options& options, Change change);
+  ~ModelServices();
+
+  ModelCheck& check() { return check_; }
+
+  /// From now on this model runs on this mesh.
+  void start(const ModelSettings& settings, const TetMesh& mesh);
+
+ private:
+  bool on_diagnose(Diagnose::Request&, Diagnose::Response& response);
+  bool on_add(AddEffect::Request& request, AddEffect::Response& response);
+  bool on_remove(RemoveEffect::Request& request, RemoveEffect::Response& response);
+  bool on_list(ListEffects::Request&, ListEffects::Response& response);
+  /// Checks what `edit` makes of the running model against the mesh, hands it on, gives the message.
+  std::string change_model(const std::function<std::string(ModelSettings&)>& edit);
+  std::string entry_of(const std::string& effect) const;
+  void publish(const Diagnosis& diagnosis, double stamp);
+
+  const std::string model_frame_;
+  const Change change_;
+  std::mutex mutex_;
+  std::optional<ModelSettings> settings_;
+  TetMesh mesh_;
+  std::vector<std::string> added_;
+
+  ros::CallbackQueue queue_;
+  ros::NodeHandle node_;
+  ros::Publisher publisher_;
+  ModelCheck check_;
+  std::vector<ros::ServiceServer> services_;
+  ros::AsyncSpinner spinner_;
+};
+
+}  // namespace tissue_stiffness

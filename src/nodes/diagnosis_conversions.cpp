@@ -1,0 +1,48 @@
+#include "tissue_stiffness/nodes/diagnosis_conversions.hpp"
+
+#include "tissue_stiffness/report/write_diagnosis.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+MissingEffectMessage to_message(const MissingEffect& effect) {
+  MissingEffectMessage out;
+  out.effect = effect.effect;
+  out.entry = effect.entry;
+  for (const auto& [name, value] : effect.parameters) {
+    out.parameter_names.push_back(name);
+    out.parameter_values.push_back(value);
+  }
+  out.log_bayes_factor = effect.log_bayes_factor;
+  out.p_value = effect.p_value;
+  out.explained = effect.explained;
+  out.held_out_rms_before = effect.held_out_rms_before;
+  out.held_out_rms_after = effect.held_out_rms_after;
+  for (const MissingEffect::Twin& twin : effect.confusable_with) {
+    out.confusable_with.push_back(twin.effect);
+    out.cosines.push_back(twin.cosine);
+  }
+  return out;
+}
+
+}  // namespace
+
+DiagnosisMessage to_message(const Diagnosis& diagnosis, const std_msgs::Header& header) {
+  DiagnosisMessage out;
+  out.header = header;
+  out.verdict = diagnosis.verdict;
+  out.summary = diagnosis_sentence(diagnosis);
+  out.set = diagnosis.set;
+  for (const MissingEffect& effect : diagnosis.candidates) out.candidates.push_back(to_message(effect));
+  out.where = diagnosis.where;
+  out.when = diagnosis.when;
+  out.next_experiment = diagnosis.next_experiment;
+  const DiagnosisStep& given = diagnosis.steps.front();
+  out.held_out_rms = given.held_out_rms;
+  out.train_rms = given.train_rms;
+  out.noise_floor = given.noise_floor;
+  out.seconds = diagnosis.seconds;
+  return out;
+}
+
+}  // namespace tissue_stiffness
