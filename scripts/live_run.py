@@ -19,7 +19,7 @@ def play(model, bag, output, time_limit, rate=1.0):
         os.remove(result)
     command = ['roslaunch', '-p', os.environ['ROS_MASTER_URI'].rsplit(':', 1)[1], 'tissue_stiffness', 'demo.launch',
                'model:=' + os.path.abspath(model), 'bag:=' + os.path.abspath(bag), 'rate:=%g' % rate,
-               'result:=' + os.path.abspath(result)]
+               'result:=' + os.path.abspath(result), 'improve:=false', 'diagnosis_period:=0']
     with open(log, 'w') as file:
         launch = subprocess.Popen(command, stdout=file, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL)
     try:

@@ -15,7 +15,9 @@ constexpr std::size_t kShown = 8;  // candidates in the table
 std::string line(const char* pattern, const std::string& name, double a, double b, double c, double d) {
   char text[200];
   std::snprintf(text, sizeof text, pattern, name.c_str(), a, b, c, d);
-  return text;
+  std::string out = text;
+  for (std::size_t at = out.find("nan"); at != std::string::npos; at = out.find("nan")) out.replace(at, 3, "  -");
+  return out;
 }
 
 }  // namespace

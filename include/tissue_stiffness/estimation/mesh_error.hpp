@@ -13,8 +13,8 @@
 
 namespace tissue_stiffness {
 
-/// The same body with every tetrahedron cut into eight and flat facets bent to the smooth surface they stand for. Nodes keep
-/// their numbers.
+/// The same body with every tetrahedron cut into eight and flat facets bent to the smooth surface they stand for.
+/// Nodes keep their numbers.
 TetMesh finer(const TetMesh& mesh);
 
 /// What the mesh does to the parameters. The model runs once more on a mesh with every tetrahedron cut into eight and flat

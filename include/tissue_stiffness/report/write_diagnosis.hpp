@@ -12,8 +12,8 @@ struct DiagnosisTexts {
   std::string model_text, next_model_text;     ///< the model files
 };
 
-/// `diagnosis.json`: verdict, set, candidates[], where, when, how_much, residual, steps[], next_experiment, final. A number that does not exist
-/// is null. Everything but `seconds` is the same for the same input.
+/// `diagnosis.json`: verdict, set, candidates[], where, when, how_much, residual, steps[], next_experiment, final. A number
+/// that does not exist is null. Everything but `seconds` is the same for the same input.
 std::string diagnosis_json(const Diagnosis& diagnosis);
 
 /// `report.html`: one page that needs no network and no script; light and dark.
