@@ -11,6 +11,7 @@ namespace {
 constexpr std::size_t kRefits = 6;      // candidates that are simulated anew
 constexpr std::size_t kPairs = 3;       // and pairs
 constexpr double kRemainder = 0.25;     // of the mesh's error that a mesh twice as fine still has, or more
+constexpr double kMeshFactor = 2.5;     // between the mesh's error and what a mesh twice as fine makes of it
 constexpr double kTwin = 0.9;           // cosine above which two effects look alike
 constexpr double kSameEvidence = 5.0;   // log evidence within which refits are not told apart
 constexpr double kAdequate = 1.1;       // rms in sigmas up to which a residual may be noise
@@ -69,6 +70,7 @@ class Look {
   void refit_pairs();
   void add_refit(const std::vector<Addition>& additions);
   void sort_refits();
+  bool numerical() const;
   std::string judge() const;
   std::vector<std::string> set() const;
   void describe_all(std::vector<MissingEffect>& out) const;
@@ -138,19 +140,20 @@ void Look::sort_refits() {
   });
 }
 
+// The mesh explains the error as far as it is known to: with an amplitude near one.
+bool Look::numerical() const {
+  const double amplitude = mesh_score_.amplitude.size() > 0 ? mesh_score_.amplitude[0] : 0.0;
+  return mesh_score_.explained * cost_ > kExplains * structured() && amplitude > 1.0 / kMeshFactor &&
+         amplitude < kMeshFactor;
+}
+
 std::string Look::judge() const {
-  const bool noise = cost_ < kAdequate * kAdequate * rows_;
-  const double by_mesh = mesh_score_.explained * cost_;
-  const bool found = !refits_.empty() && proven(base_, refits_.front());
-  if (!found) {
-    if (noise) return "adequate";
-    return by_mesh > kExplains * structured() ? "numerics" : "unexplained";
-  }
-  const double explained = cost_ - refits_.front().cost;
-  if (structured() > 0.0 && explained < kExplains * structured()) {
-    return by_mesh > explained ? "numerics" : "unexplained";
-  }
-  return by_mesh > explained ? "numerics" : "missing";
+  if (cost_ < kAdequate * kAdequate * rows_ && (refits_.empty() || !proven(base_, refits_.front()))) return "adequate";
+  if (numerical()) return "numerics";
+  if (refits_.empty() || !proven(base_, refits_.front())) return "unexplained";
+  const double left = refits_.front().cost - rows_;
+  const bool explains = left < (1.0 - kExplains) * structured() || left < floor_ * floor_ * rows_;
+  return explains ? "missing" : "unexplained";
 }
 
 std::vector<std::string> Look::set() const {

@@ -57,6 +57,14 @@ std::vector<Start> starts(const Study& study, const Study& base, const Eigen::Ve
   return differs ? std::vector<Start>{tangent, prior} : std::vector<Start>{prior};
 }
 
+// Where `key: {` begins among an entry's arguments; the effect's own name may end like a key.
+std::size_t find_quantity(const std::string& entry, const std::string& key) {
+  for (std::size_t at = entry.find(key + ": {"); at != std::string::npos; at = entry.find(key + ": {", at + 1)) {
+    if (at > 0 && (entry[at - 1] == ' ' || entry[at - 1] == '{')) return at;
+  }
+  return std::string::npos;
+}
+
 // "name: {key: value, ...}" with every estimated parameter's quantity replaced by its fit.
 std::string fitted_entry(const Study& study, const Study& base, const BatchFit& fit, const Candidate& way) {
   std::string out = way.proposal.refine;
@@ -68,7 +76,7 @@ std::string fitted_entry(const Study& study, const Study& base, const BatchFit& 
     const double width = kPriorWidth * std::sqrt(fit.covariance(k, k));
     const bool vector = key.size() > 2 && key.compare(key.size() - 2, 2, "_x") == 0 && k + 2 < fit.w.size();
     const std::string name = vector ? key.substr(0, key.size() - 2) : key;
-    const auto at = out.find(name + ": {");
+    const std::size_t at = find_quantity(out, name);
     if (at == std::string::npos) continue;  // second and third components are written with the first
     if (vector) {
       const Eigen::Vector3d mean = fit.w.segment<3>(k);

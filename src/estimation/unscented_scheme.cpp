@@ -13,6 +13,7 @@
 #include "tissue_stiffness/estimation/posterior.hpp"
 #include "tissue_stiffness/estimation/scheme.hpp"
 #include "tissue_stiffness/estimation/stopwatch.hpp"
+#include "tissue_stiffness/estimation/validity.hpp"
 #include "tissue_stiffness/filter/anchored_filter.hpp"
 
 namespace tissue_stiffness {
@@ -77,6 +78,7 @@ class UnscentedScheme : public Scheme {
     complete_ = true;
     last_revisit_ = last_correction_ = 0;
     last_scan_ = 1;
+    validity_.reset();
   }
 
  private:
@@ -248,6 +250,7 @@ class UnscentedScheme : public Scheme {
     const double doubt = kShiftDoubt * kShiftDoubt;
     estimate_ = summarise(model_->free_parameters(), w - shift, filter_.covariance() + doubt * shift * shift.transpose());
     estimate_.time = frame.time;
+    validity_.add(result.misfit);
     estimate_.state = state(result.misfit);
     result.estimate = estimate_;
   }
@@ -261,7 +264,7 @@ class UnscentedScheme : public Scheme {
       const double scale = positive ? std::abs(p.mean) : model_->free_parameters()[i].prior.spread;
       if (p.std > kConverged * scale) return EstimateState::converging;
     }
-    return EstimateState::converged;
+    return validity_.invalid() ? EstimateState::model_invalid : EstimateState::converged;
   }
 
   std::string why_no_mesh_study() const {
@@ -293,6 +296,7 @@ class UnscentedScheme : public Scheme {
 
   Ensemble ensemble_;
   AnchoredFilter filter_;
+  Validity validity_;
   std::unique_ptr<CorrectedRuns> corrected_;  ///< while the model lacks physics; the ensemble runs free beside it
   std::vector<Frame> frames_, waiting_;
   bool complete_ = true;  ///< every frame since the start is in frames_

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "../box_model.hpp"
 #include "verification/experiment.hpp"
@@ -62,6 +63,82 @@ TEST(Diagnose, AddsWhatItIsTold) {
   EXPECT_NEAR(d.steps.back().parameters.at("mass_damping.alpha"), 1.5, 0.15);
   options.add = {"pressure"};
   EXPECT_NE(refusal([&] { diagnose_bar(film({}, 1), options); }).find("--add"), std::string::npos);
+}
+
+TEST(Diagnose, NamesTwoEffectsThatAreMissingTogether) {
+  DiagnosisOptions options;
+  options.automatic = true;
+  const Diagnosis d =
+      diagnose_bar(film({"viscous_damping: {beta: 2.0e-3}", "added_mass: {region: tip, mass: 0.002}"}, 3), options);
+  const auto added = [&](const std::string& effect) {
+    return std::find(d.final_effects.begin(), d.final_effects.end(), effect) != d.final_effects.end();
+  };
+  EXPECT_TRUE(added("viscous_damping") || added("mass_damping")) << "twins where one mode rings";
+  EXPECT_TRUE(added("added_mass"));
+  EXPECT_EQ(d.final_verdict, "adequate");
+  EXPECT_NEAR(d.steps.back().parameters.at("elasticity.young_modulus") / kTruth, 1.0, 0.03);
+}
+
+// Filmed on a mesh three times as fine, seen at the coarse one's vertices.
+Recording film_finer(const ModelSettings& settings, const TetMesh& coarse) {
+  const TetMesh fine = bar_mesh(24, 6, 6);
+  const Experiment experiment(settings, fine, {kTruth});
+  Recording recording;
+  recording.frames = see_all(experiment, experiment.film(0.0, 0.02, 60), 0.1 * kNoise, 1);
+  for (Frame& frame : recording.frames) {
+    Observation& seen = frame.observations.front();
+    const Eigen::Matrix3Xd all = seen.points;
+    seen.points.resize(3, coarse.corner_count);
+    seen.ids.resize(coarse.corner_count);
+    for (int i = 0; i < coarse.corner_count; ++i) {
+      Eigen::Index nearest = 0;
+      (fine.nodes.colwise() - coarse.nodes.col(i)).leftCols(fine.corner_count).colwise().squaredNorm().minCoeff(&nearest);
+      seen.points.col(i) = all.col(nearest);
+      seen.ids[i] = i;
+    }
+  }
+  return recording;
+}
+
+TEST(Diagnose, TakesTheErrorOfACoarseMeshForNoEffect) {
+  ModelSettings settings = box_settings(bar("{prior: 20.0e3, factor: 3}"));
+  const TetMesh coarse = bar_mesh(8, 2, 2);
+  const Recording recording = film_finer(settings, coarse);
+  settings.mesh.discretisation_error = true;
+  const Diagnosis d = diagnose(settings, coarse, recording, {});
+  EXPECT_EQ(d.verdict, "numerics") << "noise of 0.01 mm under an error of the mesh of " << d.metres.numerical << " m";
+  EXPECT_TRUE(d.set.empty());
+  EXPECT_GT(d.sigmas.numerical, 1.0);
+}
+
+TEST(Diagnose, SplitsTheErrorAndLooksAtItFromAllSides) {
+  const Diagnosis d = diagnose_bar(film({"viscous_damping: {beta: 6.0e-3}"}, 4), {});
+  EXPECT_NEAR(d.metres.noise, kNoise, 1e-12);
+  EXPECT_NEAR(std::pow(d.metres.structured, 2) + std::pow(kNoise, 2), std::pow(d.metres.total, 2), 1e-14);
+  EXPECT_EQ(d.sigmas.numerical, 0.0);
+  const ResidualViews& r = d.residual;
+  ASSERT_EQ(r.time.size(), 60U);
+  double mean_square = 0.0;
+  for (const double rms : r.frame_rms) mean_square += rms * rms / 60.0;
+  EXPECT_NEAR(std::sqrt(mean_square), d.sigmas.total, 1e-6);
+  mean_square = 0.0;
+  for (const double rms : r.node_rms) mean_square += rms * rms / static_cast<double>(r.node_rms.size());
+  EXPECT_NEAR(std::sqrt(mean_square), d.sigmas.total, 1e-6);
+  double power = 0.0;
+  for (const double p : r.power) power += p;
+  EXPECT_NEAR(power, 1.0, 1e-12);
+  EXPECT_TRUE(std::is_sorted(r.amplitude.begin(), r.amplitude.end()));
+  EXPECT_EQ(r.amplitude.size(), r.amplitude_rms.size());
+  EXPECT_EQ(r.phase.size(), r.phase_rms.size());
+}
+
+TEST(Diagnose, EndsWhenItIsTold) {
+  Recording recording = film({"viscous_damping: {beta: 6.0e-3}"}, 5);
+  int runs = 0;
+  recording.checkpoint = [&] {
+    if (++runs > 2000) throw NumericalError("enough");
+  };
+  EXPECT_THROW(diagnose_bar(recording, {}), NumericalError);
 }
 
 TEST(Diagnose, RefusesARecordingTooShortToHoldAnythingOut) {

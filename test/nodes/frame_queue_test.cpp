@@ -155,6 +155,19 @@ TEST_F(FrameQueueTest, RestartForgetsWhatWaits) {
   EXPECT_NEAR((work->first_stamp - at(0.2)).toSec(), 0.0, 1e-9);
 }
 
+TEST_F(FrameQueueTest, WakeEndsTheWaitOnceAndLosesNothing) {
+  std::thread worker([this] {
+    const auto work = queue.take();
+    ASSERT_TRUE(work);
+    EXPECT_TRUE(work->observations.empty());
+    EXPECT_FALSE(work->new_lap);
+  });
+  queue.wake();
+  worker.join();
+  frame(0.0);
+  EXPECT_EQ(queue.take()->observations.size(), 1U);
+}
+
 TEST_F(FrameQueueTest, StopEndsTheWait) {
   std::thread worker([this] { EXPECT_FALSE(queue.take()); });
   queue.stop();

@@ -187,6 +187,28 @@ TEST(ModelSettings, RefusesWhatIsNotAModel) {
   EXPECT_THROW(load_model("no_such_file.yaml"), InputError);
 }
 
+TEST(ModelSettings, TakesEffectsInAndOut) {
+  ModelSettings model = read_model(
+      parse_yaml(
+          "mesh: {file: x.vtk}\neffects:\n- inertia: {density: 1000}\nobservations:\n- vertices: {topic: /v, noise: 1}\n",
+          "m.yaml"),
+      "");
+  add_effect(model, "mass_damping: {alpha: 1}");
+  add_effect(model, "mass_damping: {alpha: 2}");
+  EXPECT_EQ(model.effects.back().label, "mass_damping#2");
+  remove_effect(model, "mass_damping");
+  EXPECT_EQ(model.effects.size(), 2U);
+  EXPECT_EQ(model.effects.back().label, "mass_damping");
+  remove_effect(model, "mass_damping");
+  try {
+    remove_effect(model, "mass_damping");
+    FAIL() << "removed what is not there";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("mass_damping; allowed: one of the model's: inertia"), std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(ModelSettings, ReadsEveryExampleModel) {
   int count = 0;
   for (const std::string folder : {"/cases", "/recordings"}) {

@@ -1,0 +1,60 @@
+#include "tissue_stiffness/diagnosis/ranking.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr Eigen::Index kFrames = 60, kRowsEach = 20, kRows = kFrames * kRowsEach;
+
+Eigen::MatrixXd normal_numbers(Eigen::Index columns, unsigned seed) {
+  std::mt19937 engine(seed);
+  std::normal_distribution<double> normal;
+  return Eigen::MatrixXd::NullaryExpr(kRows, columns, [&] { return normal(engine); });
+}
+
+Candidate candidate(const std::string& effect, const Eigen::VectorXd& tangent) {
+  return {effect, {}, {tangent, Eigen::VectorXd::Ones(1)}};
+}
+
+Scorer scorer(const Eigen::VectorXd& residual) {
+  std::vector<Eigen::Index> offsets;
+  for (Eigen::Index t = 0; t <= kFrames; ++t) offsets.push_back(t * kRowsEach);
+  return {residual, Eigen::MatrixXd(kRows, 0), offsets, 1.0};
+}
+
+TEST(Rank, DeclaresWhatIsThereAndAboveTheFloor) {
+  const Eigen::MatrixXd x = normal_numbers(3, 1);
+  const Scorer s = scorer(normal_numbers(1, 2) + 0.5 * x.col(0));
+  const std::vector<Candidate> candidates{candidate("absent", x.col(1)), candidate("there", x.col(0)),
+                                          candidate("there", x.col(2))};
+  const std::vector<Ranked> ranked = rank(s, candidates, 0.0);
+  ASSERT_EQ(ranked.size(), 2U);
+  EXPECT_EQ(ranked.front().effect, "there");
+  EXPECT_EQ(ranked.front().best, &candidates[1]);
+  EXPECT_TRUE(ranked.front().declared);
+  EXPECT_FALSE(ranked.back().declared);
+  EXPECT_NEAR(ranked.front().score.amplitude[0], 0.5, 0.1);
+  EXPECT_FALSE(rank(s, candidates, 1.0).front().declared) << "0.5 sigma are below a floor of 1";
+}
+
+TEST(RankPairs, FindsTwoThatOnlyExplainTheErrorTogether) {
+  const Eigen::MatrixXd x = normal_numbers(6, 3);
+  // a and b nearly cancel, so that either alone sees little of the residual, and a decoy sees more.
+  const Eigen::VectorXd a = x.col(0), b = -x.col(0) + 0.3 * x.col(1);
+  const Eigen::VectorXd residual = normal_numbers(1, 4) + 3.0 * (a + b);
+  const std::vector<Candidate> candidates{candidate("decoy", x.col(1) + 2.0 * x.col(2)), candidate("a", a),
+                                          candidate("b", b), candidate("other", x.col(3)), candidate("b", x.col(4))};
+  const std::vector<RankedPair> pairs = rank_pairs(scorer(residual), candidates);
+  ASSERT_EQ(pairs.size(), 6U);
+  EXPECT_EQ(pairs.front().first.way->effect, "a");
+  EXPECT_EQ(pairs.front().second.way, &candidates[2]);
+  EXPECT_NEAR(pairs.front().first.amplitude[0], 3.0, 0.4);
+  EXPECT_NEAR(pairs.front().second.amplitude[0], 3.0, 0.4);
+  EXPECT_GT(pairs.front().gain, 5.0);
+}
+
+}  // namespace
+}  // namespace tissue_stiffness
