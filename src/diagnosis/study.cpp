@@ -40,6 +40,7 @@ Study::Study(const ModelSettings& settings, const TetMesh& mesh, std::map<std::s
   } else {
     forward_ = std::make_unique<ReducedModel>(model_, basis);
   }
+  forward_->focus(observed_nodes(operators_, recording.frames));
 }
 
 FitProblem Study::problem(const std::vector<Frame>& frames) const {
