@@ -24,6 +24,13 @@ bool ProposalContext::names(const std::string& effect, const std::string& region
   });
 }
 
+bool ProposalContext::estimates(const std::string& effect, const std::string& parameter) const {
+  const auto found = all(effect);
+  return std::any_of(found.begin(), found.end(), [&](const EffectSettings* entry) {
+    return entry->arguments.has(parameter) && entry->arguments.at(parameter).type() == Value::Type::map;
+  });
+}
+
 bool ProposalContext::observes(ObservationSettings::Kind kind) const {
   return std::any_of(settings.observations.begin(), settings.observations.end(),
                      [kind](const ObservationSettings& entry) { return entry.kind == kind; });

@@ -16,23 +16,26 @@ constexpr double kReplaced = 4.0;  // times the free run's misfit, beyond which 
 constexpr double kLevels[] = {0.3, 0.1, 0.03, 0.01};  // of the modal forces at work
 constexpr double kSearchLevel = 0.1;
 
-Eigen::VectorXd rest_prediction(const FitProblem& problem, const Frame& frame) {
-  return predict_frame(problem.operators, frame, Eigen::VectorXd::Zero(problem.model.fem().dof_count())).predicted;
+Eigen::VectorXd rest_prediction(const FitProblem& problem, const Frame& frame, const Eigen::VectorXd& theta) {
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(problem.model.fem().dof_count());
+  return predict_frame(problem.model, problem.operators, frame, theta, rest).predicted;
 }
 
 }  // namespace
 
 FreeFit free_fit(const FitProblem& problem, const Eigen::VectorXd& w) {
-  const auto run = problem.forward.start(problem.model.theta(w), problem.start);
+  const Eigen::VectorXd theta = problem.model.theta(w);
+  const double delay = problem.model.delay(theta);
+  const auto run = problem.forward.start(theta, problem.start);
   FreeFit fit;
   for (const Frame& frame : problem.frames) {
     problem.checkpoint();
-    run->advance(frame.time);
-    const Prediction p = predict_frame(problem.operators, frame, run->displacement());
+    run->advance(frame.time - delay);
+    const Prediction p = predict_frame(problem.model, problem.operators, frame, theta, run->displacement());
     const Eigen::ArrayXd e = ((p.measured - p.predicted).cwiseQuotient(p.sigma)).array();
     const Eigen::ArrayXd weights = row_weights(p).array();
     fit.cost += (weights > 0.0).select(weights * e.square(), 0.0).sum();
-    const Eigen::ArrayXd motion = ((p.measured - rest_prediction(problem, frame)).cwiseQuotient(p.sigma)).array();
+    const Eigen::ArrayXd motion = ((p.measured - rest_prediction(problem, frame, theta)).cwiseQuotient(p.sigma)).array();
     fit.motion += (weights > 0.0 && motion.isFinite()).select(weights * motion.square(), 0.0).sum();
     fit.rows += static_cast<double>((weights > 0.0).count());
   }

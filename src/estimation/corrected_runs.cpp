@@ -28,6 +28,7 @@ void CorrectedRuns::restart(const Eigen::MatrixXd& sigma_points, double start) {
   ensemble_.restart(sigma_points, start);
   correction_.restart();
   time_ = start;
+  theta_ = model_.theta(sigma_points.col(0));
   const int modes = mode_count(run(0));
   shapes_ = run(0).mode_shapes(modes);
   in_basis_ = run(0).modes_in_basis(modes);
@@ -45,7 +46,9 @@ Eigen::MatrixXd CorrectedRuns::sensitivity(const Frame& frame, const Prediction&
   for (Eigen::Index i = 0; i < shapes_.cols(); ++i) {
     const double largest = shapes_.col(i).cwiseAbs().maxCoeff();
     const double probe = kProbe * body_size(model_.mesh()) / std::max(largest, 1e-300);
-    h.col(i) = (predict_frame(operators_, frame, u + probe * shapes_.col(i)).predicted - central.predicted) / probe;
+    h.col(i) =
+        (predict_frame(model_, operators_, frame, theta_, u + probe * shapes_.col(i)).predicted - central.predicted) /
+        probe;
   }
   return h;
 }

@@ -29,15 +29,17 @@ void for_each_index(std::size_t count, const Act& act) {
 void Ensemble::restart(const Eigen::MatrixXd& sigma_points, double start) {
   trajectories_.clear();
   trajectories_.resize(static_cast<std::size_t>(sigma_points.cols()));
+  theta_.resize(trajectories_.size());
   for_each_index(trajectories_.size(), [&](std::size_t i) {
-    trajectories_[i] = forward_.start(model_.theta(sigma_points.col(static_cast<Eigen::Index>(i))), start);
+    theta_[i] = model_.theta(sigma_points.col(static_cast<Eigen::Index>(i)));
+    trajectories_[i] = forward_.start(theta_[i], start);
   });
   displacements_ = Eigen::MatrixXd::Zero(model_.fem().dof_count(), sigma_points.cols());
 }
 
 void Ensemble::advance(double time) {
   for_each_index(trajectories_.size(), [&](std::size_t i) {
-    trajectories_[i]->advance(time);
+    trajectories_[i]->advance(time - model_.delay(theta_[i]));
     displacements_.col(static_cast<Eigen::Index>(i)) = trajectories_[i]->displacement();
   });
 }
@@ -45,7 +47,7 @@ void Ensemble::advance(double time) {
 Ensemble::Predicted Ensemble::predict(const Frame& frame) const {
   std::vector<Prediction> predictions(trajectories_.size());
   for_each_index(predictions.size(), [&](std::size_t i) {
-    predictions[i] = predict_frame(operators_, frame, displacements_.col(static_cast<Eigen::Index>(i)));
+    predictions[i] = predict_frame(model_, operators_, frame, theta_[i], displacements_.col(static_cast<Eigen::Index>(i)));
   });
   Predicted out;
   out.rows.resize(predictions.front().predicted.size(), static_cast<Eigen::Index>(predictions.size()));
@@ -56,11 +58,18 @@ Ensemble::Predicted Ensemble::predict(const Frame& frame) const {
   return out;
 }
 
-Prediction predict_frame(const std::vector<std::unique_ptr<ObservationOperator>>& operators, const Frame& frame,
-                         const Eigen::VectorXd& displacement) {
+Prediction predict_frame(const Model& model, const std::vector<std::unique_ptr<ObservationOperator>>& operators,
+                         const Frame& frame, const Eigen::VectorXd& theta, const Eigen::VectorXd& displacement) {
+  const double since = frame.time - model.first_stamp() - model.settings().time.start;
+  const bool observes = model.observes();
+  const ObservedMotion seen =
+      observes ? model.observe(theta, since, displacement) : ObservedMotion{model.mesh(), since, {}};
   std::vector<Prediction> parts;
   for (const Observation& observation : frame.observations) {
-    parts.push_back(operators[static_cast<std::size_t>(observation.source)]->predict(observation, displacement));
+    const auto& sensor = *operators[static_cast<std::size_t>(observation.source)];
+    parts.push_back(sensor.predict(observation, observes ? seen.displacement : displacement));
+    const bool named = observation.kind == ObservationKind::vertices || observation.kind == ObservationKind::markers;
+    if (!named) parts.back().predicted.array() += seen.outward;
   }
   return concatenate(parts);
 }

@@ -53,10 +53,12 @@ Eigen::VectorXd MeshError::shift(const Question& q) {
   drive(q, s.fine);
   // Nodes of the coarse mesh keep their numbers in the finer one, whose run is seen through them.
   std::vector<Prediction> truth;
-  const auto run = s.fine_runs.start(s.fine.theta(q.w), q.start);
+  const Eigen::VectorXd theta = s.fine.theta(q.w);
+  const auto run = s.fine_runs.start(theta, q.start);
   for (const Frame& frame : q.frames) {
-    run->advance(frame.time);
-    truth.push_back(predict_frame(s.operators, frame, run->displacement().head(s.coarse.fem().dof_count())));
+    run->advance(frame.time - s.fine.delay(theta));
+    const Eigen::VectorXd u = run->displacement().head(s.coarse.fem().dof_count());
+    truth.push_back(predict_frame(s.coarse, s.operators, frame, theta, u));
   }
   AnchoredFilter filter(q.w, q.prior_std);
   Ensemble ensemble(s.coarse, s.coarse_runs, s.operators);

@@ -105,7 +105,7 @@ class PaperScheme : public Scheme {
       Eigen::MatrixXd rows;
       for (Eigen::Index i = 0; i < points.cols(); ++i) {
         const Eigen::VectorXd u = run(points.col(i)).displacement;
-        const Prediction p = predict_frame(operators_, frame, u);
+        const Prediction p = predict_frame(*model_, operators_, frame, model_->theta(points.col(i)), u);
         if (i == 0) rows.resize(p.predicted.size(), points.cols());
         rows.col(i) = p.predicted;
       }
@@ -115,7 +115,7 @@ class PaperScheme : public Scheme {
     const FilterUpdate innovation =
         filter_.update(rest.measured, outputs(filter_.sigma_points()), Noise::independent(rest.sigma));
     const Eigen::VectorXd u = run(filter_.mean()).displacement;
-    prediction_ = predict_frame(operators_, frame, u);
+    prediction_ = predict_frame(*model_, operators_, frame, model_->theta(filter_.mean()), u);
     displacement_ = Eigen::Map<const Eigen::Matrix3Xd>(u.data(), 3, u.size() / 3);
     result.used = true;
     result.misfit = compare(frame.time, prediction_, rest.predicted, model_->mesh().node_count());

@@ -199,6 +199,10 @@ double Model::stored_energy(const Eigen::VectorXd& theta, const Motion& at) cons
   return sum;
 }
 
+bool Model::observes() const {
+  return std::any_of(parts_.begin(), parts_.end(), [](const Part& part) { return part.effect->observes(); });
+}
+
 double Model::delay(const Eigen::VectorXd& theta) const {
   double sum = 0.0;
   for (const Part& part : parts_) {

@@ -55,6 +55,24 @@ Eigen::VectorXi followed_vertices(const Scene& scene, const SensorScene& sensor)
   return Eigen::Map<Eigen::VectorXi>(ids.data(), static_cast<Eigen::Index>(ids.size()));
 }
 
+/// The displacement with every surface node moved outward by what surface sensors see beside it.
+Eigen::VectorXd swollen(const ObservedMotion& motion) {
+  Eigen::VectorXd u = motion.displacement;
+  if (motion.outward == 0.0) return u;
+  const SurfaceTriangles triangles = split_facets(motion.mesh);
+  Eigen::Matrix3Xd normals = Eigen::Matrix3Xd::Zero(3, motion.mesh.node_count());
+  const auto place = [&](int node) -> Eigen::Vector3d { return motion.mesh.nodes.col(node) + u.segment<3>(3 * node); };
+  for (Eigen::Index t = 0; t < triangles.nodes.cols(); ++t) {
+    const Eigen::Vector3i n = triangles.nodes.col(t);
+    const Eigen::Vector3d area = (place(n[1]) - place(n[0])).cross(place(n[2]) - place(n[0]));
+    for (const int node : {n[0], n[1], n[2]}) normals.col(node) += area;
+  }
+  for (Eigen::Index i = 0; i < normals.cols(); ++i) {
+    if (!normals.col(i).isZero(0.0)) u.segment<3>(3 * i) += motion.outward * normals.col(i).normalized();
+  }
+  return u;
+}
+
 /// One sensor of the scene.
 class Sensor {
  public:
@@ -82,7 +100,9 @@ class Sensor {
     if (scene_.image) writer.write_pose(frame_, kFirstStamp, scene_.image->camera.model_from_sensor);
   }
 
-  void record(const Eigen::VectorXd& u, int frame, const ros::Time& stamp, RecordingWriter& writer) {
+  void record(const ObservedMotion& motion, int frame, const ros::Time& stamp, RecordingWriter& writer) {
+    const bool named = observation_.kind == Kind::vertices || observation_.kind == Kind::markers;
+    const Eigen::VectorXd u = named ? motion.displacement : swollen(motion);
     if (scene_.image) {
       const Eigen::Matrix3Xd x = model_.mesh().nodes + Eigen::Map<const Eigen::Matrix3Xd>(u.data(), 3, u.size() / 3);
       writer.write_image(observation_.topic, observation_.camera_info, frame_, stamp, scene_.image->camera,
@@ -191,16 +211,19 @@ SimulationSummary simulate_scene(const Scene& scene, const std::string& recordin
   for (const auto& sensor : sensors) sensor->start(writer);
   publish_loads(scene, writer);
   const FullModel forward(model, options);
-  const auto trajectory = forward.start(model.theta(Eigen::VectorXd(0)), kFirstStamp.toSec() + scene.model.time.start);
+  const Eigen::VectorXd theta = model.theta(Eigen::VectorXd(0));
+  const double start = kFirstStamp.toSec() + scene.model.time.start;
+  const auto trajectory = forward.start(theta, start);
   SimulationSummary summary;
   summary.nodes = model.mesh().node_count();
   const auto total = static_cast<int>(std::floor(scene.duration * scene.rate + 1e-9));
   double square = 0.0;
   for (int k = 0; k < total; ++k) {
     const ros::Time stamp = kFirstStamp + ros::Duration(k / scene.rate);
-    trajectory->advance(stamp.toSec());
+    trajectory->advance(stamp.toSec() - model.delay(theta));
     const Eigen::VectorXd u = trajectory->displacement();
-    for (const auto& sensor : sensors) sensor->record(u, k, stamp, writer);
+    const ObservedMotion seen = model.observe(theta, stamp.toSec() - start, u);
+    for (const auto& sensor : sensors) sensor->record(seen, k, stamp, writer);
     square += u.squaredNorm() / summary.nodes;
     const Eigen::Map<const Eigen::Matrix3Xd> moved(u.data(), 3, u.size() / 3);
     summary.motion_max = std::max(summary.motion_max, moved.colwise().norm().maxCoeff());

@@ -73,6 +73,10 @@ TEST(ManyEffects, TangentsOfTheReducedModelAreThoseOfTheFullOne) {
     previous = effect;
     const Eigen::VectorXd step = 0.02 * std[i] * Eigen::VectorXd::Unit(w.size(), i);
     const Eigen::MatrixXd a = run(reduced, model.theta(w + step)) - a0, b = run(full, model.theta(w + step)) - b0;
+    if (effect == "image_scale" || effect == "rigid_drift" || effect == "time_offset") {  // they leave the body alone
+      EXPECT_TRUE(a.isZero(0.0)) << name;
+      continue;
+    }
     const double error = (a - b).norm() / b.norm();
     std::printf("tangent of %s: %.1e off\n", name.c_str(), error);
     EXPECT_LT(error, 0.25) << name;

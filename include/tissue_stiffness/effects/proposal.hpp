@@ -28,6 +28,8 @@ struct ProposalContext {
   std::vector<const EffectSettings*> all(const std::string& effect) const;
   /// An effect of that name acts on that region.
   bool names(const std::string& effect, const std::string& region) const;
+  /// An effect of that name has that parameter estimated.
+  bool estimates(const std::string& effect, const std::string& parameter) const;
   Eigen::Vector3d low() const { return mesh.nodes.rowwise().minCoeff(); }
   Eigen::Vector3d high() const { return mesh.nodes.rowwise().maxCoeff(); }
   double size() const { return (high() - low()).norm(); }

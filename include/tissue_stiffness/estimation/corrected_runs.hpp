@@ -34,6 +34,7 @@ class CorrectedRuns {
   Ensemble ensemble_;
   StateCorrection correction_;
   double time_ = 0.0;
+  Eigen::VectorXd theta_;              ///< of the anchor
   Eigen::MatrixXd shapes_, in_basis_;  ///< of the anchor's modes
 };
 

@@ -40,12 +40,13 @@ class Ensemble {
   const Model& model_;
   const ForwardModel& forward_;
   const std::vector<std::unique_ptr<ObservationOperator>>& operators_;
+  std::vector<Eigen::VectorXd> theta_;  ///< of each sigma point
   std::vector<std::unique_ptr<Trajectory>> trajectories_;
   Eigen::MatrixXd displacements_;
 };
 
-/// A frame's observations against one displacement (3n).
-Prediction predict_frame(const std::vector<std::unique_ptr<ObservationOperator>>& operators, const Frame& frame,
-                         const Eigen::VectorXd& displacement);
+/// A frame's observations against one displacement (3n), with what the sensors at theta make of it.
+Prediction predict_frame(const Model& model, const std::vector<std::unique_ptr<ObservationOperator>>& operators,
+                         const Frame& frame, const Eigen::VectorXd& theta, const Eigen::VectorXd& displacement);
 
 }  // namespace tissue_stiffness

@@ -89,6 +89,8 @@ class Model {
   /// Elastic and contact energy [J].
   double stored_energy(const Eigen::VectorXd& theta, const Motion& motion) const;
 
+  /// Some effect is one of the observation.
+  bool observes() const;
   /// How late measurements are stamped [s], and what a sensor makes of the motion `since` seconds after the start.
   double delay(const Eigen::VectorXd& theta) const;
   ObservedMotion observe(const Eigen::VectorXd& theta, double since, const Eigen::VectorXd& displacement) const;

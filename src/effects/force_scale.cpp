@@ -1,0 +1,39 @@
+// Measured loads that are off by the same share, as from a sensor out of calibration.
+#include "tissue_stiffness/effects/registry.hpp"
+
+namespace tissue_stiffness::effects {
+namespace {
+
+class ForceScale : public Effect {
+ public:
+  void linear_terms(LinearTerms& out) const override {
+    out.load_factor.push_back([](const Parameters& p) { return 1.0 + p[0]; });
+  }
+};
+
+// Where a load is measured.
+std::vector<Proposal> propose(const ProposalContext& context) {
+  if (context.holds("force_scale") || !(context.holds("pressure") || context.holds("traction"))) return {};
+  if (context.estimates("pressure", "scale") || context.estimates("traction", "scale")) return {};
+  const std::string entry = "force_scale: {relative: " + normal(0.0, 0.1) + "}";
+  return {{entry, "relative", entry}};
+}
+
+}  // namespace
+
+EffectSpec force_scale_spec() {
+  EffectSpec spec;
+  spec.name = "force_scale";
+  spec.summary = "every measured load (pressure, traction) is off by the same share";
+  spec.formula = "(1 + r) f(t)";
+  spec.source = "systematic error of a load's sensor; E's twin where no other force acts";
+  spec.parameters = {{"relative", "r", "-", -10.0, 100.0, ParameterSpec::Default::required, 0.0, 0.0, 1}};
+  spec.proposals = propose;
+  return spec;
+}
+
+std::unique_ptr<Effect> make_force_scale(const Value&, const EffectContext&) {
+  return std::make_unique<ForceScale>();
+}
+
+}  // namespace tissue_stiffness::effects
