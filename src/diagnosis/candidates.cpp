@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -98,12 +99,13 @@ bool stays_linear(const Study& base, const Candidate& candidate) {
 
 }  // namespace
 
-std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd& w, const Study::Rows&) {
+std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd& w,
+                                       const std::vector<std::string>& ignore) {
   const ProposalContext context = context_of(base, w);
   std::vector<Candidate> all;
   std::vector<std::size_t> together, alone;
   for (const EffectSpec& spec : effect_specs()) {
-    if (!spec.proposals) continue;
+    if (!spec.proposals || std::find(ignore.begin(), ignore.end(), spec.name) != ignore.end()) continue;
     bool first = true, linear = true;
     for (Proposal& proposal : spec.proposals(context)) {
       all.push_back({spec.name, std::move(proposal), {}});

@@ -5,6 +5,7 @@
 
 #include "tissue_stiffness/diagnosis/finding.hpp"
 #include "tissue_stiffness/diagnosis/residual_views.hpp"
+#include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
@@ -73,6 +74,7 @@ Diagnosis diagnose(const ModelSettings& settings, const TetMesh& mesh, const Rec
     throw InputError(settings.name, std::to_string(recording.frames.size()) + " usable frames",
                      "at least " + std::to_string(kFewestFrames) + " to hold some of them out");
   }
+  for (const std::string& name : options.ignore) effect_spec({name, name, {}});  // throws what is none
   Diagnosis out;
   options.progress("fit of the given model");
   Fitted model = fit_model(settings, mesh, recording);

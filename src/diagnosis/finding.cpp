@@ -34,7 +34,7 @@ class Look {
       : base_(base), options_(options), rows_(rows_used(base.rows)), cost_(base.rows.error.squaredNorm()) {
     options.progress("tangents of the library");
     const Eigen::VectorXd std = base.fit.covariance.diagonal().cwiseSqrt();
-    candidates_ = find_candidates(*base.study, base.fit.w, base.rows);
+    candidates_ = find_candidates(*base.study, base.fit.w, options.ignore);
     Eigen::MatrixXd known = base_tangents(*base.study, base.fit.w, std, base.rows);
     options.progress("what a finer mesh would change");
     const Eigen::VectorXd mesh = mesh_residual(*base.study, base.fit.w, base.rows);

@@ -44,6 +44,7 @@ SensorScene read_sensor(const Value* map, const ObservationSettings& observation
   }
   if (map == nullptr) return sensor;
   sensor.noise = map->number_or("noise", observation.noise, 0.0, kInfinity, "m");
+  if (observation.kind != ObservationSettings::Kind::points) sensor.memory = map->number_or("memory", 0.0, 0.0, 0.99, "");
   if (observation.kind == ObservationSettings::Kind::points && map->has("count")) {
     sensor.points = map->at("count").as_integer(1, 1000000);
   }

@@ -110,7 +110,7 @@ class Sensor {
       return;
     }
     Eigen::Matrix3Xd points = operator_ ? tracked(u) : sampled(u);
-    for (Eigen::Index i = 0; i < points.size(); ++i) points.data()[i] += scene_.noise * normal_(random_);
+    points += noise(points.cols());
     const std::string id = observation_.kind == Kind::vertices  ? "vertex"
                            : observation_.kind == Kind::markers ? "marker"
                                                                 : "";
@@ -118,6 +118,18 @@ class Sensor {
   }
 
  private:
+  /// Of this frame: in time an autoregression with coefficient `memory`, of the same variance in every frame.
+  Eigen::Matrix3Xd noise(Eigen::Index count) {
+    Eigen::Matrix3Xd fresh(3, count);
+    for (Eigen::Index i = 0; i < fresh.size(); ++i) fresh.data()[i] = scene_.noise * normal_(random_);
+    const bool first = noise_.size() == 0;
+    if (scene_.memory > 0.0 && !first) {
+      fresh = scene_.memory * noise_ + std::sqrt(1.0 - scene_.memory * scene_.memory) * fresh;
+    }
+    noise_ = fresh;
+    return fresh;
+  }
+
   Observation seen() const {
     Observation observation;
     observation.kind = observation_.kind == Kind::vertices ? ObservationKind::vertices : ObservationKind::markers;
@@ -159,6 +171,7 @@ class Sensor {
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_;
   Eigen::VectorXi ids_;
+  Eigen::Matrix3Xd noise_;  ///< of the last frame
   std::unique_ptr<ObservationOperator> operator_;
   std::unique_ptr<Renderer> renderer_;
 };

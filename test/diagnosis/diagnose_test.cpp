@@ -54,6 +54,16 @@ TEST(Diagnose, NamesHiddenDampingAndAddsIt) {
   EXPECT_EQ(d.final_verdict, "adequate");
 }
 
+TEST(Diagnose, DoesNotLookForWhatItIsToldToIgnore) {
+  DiagnosisOptions options;
+  options.ignore = {"viscous_damping", "mass_damping", "viscoelasticity"};
+  const Diagnosis d = diagnose_bar(film({"viscous_damping: {beta: 6.0e-3}"}, 1), options);
+  EXPECT_EQ(d.verdict, "unexplained");
+  for (const MissingEffect& effect : d.candidates) EXPECT_NE(effect.effect, "viscous_damping");
+  options.ignore = {"magic"};
+  EXPECT_NE(refusal([&] { diagnose_bar(film({}, 1), options); }).find("magic"), std::string::npos);
+}
+
 TEST(Diagnose, AddsWhatItIsTold) {
   DiagnosisOptions options;
   options.add = {"mass_damping"};

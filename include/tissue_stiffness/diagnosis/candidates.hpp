@@ -16,9 +16,9 @@ struct Candidate {
   Tangent tangent;
 };
 
-/// Everything that the library proposes for the fitted base model. The tangents of all linear ones come from one reduced
-/// model that holds them all at their absent values; the others get a model each.
-std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd& w, const Study::Rows& rows);
+/// Everything that the library proposes for the fitted base model, but for effects to `ignore`. The tangents of all linear
+/// ones come from one reduced model that holds them all at their absent values; the others get a model each.
+std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd& w, const std::vector<std::string>& ignore);
 
 /// d rows / d w of the fitted base model, in sigmas: N x free parameters.
 Eigen::MatrixXd base_tangents(const Study& base, const Eigen::VectorXd& w, const Eigen::VectorXd& std,

@@ -10,9 +10,10 @@
 namespace tissue_stiffness {
 
 struct DiagnosisOptions {
-  std::vector<std::string> add;  ///< effects to add in turn, whatever the verdict
-  bool automatic = false;        ///< keep adding the best while the held-out error proves it
-  int most_steps = 3;            ///< of automatic adding
+  std::vector<std::string> add;     ///< effects to add in turn, whatever the verdict
+  std::vector<std::string> ignore;  ///< effects that are not looked for
+  bool automatic = false;           ///< keep adding the best while the held-out error proves it
+  int most_steps = 3;               ///< of automatic adding
   std::function<void(const std::string&)> progress = [](const std::string&) {};  ///< what is being done
 };
 

@@ -44,6 +44,7 @@ struct ImageScene {
 /// How one entry of `observations` is recorded.
 struct SensorScene {
   double noise = 0.0;         ///< of clouds, 1-sigma a coordinate [m]
+  double memory = 0.0;        ///< correlation of a tracked point's noise from one frame to the next
   int every = 1;              ///< of the surface's vertices, in ascending order
   std::vector<int> vertices;  ///< of the mesh in the file; instead of `every` when not empty
   int points = 0;             ///< random points of the surface in a frame
@@ -63,10 +64,10 @@ struct SensorScene {
 ///         /tool/wrench: {rate: 200, noise: 0, terms: [{direction: [0, 0, -1], raised_cosine: {amplitude: 2, frequency:
 ///         1}}]} /tissue/pressure: {rate: 200, terms: [{sine: {amplitude: 100, frequency: 1}}]}
 ///       sensors:               # one entry for each contour; others may have one
-///         /tissue/vertices: {every: 3, noise: 1e-4}      # or ids: [..]; default: every surface vertex, the model's noise
-///         /tissue/points: {count: 500}
-///         /camera/image_raw: {size: [640, 480], focal_length: 2500, position: [0, -1, 0], target: [0, 0, 0], up: [0, 0,
-///         1]} /ultrasound/image_raw: {size: [640, 480], pixels_per_metre: 3500, apex: [0, 0, -0.08], axis: [0, 0, 1],
+///         /tissue/vertices: {every: 3, noise: 1e-4, memory: 0.5}  # or ids: [..]; default: every surface vertex, the
+///         model's noise /tissue/points: {count: 500} /camera/image_raw: {size: [640, 480], focal_length: 2500, position:
+///         [0, -1, 0], target: [0, 0, 0], up: [0, 0, 1]} /ultrasound/image_raw: {size: [640, 480], pixels_per_metre: 3500,
+///         apex: [0, 0, -0.08], axis: [0, 0, 1],
 ///                                 lateral: [1, 0, 0], sector: 78, depth: 0.128, drop_out: 0.1}   # degrees, m
 struct Scene {
   ModelSettings model;
