@@ -11,7 +11,6 @@ namespace {
 constexpr std::size_t kRefits = 6;      // candidates that are simulated anew
 constexpr std::size_t kPairs = 3;       // and pairs
 constexpr double kRemainder = 0.25;     // of the mesh's error that a mesh twice as fine still has, or more
-constexpr double kMeshFactor = 2.5;     // between the mesh's error and what a mesh twice as fine makes of it
 constexpr double kTwin = 0.9;           // cosine above which two effects look alike
 constexpr double kSameEvidence = 5.0;   // log evidence within which refits are not told apart
 constexpr double kAdequate = 1.1;       // rms in sigmas up to which a residual may be noise
@@ -37,13 +36,12 @@ class Look {
     candidates_ = find_candidates(*base.study, base.fit.w, options.ignore);
     Eigen::MatrixXd known = base_tangents(*base.study, base.fit.w, std, base.rows);
     options.progress("what a finer mesh would change");
-    const Eigen::VectorXd mesh = mesh_residual(*base.study, base.fit.w, base.rows);
-    const Scorer bare(base.rows.error, known, base.rows.offsets, 1.0);
-    floor_ = bare.remaining(mesh);
-    mesh_score_ = bare.score(Tangent{mesh, Eigen::VectorXd::Ones(1)});
+    const FinerMesh finer = finer_mesh(base);
+    by_mesh_ = finer.explained;
+    floor_ = Scorer(base.rows.error, known, base.rows.offsets, 1.0).remaining(finer.change);
     // An effect has to explain what the mesh does not.
     known.conservativeResize(Eigen::NoChange, known.cols() + 1);
-    known.rightCols<1>() = mesh;
+    known.rightCols<1>() = finer.change;
     scorer_ = std::make_unique<Scorer>(base.rows.error, known, base.rows.offsets, 1.0);
     ranked_ = rank(*scorer_, candidates_, kRemainder * floor_);
   }
@@ -70,7 +68,6 @@ class Look {
   void refit_pairs();
   void add_refit(const std::vector<Addition>& additions);
   void sort_refits();
-  bool numerical() const;
   std::string judge() const;
   std::vector<std::string> set() const;
   void describe_all(std::vector<MissingEffect>& out) const;
@@ -83,7 +80,7 @@ class Look {
   std::vector<Candidate> candidates_;
   std::unique_ptr<Scorer> scorer_;
   double floor_ = 0.0;
-  Score mesh_score_;
+  double by_mesh_ = 0.0;  ///< of the sum of squared errors
   std::vector<Ranked> ranked_;
   std::vector<Refit> refits_;
 };
@@ -140,16 +137,9 @@ void Look::sort_refits() {
   });
 }
 
-// The mesh explains the error as far as it is known to: with an amplitude near one.
-bool Look::numerical() const {
-  const double amplitude = mesh_score_.amplitude.size() > 0 ? mesh_score_.amplitude[0] : 0.0;
-  return mesh_score_.explained * cost_ > kExplains * structured() && amplitude > 1.0 / kMeshFactor &&
-         amplitude < kMeshFactor;
-}
-
 std::string Look::judge() const {
   if (cost_ < kAdequate * kAdequate * rows_ && (refits_.empty() || !proven(base_, refits_.front()))) return "adequate";
-  if (numerical()) return "numerics";
+  if (by_mesh_ > kExplains * structured()) return "numerics";
   if (refits_.empty() || !proven(base_, refits_.front())) return "unexplained";
   const double left = refits_.front().cost - rows_;
   const bool explains = left < (1.0 - kExplains) * structured() || left < floor_ * floor_ * rows_;

@@ -32,8 +32,12 @@ Finding look(const Fitted& base, const std::vector<std::string>& wanted, const D
 /// Held-out frames agree that the refit is better than the base.
 bool proven(const Fitted& base, const Refit& refit);
 
-/// What a mesh of eight times as many elements with a smooth boundary would change in the rows at w [sigma]: the error that
-/// is the mesh's own, to first order. Zero where that cannot be found out or the model file does not want it.
-Eigen::VectorXd mesh_residual(const Study& base, const Eigen::VectorXd& w, const Study::Rows& rows);
+/// The same model on a mesh of eight times as many elements with a smooth boundary, fitted to the same frames.
+struct FinerMesh {
+  Eigen::VectorXd change;  ///< of the rows [sigma]: the error that is the mesh's own; zero where it cannot be found out
+  double explained = 0.0;  ///< how much smaller the sum of squared errors is [sigma^2]
+};
+/// Nothing where the model is nonlinear or large, or the model file does not want it.
+FinerMesh finer_mesh(const Fitted& base);
 
 }  // namespace tissue_stiffness

@@ -1,0 +1,102 @@
+"""Scenes of the study, and what is hidden in them. A truth never is the estimator's own model: it runs on a mesh of eight
+times as many elements, in time steps instead of modes, and most hidden effects take another form than the library's."""
+import itertools
+
+STEP = 0.001      # s
+RATE = 30.0       # frames/s
+NOISE = 1e-4      # m
+
+
+def box_mesh(path, size, cells):
+    """Legacy VTK of a box, six tetrahedra a cell, all around the cell's main diagonal."""
+    counts = [n + 1 for n in cells]
+    index = {}
+    points = []
+    for k, j, i in itertools.product(*(range(n) for n in reversed(counts))):
+        index[i, j, k] = len(points)
+        points.append('%.9g %.9g %.9g' % (size[0] * i / cells[0], size[1] * j / cells[1], size[2] * k / cells[2]))
+    tets = []
+    for k, j, i in itertools.product(*(range(n) for n in reversed(cells))):
+        for order in itertools.permutations(range(3)):
+            corner, corners = [i, j, k], [index[i, j, k]]
+            for axis in order:
+                corner[axis] += 1
+                corners.append(index[tuple(corner)])
+            inversions = sum(a > b for a, b in itertools.combinations(order, 2))
+            tets.append(corners if inversions % 2 == 0 else [corners[0], corners[2], corners[1], corners[3]])
+    with open(path, 'w') as file:
+        file.write('# vtk DataFile Version 3.0\nbox\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS %d double\n' % len(points))
+        file.write('\n'.join(points))
+        file.write('\nCELLS %d %d\n' % (len(tets), 5 * len(tets)))
+        file.write('\n'.join('4 %d %d %d %d' % tuple(tet) for tet in tets))
+        file.write('\nCELL_TYPES %d\n%s\n' % (len(tets), '\n'.join(['10'] * len(tets))))
+
+
+def elasticity(modulus, poisson=0.45, **more):
+    return {'elasticity': dict(law='linear', young_modulus=modulus, poisson_ratio=poisson, **more)}
+
+
+class Scene:
+    """A body, its loads, and how each effect is hidden in it at strength s (1: about as large as tissue has it)."""
+
+    def __init__(self, name, size, cells, modulus, regions, effects, loads):
+        self.name, self.size, self.cells, self.modulus = name, size, cells, modulus
+        self.regions, self.effects, self.loads = regions, effects, loads
+
+    def truth(self, modulus, hidden, s):
+        """Regions and effects of the body with `hidden` in it."""
+        regions, effects = dict(self.regions), [elasticity(modulus)] + list(self.effects)
+        length = self.size[0]
+        big = 1.0
+        if hidden == 'viscous_damping':
+            effects.append({'viscous_damping': {'beta': 5e-3 * s}})
+        elif hidden == 'mass_damping':
+            effects.append({'mass_damping': {'alpha': 1.5 * s}})
+        elif hidden == 'viscoelasticity':  # two branches where the library has one
+            effects += [{'viscoelasticity': {'gamma': 0.25 * s, 'tau': 0.05}}, {'viscoelasticity': {'gamma': 0.15 * s, 'tau': 0.15}}]
+        elif hidden == 'elastic_support':  # a soft layer where the library has springs
+            regions['layer'] = {'box': {'min': [-big] * 3, 'max': [0.1 * length + 1e-6, big, big]}}
+            regions['rest'] = {'box': {'min': [0.1 * length - 1e-6, -big, -big], 'max': [big] * 3}}
+            effects[:1] = [elasticity(modulus / (1.0 + s), region='layer'), elasticity(modulus, region='rest')]
+        elif hidden == 'stiff_inclusion':  # a block of elements where the library has a smooth ball
+            low, high = 0.25 * length, 0.5 * length
+            regions['block'] = {'box': {'min': [low, -big, -big], 'max': [high, 0.5 * self.size[1], big]}}
+            effects.append(elasticity(modulus * s, region='block'))  # on top of the whole body's
+        elif hidden == 'added_mass':
+            effects.append({'added_mass': {'region': 'tip', 'mass': 0.1 * s * 1000 * self.size[0] * self.size[1] * self.size[2]}})
+        elif hidden == 'foundation':
+            effects.append({'foundation': {'region': 'side', 'stiffness': 0.3 * s * modulus / length}})
+        elif hidden == 'compressibility':  # another Poisson's ratio from the start
+            effects[0] = elasticity(modulus, poisson=0.45 - 0.1 * min(s, 4.0))
+        elif hidden == 'gravity':
+            effects.append({'gravity': {'acceleration': [0.0, 0.7 * s, 0.7 * s]}})
+        elif hidden == 'geometric_nonlinearity':  # a hyperelastic law
+            effects[0] = {'elasticity': {'law': 'neo_hookean', 'young_modulus': modulus, 'poisson_ratio': 0.45}}
+        elif hidden != 'none':
+            raise ValueError(hidden)
+        return regions, effects
+
+
+def scenes():
+    bar, slab = [0.10, 0.02, 0.02], [0.08, 0.05, 0.02]
+
+    def faces(size):
+        return {'clamp': {'box': {'min': [-1, -1, -1], 'max': [1e-6, 1, 1]}},
+                'tip': {'box': {'min': [size[0] - 1e-6, -1, -1], 'max': [1, 1, 1]}},
+                'side': {'box': {'min': [-1, -1, -1], 'max': [1, 1, 1e-6]}}}
+
+    def wrench(*terms):
+        return {'/tool/wrench': {'rate': 200, 'terms': list(terms)}}
+
+    base = [{'inertia': {'density': 1000.0}}, {'fixed': {'region': 'clamp'}}]
+    pulled = base + [{'traction': {'region': 'tip', 'topic': '/tool/wrench'}}]
+    return [
+        Scene('bar released under gravity', bar, [8, 2, 2], 60e3, faces(bar),
+              base + [{'gravity': {'acceleration': [0.0, 1.5, -4.0]}}], {}),
+        Scene('bar pushed and let go', bar, [8, 2, 2], 40e3, faces(bar), pulled,
+              wrench({'direction': [0, 0, -1], 'ramp': {'to': 0.02, 'start': 0.1, 'end': 0.15}},
+                     {'direction': [0, 1, 0], 'sine': {'amplitude': 0.01, 'frequency': 2.3}})),
+        Scene('slab worked by a tool', slab, [6, 4, 2], 15e3, faces(slab), pulled,
+              wrench({'direction': [0, 0, -1], 'raised_cosine': {'amplitude': 0.05, 'frequency': 1.0}},
+                     {'direction': [1, 0, 0], 'sine': {'amplitude': 0.3, 'frequency': 1.6}})),
+    ]

@@ -1,0 +1,232 @@
+"""Hides effects in simulated bodies and counts how often `diagnose` finds them: see scripts/hidden_effects."""
+import argparse
+import collections
+import json
+import multiprocessing
+import os
+import random
+import subprocess
+import sys
+
+import rosbag
+import sensor_msgs.point_cloud2 as point_cloud2
+import yaml
+
+from scenes import NOISE, RATE, STEP, box_mesh, scenes
+
+DURATION = 1.6    # s
+MISFITS = (0.03, 0.1, 0.3)   # of the motion
+TWINS = [{'viscous_damping', 'mass_damping'}, {'density_error', 'force_scale', 'image_scale', 'added_mass'}]
+HIDDEN = {
+    'bar released under gravity': ['none', 'viscous_damping', 'viscoelasticity', 'elastic_support', 'stiff_inclusion',
+                                   'added_mass', 'foundation', 'geometric_nonlinearity'],
+    'bar pushed and let go': ['none', 'mass_damping', 'viscoelasticity', 'elastic_support', 'stiff_inclusion', 'added_mass',
+                              'gravity'],
+    'slab worked by a tool': ['none', 'viscoelasticity', 'elastic_support', 'stiff_inclusion', 'foundation', 'gravity'],
+}
+MODULUS = 'elasticity.young_modulus'
+TIME_LIMIT = 600  # s a run
+
+
+class Failed(Exception):
+    pass
+
+
+def call(command):
+    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=TIME_LIMIT)
+    if done.returncode != 0:
+        raise Failed((done.stderr.strip().splitlines() or ['exit code %d' % done.returncode])[-1])
+
+
+def write(folder, name, content):
+    path = os.path.join(folder, name)
+    with open(path, 'w') as file:
+        yaml.safe_dump(content, file, default_flow_style=None, sort_keys=False)
+    return path
+
+
+def observations():
+    return [{'vertices': {'topic': '/tissue/vertices', 'noise': NOISE}}]
+
+
+def simulate(arguments, folder, scene, modulus, hidden, strength, noise, memory, seed):
+    regions, effects = scene.truth(modulus, hidden, strength)
+    content = {'mesh': {'file': 'mesh.vtk'}, 'regions': regions, 'effects': effects, 'observations': observations(),
+               'simulation': {'duration': DURATION, 'rate': RATE, 'step': STEP, 'refine': 1, 'spectral_radius': 1.0,
+                              'seed': seed, **({'loads': scene.loads} if scene.loads else {}),
+                              'sensors': {'/tissue/vertices': {'every': 2, 'noise': noise, 'memory': memory}}}}
+    bag = os.path.join(folder, 'recording.bag')
+    call([arguments.simulate, write(folder, 'scene.yaml', content), '--output', bag, '--quiet'])
+    return bag
+
+
+def motion(bag):
+    with rosbag.Bag(bag) as file:
+        frames = [[value for point in point_cloud2.read_points(cloud, ('x', 'y', 'z')) for value in point]
+                  for _, cloud, _ in file.read_messages('/tissue/vertices')]
+    return [[value - rest for value, rest in zip(frame, frames[0])] for frame in frames]
+
+
+def rms(frames):
+    values = [value for frame in frames for value in frame]
+    return (sum(value * value for value in values) / len(values)) ** 0.5
+
+
+def strength_for(arguments, folder, scene, modulus, hidden, misfit):
+    """The effect's strength at which it moves the body by about `misfit` of its motion, as if in proportion."""
+    plain = motion(simulate(arguments, folder, scene, modulus, 'none', 0.0, 1e-9, 0.0, 1))
+    changed = motion(simulate(arguments, folder, scene, modulus, hidden, 0.5, 1e-9, 0.0, 1))
+    size = rms([[a - b for a, b in zip(x, y)] for x, y in zip(changed, plain)]) / rms(plain)
+    return min(10.0, 0.5 * misfit / max(size, 1e-6))
+
+
+def draw(task):
+    """One recording with something hidden, and what the diagnosis says of it."""
+    arguments, number, scene_name, hidden, misfit, memory, absent = task
+    rng = random.Random(1000 + number)
+    scene = next(s for s in scenes() if s.name == scene_name)
+    folder = os.path.join(arguments.output, 'draw_%03d' % number)
+    os.makedirs(folder, exist_ok=True)
+    modulus = scene.modulus * rng.uniform(0.7, 1.4)
+    row = {'number': number, 'scene': scene_name, 'hidden': hidden, 'misfit': misfit, 'memory': memory, 'absent': absent}
+    try:
+        box_mesh(os.path.join(folder, 'mesh.vtk'), scene.size, scene.cells)
+        switch = hidden in ('none', 'geometric_nonlinearity')
+        strength = 0.0 if switch else strength_for(arguments, folder, scene, modulus, hidden, misfit)
+        bag = simulate(arguments, folder, scene, modulus, hidden, strength, NOISE, memory, number + 1)
+        start = modulus * rng.choice((0.5, 0.7, 1.5, 2.0))
+        effects = [{'elasticity': {'law': 'linear', 'young_modulus': {'prior': start, 'factor': 3.0}, 'poisson_ratio': 0.45}}]
+        model = write(folder, 'model.yaml', {'mesh': {'file': 'mesh.vtk'}, 'regions': scene.regions,
+                                             'effects': effects + scene.effects, 'observations': observations()})
+        command = [arguments.diagnose, model, bag, '--auto', '--quiet', '--output', folder]
+        call(command + (['--ignore', hidden] if absent else []))
+        with open(os.path.join(folder, 'diagnosis.json')) as file:
+            found = json.load(file)
+    except (Failed, subprocess.TimeoutExpired) as error:
+        row['failed'] = str(error)
+        return row
+    last = found['steps'][-1]
+    row.update(strength=strength, verdict=found['verdict'], set=found['set'], final=found['final'],
+               modulus_error=last['parameters'][MODULUS] / modulus - 1, seconds=found['seconds'],
+               given=found['steps'][0]['held_out_rms'] / found['steps'][0]['noise_floor'],
+               held_out=last['held_out_rms'] / last['noise_floor'],
+               p_values=[c['p_value'] for c in found['candidates']] if hidden == 'none' else [])
+    return row
+
+
+def tasks(arguments):
+    """Draws in an order of which any beginning is a fair sample."""
+    rng = random.Random(7)
+    out = []
+    for number in range(arguments.draws):
+        scene = rng.choice(sorted(HIDDEN))
+        hidden = rng.choice(HIDDEN[scene]) if rng.random() > 0.15 else 'none'
+        absent = hidden != 'none' and rng.random() < 0.15
+        out.append((arguments, number, scene, hidden, rng.choice(MISFITS), rng.choice((0.0, 0.6)), absent))
+    return out
+
+
+def twins(a, b):
+    return a == b or any(a in group and b in group for group in TWINS)
+
+
+def share(values):
+    return '%5.1f %% of %d' % (100.0 * sum(values) / len(values), len(values)) if values else '    - of 0'
+
+
+def tables(rows):
+    good = [row for row in rows if 'failed' not in row]
+    clean = [row for row in good if row['hidden'] == 'none']
+    absent = [row for row in good if row['absent']]
+    hidden = [row for row in good if row['hidden'] != 'none' and not row['absent']]
+    seen = [row for row in hidden if row['given'] > 1.15]  # the fit leaves something to find
+    lines = ['| figure | all that leave a misfit | %s |' % ' | '.join('misfit %g %%' % (100 * m) for m in MISFITS),
+             '|---|---|' + '---|' * len(MISFITS)]
+
+    def line(name, value):
+        cells = [share([value(row) for row in seen])]
+        cells += [share([value(row) for row in seen if row['misfit'] == m]) for m in MISFITS]
+        lines.append('| %s | %s |' % (name, ' | '.join(cells)))
+    line('the hidden effect is in the set', lambda row: row['hidden'] in row['set'])
+    line('it or a twin is first', lambda row: bool(row['set']) and twins(row['set'][0], row['hidden']))
+    line('it is first', lambda row: row['set'][:1] == [row['hidden']])
+    line('it is first or second', lambda row: row['hidden'] in row['set'][:2])
+    line('E within 3 % after adding', lambda row: abs(row['modulus_error']) < 0.03)
+    line('held-out error within 1.2x of the noise', lambda row: row['held_out'] < 1.2)
+    ratios = sorted(row['held_out'] for row in seen)
+    lines += ['', '* false alarms on clean recordings: ' + share([row['verdict'] == 'missing' for row in clean]),
+              '* abstention when the effect is not in the library: ' +
+              share([row['verdict'] != 'missing' for row in absent if row['given'] > 1.15]),
+              '* p-values below 5 %% on clean recordings: %s' % share([p < 0.05 for row in clean for p in row['p_values']]),
+              '* held-out error over noise after adding: median %.3f' % (ratios[len(ratios) // 2] if ratios else float('nan')),
+              '* hidden but within the noise after the fit of E: %d of %d' % (len(hidden) - len(seen), len(hidden)),
+              '* failed: %d of %d' % (len(rows) - len(good), len(rows))]
+    return lines, confusion(seen)
+
+
+def confusion(rows):
+    counts = collections.Counter((row['hidden'], row['set'][0] if row['set'] else row['verdict']) for row in rows)
+    names = sorted({hidden for hidden, _ in counts})
+    found = sorted({first for _, first in counts}, key=lambda f: (f not in names, f))
+    return names, found, [[counts[name, first] for first in found] for name in names]
+
+
+def confusion_table(names, found, counts):
+    lines = ['| hidden \\ first found | ' + ' | '.join(found) + ' |', '|---|' + '---|' * len(found)]
+    for name, row in zip(names, counts):
+        lines.append('| %s | %s |' % (name, ' | '.join(str(count) if count else '' for count in row)))
+    return lines
+
+
+def picture(names, found, counts, path):
+    import matplotlib
+    matplotlib.use('Agg')
+    import matplotlib.pyplot as plt
+    figure, axis = plt.subplots(figsize=(1.5 + 0.7 * len(found), 1.2 + 0.45 * len(names)))
+    shares = [[count / max(1, sum(row)) for count in row] for row in counts]
+    axis.imshow(shares, cmap='Blues', vmin=0, vmax=1, aspect='auto')
+    for i, row in enumerate(counts):
+        for j, count in enumerate(row):
+            if count:
+                axis.text(j, i, count, ha='center', va='center', color='white' if shares[i][j] > 0.5 else '#333333')
+    axis.set_xticks(range(len(found)), [name.replace('_', ' ') for name in found], rotation=35, ha='right')
+    axis.set_yticks(range(len(names)), [name.replace('_', ' ') for name in names])
+    axis.set_xlabel('found first')
+    axis.set_ylabel('hidden')
+    figure.tight_layout()
+    figure.savefig(path, dpi=110)
+
+
+def main():
+    parser = argparse.ArgumentParser(prog='hidden_effects')
+    parser.add_argument('root')
+    parser.add_argument('--draws', type=int, default=200)
+    parser.add_argument('--jobs', type=int, default=os.cpu_count())
+    parser.add_argument('--output')
+    arguments = parser.parse_args()
+    arguments.output = arguments.output or os.path.join(arguments.root, 'output', 'hidden_effects')
+    for tool in ('simulate', 'diagnose'):
+        setattr(arguments, tool, os.path.join(arguments.root, 'build/devel/lib/tissue_stiffness', tool))
+    os.makedirs(arguments.output, exist_ok=True)
+    rows = []
+    with multiprocessing.Pool(arguments.jobs) as pool:
+        for row in pool.imap_unordered(draw, tasks(arguments)):
+            rows.append(row)
+            what = row.get('failed') or '%s %s' % (row['verdict'], ' '.join(row['set']))
+            print('%3d/%d %-28s %-22s %4.0f %% -> %s' % (len(rows), arguments.draws, row['scene'], row['hidden'] +
+                  (' (absent)' if row['absent'] else ''), 100 * row['misfit'], what), flush=True)
+            with open(os.path.join(arguments.output, 'rows.json'), 'w') as file:
+                json.dump(sorted(rows, key=lambda r: r['number']), file, indent=1)
+    lines, (names, found, counts) = tables(rows)
+    doc = os.path.join(arguments.root, 'doc')
+    with open(os.path.join(doc, 'hidden_effects.md'), 'w') as file:
+        file.write('\n'.join(['# How often the hidden effect is found', '',
+                              'Written by `scripts/hidden_effects --draws %d`; `benchmark/hidden_effects/scenes.py` says what is '
+                              'hidden and how.' % arguments.draws, ''] + lines +
+                             ['', '![confusion](hidden_effects.png)', ''] + confusion_table(names, found, counts)) + '\n')
+    picture(names, found, counts, os.path.join(doc, 'hidden_effects.png'))
+    print('\n'.join(lines))
+
+
+if __name__ == '__main__':
+    sys.exit(main())
