@@ -42,3 +42,14 @@ macro(tissue_stiffness_executables layer)
     list(APPEND tissue_stiffness_executable_targets ${name})
   endforeach()
 endmacro()
+
+# Template, style, scripts and libraries of report.html, compiled into the report layer.
+macro(tissue_stiffness_report_assets)
+  set(assets ${CMAKE_CURRENT_BINARY_DIR}/report_assets.cpp)
+  file(GLOB_RECURSE asset_files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/resources/report/*)
+  add_custom_command(OUTPUT ${assets}
+    COMMAND ${CMAKE_COMMAND} -DOUTPUT=${assets} -DFOLDER=${PROJECT_SOURCE_DIR}/resources/report
+      -P ${PROJECT_SOURCE_DIR}/cmake/embed.cmake
+    DEPENDS ${asset_files} ${PROJECT_SOURCE_DIR}/cmake/embed.cmake)
+  target_sources(${PROJECT_NAME}_report PRIVATE ${assets})
+endmacro()

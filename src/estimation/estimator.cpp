@@ -51,8 +51,8 @@ const Prediction& Estimator::prediction() const {
 std::vector<std::string> Estimator::description() const {
   return implementation_->scheme->description();
 }
-std::vector<Misfit> Estimator::free_run() const {
-  return implementation_->scheme->free_run();
+std::vector<Misfit> Estimator::free_run(const FreeFrameVisitor& visit) const {
+  return implementation_->scheme->free_run(visit);
 }
 
 std::map<std::string, Identifiability> Estimator::identifiability() const {

@@ -100,19 +100,12 @@ void Scheme::reset() {
 }
 
 Prediction Scheme::at_rest(const Frame& frame) const {
-  return predict_frame(*model_, operators_, frame, model_->theta(model_->prior_mean()),
-                       Eigen::VectorXd::Zero(model_->fem().dof_count()));
+  return predict_at_rest(*model_, operators_, frame);
 }
 
-std::vector<Misfit> Scheme::compare_free_run(const std::vector<Frame>& frames, const Eigen::VectorXd& theta) const {
-  std::vector<Misfit> misfits;
-  const auto run = forward_->start(theta, start());
-  for (const Frame& frame : frames) {
-    run->advance(frame.time - model_->delay(theta));
-    const Prediction p = predict_frame(*model_, operators_, frame, theta, run->displacement());
-    misfits.push_back(compare(frame.time, p, at_rest(frame).predicted, model_->mesh().node_count()));
-  }
-  return misfits;
+std::vector<Misfit> Scheme::compare_free_run(const std::vector<Frame>& frames, const Eigen::VectorXd& theta,
+                                             const FreeFrameVisitor& visit) const {
+  return tissue_stiffness::free_run({*model_, *forward_, operators_, frames, start()}, theta, visit);
 }
 
 }  // namespace tissue_stiffness

@@ -51,8 +51,8 @@ class UnscentedScheme : public Scheme {
             "mesh error: " + (unstudied_.empty() ? "from a mesh refined eightfold" : "not assessed, " + unstudied_)};
   }
 
-  std::vector<Misfit> free_run() const override {
-    return frames_.empty() ? std::vector<Misfit>{} : compare_free_run(frames_, model_->theta(filter_.mean()));
+  std::vector<Misfit> free_run(const FreeFrameVisitor& visit) const override {
+    return frames_.empty() ? std::vector<Misfit>{} : compare_free_run(frames_, model_->theta(filter_.mean()), visit);
   }
   Eigen::MatrixXd parameter_covariance() const override { return filter_.covariance(); }
   void work_in_background() override { background_ = true; }

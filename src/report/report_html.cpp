@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tissue_stiffness/report/frame_charts.hpp"
-#include "tissue_stiffness/report/style.hpp"
+#include "tissue_stiffness/report/course.hpp"
+#include "tissue_stiffness/report/page.hpp"
 #include "tissue_stiffness/report/text.hpp"
 #include "tissue_stiffness/report/write_results.hpp"
 
@@ -56,19 +56,17 @@ std::vector<ParameterEstimate> headline(std::vector<ParameterEstimate> parameter
 }
 
 std::string answer(const Results& results) {
-  std::string text = "<section><h1>" + escape_html(results.model) +
-                     (results.recording.empty() ? "" : " · " + escape_html(results.recording)) + "</h1>";
   const StateWords state = words(results.state);
-  text += "<p>" + badge(state.colour, state.badge) + " " + state.sentence + "</p>";
+  std::string text;
   for (const ParameterEstimate& p : headline(results.parameters)) {
     text += answer_line(p);
     const auto found = results.identifiable.find(p.name);
-    if (found != results.identifiable.end() && found->second.verdict != "absolute") {
-      text += "<p>" + identifiability_badge(found->second) + " " + escape_html(found->second.reason) + "</p>";
-    }
+    if (found == results.identifiable.end()) continue;
+    text += "<p>" + identifiability_badge(found->second) + " " + escape_html(found->second.reason) + "</p>";
   }
   if (results.parameters.empty()) text += "<p>The model has no unknown parameter.</p>";
-  return text + "</section>\n";
+  const std::string badge_line = "<p>" + badge(state.colour, state.badge) + " " + state.sentence + "</p>";
+  return section("answer", "", badge_line + text);
 }
 
 std::string fact(const std::string& name, const std::string& value, const std::string& remark) {
@@ -82,14 +80,15 @@ std::string with_unit(double value, const std::string& unit) {
 
 std::string facts(const Results& r) {
   const std::string noise = std::isfinite(r.noise_rms) ? "noise " + with_unit(r.noise_rms, "m") : "";
-  return "<section><dl class=\"facts\">" + fact("Error of the model", with_unit(r.rms_error, "m"), noise) +
-         fact("Error / motion", std::isfinite(r.relative_error) ? short_number(100.0 * r.relative_error, 3) + " %" : "-",
-              "") +
-         fact("Squared innovation", short_number(r.nis_mean_per_dof, 3), "per row; 1 if noise explains it") +
-         fact("Frames used", std::to_string(r.used()), std::to_string(r.skipped()) + " skipped") +
-         fact("Time a frame", with_unit(r.frame_seconds_quantile(0.5), "s"),
-              "99 % within " + with_unit(r.frame_seconds_quantile(0.99), "s")) +
-         "</dl></section>\n";
+  return section("facts", "",
+                 "<dl class=\"facts\">" + fact("Error of the model", with_unit(r.rms_error, "m"), noise) +
+                     fact("Error / motion",
+                          std::isfinite(r.relative_error) ? short_number(100.0 * r.relative_error, 3) + " %" : "-", "") +
+                     fact("Squared innovation", short_number(r.nis_mean_per_dof, 3), "per row; 1 if noise explains it") +
+                     fact("Frames used", std::to_string(r.used()), std::to_string(r.skipped()) + " skipped") +
+                     fact("Time a frame", with_unit(r.frame_seconds_quantile(0.5), "s"),
+                          "99 % within " + with_unit(r.frame_seconds_quantile(0.99), "s")) +
+                     "</dl>");
 }
 
 std::string parameter_row(const ParameterEstimate& p, const Results& results) {
@@ -110,11 +109,13 @@ std::string parameter_table(const Results& results) {
   if (results.parameters.empty()) return "";
   std::string rows;
   for (const ParameterEstimate& p : results.parameters) rows += parameter_row(p, results);
-  return "<section><h2>Parameters</h2><div class=\"scroll\"><table><tr><th>parameter</th><th class=\"n\">mean</th>"
-         "<th class=\"n\">std</th><th class=\"n\">95 % from</th><th class=\"n\">to</th><th>unit</th><th>do the data "
-         "determine "
-         "it?</th></tr>" +
-         rows + "</table></div></section>\n";
+  return section(
+      "parameters", "Parameters",
+      "<div class=\"scroll\"><table><tr><th>parameter</th><th class=\"n\">mean</th>"
+      "<th class=\"n\">std</th><th class=\"n\">95 % from</th><th class=\"n\">to</th><th>unit</th><th>do the data "
+      "determine "
+      "it?</th></tr>" +
+          rows + "</table></div>");
 }
 
 /// Reasons why frames were skipped, each with its count and first time, the most frequent first.
@@ -141,9 +142,10 @@ std::string skipped_table(const Results& results) {
     rows += "<tr><td>" + escape_html(reason.text) + "</td><td class=\"n\">" + std::to_string(reason.count) +
             "</td><td class=\"n\">" + short_number(reason.first, 3) + " s</td></tr>";
   }
-  return "<section><h2>Skipped frames</h2><div class=\"scroll\"><table><tr><th>reason</th><th class=\"n\">frames</th>"
-         "<th class=\"n\">first at</th></tr>" +
-         rows + "</table></div></section>\n";
+  return section("skipped", "Skipped frames",
+                 "<div class=\"scroll\"><table><tr><th>reason</th><th class=\"n\">frames</th>"
+                 "<th class=\"n\">first at</th></tr>" +
+                     rows + "</table></div>");
 }
 
 std::string timing_table(const Results& results) {
@@ -156,40 +158,50 @@ std::string timing_table(const Results& results) {
     rows += "<tr><td>" + escape_html(name) + "</td><td class=\"n\">" + with_unit(seconds, "s") + "</td><td class=\"n\">" +
             share + "</td></tr>";
   }
-  return "<section><h2>Where the time went</h2><div class=\"scroll\"><table><tr><th>stage</th><th class=\"n\">whole "
-         "run</th>"
-         "<th class=\"n\">share</th></tr>" +
-         rows + "</table></div></section>\n";
+  return section("timings", "Where the time went",
+                 "<div class=\"scroll\"><table><tr><th>stage</th><th class=\"n\">whole "
+                 "run</th>"
+                 "<th class=\"n\">share</th></tr>" +
+                     rows + "</table></div>");
 }
 
-std::string details(const Results& results) {
+/// E against time, and the error against time, where there are frames.
+std::string courses(const Results& results) {
+  if (results.used() == 0) return "";
+  std::string charts;
+  for (const ParameterEstimate& p : results.parameters) charts += chart_place("parameter:" + escape_html(p.name));
+  return section("course", "The estimate over time", charts);
+}
+
+std::string misfit(const Results& results) {
+  if (results.used() == 0) return "";
+  return section(
+      "fails", "When the model fails",
+      chart_place("misfit") +
+          "<p class=\"soft\">Errors well above the noise mean physics that the model lacks: <code>diagnose</code> "
+          "says which.</p>");
+}
+
+std::string choices(const Results& results) {
   std::string text;
-  if (!results.description.empty()) {
-    text += "<section><h2>What the estimator chose</h2><ul>";
-    for (const std::string& line : results.description) text += "<li>" + escape_html(line) + "</li>";
-    text += "</ul></section>\n";
-  }
-  text += timing_table(results);
-  if (!results.model_text.empty()) {
-    text += "<section><details open><summary>Model file</summary><pre>" + escape_html(results.model_text) +
-            "</pre></details></section>\n";
-  }
-  std::string versions;
-  for (const auto& [name, version] : results.versions) versions += (versions.empty() ? "" : " · ") + name + " " + version;
-  return text + "<section><h2>How to make this again</h2><pre>" + escape_html(results.command_line) +
-         "</pre><p class=\"soft\">" + escape_html(versions) + "</p></section>\n";
+  for (const std::string& line : results.description) text += "<li>" + escape_html(line) + "</li>";
+  return section("choices", "What the estimator chose", text.empty() ? "" : "<ul>" + text + "</ul>");
 }
 
 }  // namespace
 
-std::string report_html(const Results& results) {
-  return "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
-         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
-         "'unsafe-inline'\">\n<title>" +
-         escape_html(results.model) + " - tissue stiffness</title>\n<style>" + report_style +
-         "</style></head>\n<body><main>\n" + answer(results) + facts(results) + frame_charts(results) +
-         parameter_table(results) + skipped_table(results) + details(results) + "</main></body></html>\n";
+std::string report_html(const Results& results, const Showing& showing) {
+  Page page;
+  page.title = results.model + " - tissue stiffness";
+  page.heading = "Tissue stiffness";
+  page.subheading = results.model + (results.recording.empty() ? "" : " · " + results.recording);
+  page.body = answer(results) + facts(results) + courses(results) + player(showing) + misfit(results) +
+              parameter_table(results) + skipped_table(results) + choices(results) +
+              section("model", "", file_details("Model file", results.model_text, "", true)) + timing_table(results) +
+              colophon(results.command_line, results.versions);
+  page.data = "{\"results\":" + results_json(results) + ",\"course\":" + course_json(results, showing.first_stamp) +
+              ",\"showing\":" + showing_json(showing) + "}";
+  return page.html();
 }
 
 }  // namespace tissue_stiffness

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "tissue_stiffness/nodes/estimator_inputs.hpp"
@@ -17,6 +19,9 @@ using Kind = ObservationSettings::Kind;
 
 constexpr double kReorderSpan = 0.5;         // [s] a message may lag behind the newest stamp
 constexpr std::size_t kReorderFrames = 256;  // the same, in frames: bounds the memory
+constexpr std::size_t kMostPictures = 40;    // of each sensor, in the report
+constexpr double kPictureWidth = 480.0;      // [pixel]
+constexpr int kPictureQuality = 70;          // of JPEG
 constexpr double kPoseMemory = 60.0;         // [s] of /tf kept; more than any frame lags behind
 
 std::string plain(const std::string& frame) {
@@ -222,6 +227,7 @@ void BagReader::segment(const Measurement& measurement, Instant& instant) {
         settings.topic, std::to_string(image.cols) + " x " + std::to_string(image.rows) + " pixels",
         std::to_string(camera->width) + " x " + std::to_string(camera->height) + " as in " + settings.camera_info);
   }
+  keep_picture(measurement, image);
   const auto start = std::chrono::steady_clock::now();
   Segmentation found = segmenter->segment(image, header.stamp.toSec());
   instant.segment_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -236,6 +242,23 @@ void BagReader::segment(const Measurement& measurement, Instant& instant) {
   out.contour = std::make_shared<Contour>(std::move(found.contour));
   out.camera = std::move(camera);
   instant.frame.observations.push_back(std::move(out));
+}
+
+void BagReader::keep_picture(const Measurement& measurement, const cv::Mat& image) {
+  const std::size_t stride = (frame_count_ + kMostPictures - 1) / kMostPictures;
+  if (images_[measurement.source]++ % std::max<std::size_t>(1, stride) != 0) return;
+  cv::Mat small = image;
+  const double scale = kPictureWidth / image.cols;
+  if (scale < 1.0) cv::resize(image, small, {}, scale, scale, cv::INTER_AREA);
+  std::vector<unsigned char> bytes;
+  cv::imencode(".jpg", small, bytes, {cv::IMWRITE_JPEG_QUALITY, kPictureQuality});
+  pictures_.push_back({measurement.source, measurement.image->header.stamp.toSec(), {bytes.begin(), bytes.end()}});
+}
+
+std::vector<double> BagReader::picture_stamps() const {
+  std::vector<double> out;
+  for (const Picture& picture : pictures_) out.push_back(picture.stamp);
+  return out;
 }
 
 // The message of the image's own stamp; otherwise the last one before, or the first one after it.

@@ -3,11 +3,14 @@
 #include <string>
 
 #include "tissue_stiffness/diagnosis/diagnose.hpp"
+#include "tissue_stiffness/diagnosis/replay_model.hpp"
+#include "tissue_stiffness/report/effect_words.hpp"
 #include "tissue_stiffness/report/write_diagnosis.hpp"
 #include "tissue_stiffness/settings/extend_model.hpp"
 #include "tissue_stiffness/tools/print_diagnosis.hpp"
 #include "tissue_stiffness/tools/recording_reader.hpp"
 #include "tissue_stiffness/tools/run_tool.hpp"
+#include "tissue_stiffness/tools/versions.hpp"
 
 namespace {
 
@@ -16,10 +19,27 @@ std::string read_text(const std::string& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+using namespace tissue_stiffness;
+
+/// The given model's free run and, where effects were added, the last one's.
+Showing show(const ModelSettings& settings, const RecordingReader& reader, const Recording& recording,
+             const Diagnosis& diagnosis) {
+  const BagReader& bag = reader.reader();
+  const std::vector<double> stamps = bag.picture_stamps();
+  Showing out{recording.first_stamp, {}, bag.pictures()};
+  out.replays.push_back(replay_model(settings, reader.mesh(), recording, diagnosis.steps.front().parameters, stamps));
+  out.replays.back().name = "as given";
+  if (diagnosis.entries.empty()) return out;
+  ModelSettings extended = settings;
+  for (const std::string& entry : diagnosis.entries) add_effect(extended, entry);
+  out.replays.push_back(replay_model(extended, reader.mesh(), recording, diagnosis.steps.back().parameters, stamps));
+  out.replays.back().name = "with " + effect_list(diagnosis.final_effects);
+  return out;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  using namespace tissue_stiffness;
   CLI::App app("Compares a model with a recording and says which physical effect it misses.", "diagnose");
   DiagnosisTexts texts;
   DiagnosisOptions options;
@@ -46,7 +66,9 @@ int main(int argc, char** argv) {
     for (int i = 0; i < argc; ++i) texts.command_line += (i > 0 ? " " : "") + std::string(i > 0 ? argv[i] : "diagnose");
     texts.model_text = read_text(texts.model);
     texts.next_model_text = extend_model(texts.model_text, diagnosis.entries, settings.directory);
-    write_diagnosis(diagnosis, texts, output);
+    texts.versions = versions();
+    say("run the models once more for the report");
+    write_diagnosis(diagnosis, texts, show(settings, reader, recording, diagnosis), output);
     if (json) {
       std::cout << diagnosis_json(diagnosis);
     } else if (!quiet) {

@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
                                            [&](std::size_t done, std::size_t total) { progress.show(done, total); });
     progress.finish();
     run.results.command_line = join_arguments(argc, argv);
-    write_results(run.results, output);
+    write_results(run.results, run.showing, output);
     if (json) {
       std::cout << results_json(run.results) << "\n";
     } else if (!quiet) {

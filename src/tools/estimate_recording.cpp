@@ -7,8 +7,10 @@
 #include <optional>
 
 #include "tissue_stiffness/estimation/estimator.hpp"
+#include "tissue_stiffness/estimation/replay_recorder.hpp"
 #include "tissue_stiffness/filter/consistency.hpp"
 #include "tissue_stiffness/tools/recording_reader.hpp"
+#include "tissue_stiffness/tools/versions.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
@@ -112,13 +114,17 @@ class Run {
  private:
   void add_free_run() {
     double error = 0.0, motion = 0.0, count = 0.0;
-    for (const Misfit& misfit : estimator_.free_run()) {
+    const BagReader& reader = recording_.reader();
+    ReplayRecorder recorder(estimator_.mesh(), reader.first_stamp(), reader.picture_stamps());
+    for (const Misfit& misfit : estimator_.free_run([&](const FreeFrame& frame) { recorder.add(frame); })) {
       error += misfit.count * misfit.rms * misfit.rms;
       motion += misfit.count * misfit.motion_rms * misfit.motion_rms;
       count += misfit.count;
     }
     run_.results.rms_error = std::sqrt(error / count);
     run_.results.relative_error = std::sqrt(error / motion);
+    run_.showing = {reader.first_stamp(), {recorder.finish()}, reader.pictures()};
+    run_.showing.replays.front().name = "the estimate";
   }
 
   const ModelSettings& settings_;
@@ -155,6 +161,7 @@ EstimationRun estimate_recording(const std::string& model_file, const std::strin
   result.results.model = model_file;
   result.results.recording = recording_file;
   result.results.model_text = read_text(model_file);
+  result.results.versions = versions();
   return result;
 }
 

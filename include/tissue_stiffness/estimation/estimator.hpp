@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tissue_stiffness/estimation/free_run.hpp"
 #include "tissue_stiffness/settings/model_settings.hpp"
 #include "tissue_stiffness/types/estimate.hpp"
 #include "tissue_stiffness/types/load_sample.hpp"
@@ -73,8 +74,8 @@ class Estimator {
   std::vector<std::string> description() const;
 
   /// The free run from rest to the last frame at the final estimate, compared with every frame kept: what rms_error,
-  /// relative_error and the reports are made of. One misfit a kept frame.
-  std::vector<Misfit> free_run() const;
+  /// relative_error and the reports are made of. One misfit a kept frame; `visit` sees each.
+  std::vector<Misfit> free_run(const FreeFrameVisitor& visit = {}) const;
 
  private:
   class Implementation;

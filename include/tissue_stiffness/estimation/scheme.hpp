@@ -26,7 +26,7 @@ class Scheme {
 
   virtual std::vector<std::string> description() const = 0;
   virtual void work_in_background() {}
-  virtual std::vector<Misfit> free_run() const = 0;
+  virtual std::vector<Misfit> free_run(const FreeFrameVisitor& visit) const = 0;
   virtual Eigen::MatrixXd parameter_covariance() const = 0;  ///< in the filter's coordinates
 
   const Model& model() const { return *model_; }
@@ -41,7 +41,8 @@ class Scheme {
   double start() const { return first_stamp_.value_or(0.0) + model_->settings().time.start; }
   Prediction at_rest(const Frame& frame) const;
   /// The free run at `theta` over the frames, compared with each.
-  std::vector<Misfit> compare_free_run(const std::vector<Frame>& frames, const Eigen::VectorXd& theta) const;
+  std::vector<Misfit> compare_free_run(const std::vector<Frame>& frames, const Eigen::VectorXd& theta,
+                                       const FreeFrameVisitor& visit) const;
 
   std::unique_ptr<Model> model_;
   std::unique_ptr<ForwardModel> forward_;

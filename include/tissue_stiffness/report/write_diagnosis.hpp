@@ -1,8 +1,11 @@
 #pragma once
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "tissue_stiffness/types/diagnosis.hpp"
+#include "tissue_stiffness/types/replay.hpp"
 
 namespace tissue_stiffness {
 
@@ -10,18 +13,20 @@ namespace tissue_stiffness {
 struct DiagnosisTexts {
   std::string model, recording, command_line;  ///< names as given
   std::string model_text, next_model_text;     ///< the model files
+  std::vector<std::pair<std::string, std::string>> versions;
 };
 
 /// `diagnosis.json`: verdict, set, candidates[], where, when, how_much, residual, steps[], next_experiment, final. A number
 /// that does not exist is null. Everything but `seconds` is the same for the same input.
 std::string diagnosis_json(const Diagnosis& diagnosis);
 
-/// `report.html`: one page that needs no network and no script; light and dark.
-std::string diagnosis_html(const Diagnosis& diagnosis, const DiagnosisTexts& texts);
+/// `report.html`: one page that needs no network; as report_html.
+std::string diagnosis_html(const Diagnosis& diagnosis, const DiagnosisTexts& texts, const Showing& showing);
 
 /// Makes the folder when it is missing and writes diagnosis.json, model_next.yaml and report.html. Throws InputError when a
 /// file cannot be written.
-void write_diagnosis(const Diagnosis& diagnosis, const DiagnosisTexts& texts, const std::string& directory);
+void write_diagnosis(const Diagnosis& diagnosis, const DiagnosisTexts& texts, const Showing& showing,
+                     const std::string& directory);
 
 /// One sentence for people: what is missing, what it would explain, what looks the same.
 std::string diagnosis_sentence(const Diagnosis& diagnosis);

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "tissue_stiffness/report/results.hpp"
+#include "tissue_stiffness/types/replay.hpp"
 
 namespace tissue_stiffness {
 
@@ -16,11 +17,12 @@ std::string results_json(const Results& results);
 /// The same for the same input.
 std::string estimates_csv(const Results& results);
 
-/// `report.html`: one page that needs no network and no script; light and dark.
-std::string report_html(const Results& results);
+/// `report.html`: one page that needs no network; light and dark, from phone to paper. What it says holds without scripts,
+/// which draw and move.
+std::string report_html(const Results& results, const Showing& showing);
 
 /// Makes the folder when it is missing and writes the three files. Throws InputError when a file cannot be written.
-void write_results(const Results& results, const std::string& directory);
+void write_results(const Results& results, const Showing& showing, const std::string& directory);
 
 /// Throws InputError naming the file when it cannot be written.
 void write_text(const std::string& file, const std::string& text);

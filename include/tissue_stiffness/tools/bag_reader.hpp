@@ -20,6 +20,7 @@
 #include "tissue_stiffness/settings/model_settings.hpp"
 #include "tissue_stiffness/types/load_sample.hpp"
 #include "tissue_stiffness/types/observation.hpp"
+#include "tissue_stiffness/types/replay.hpp"
 
 namespace tissue_stiffness {
 
@@ -54,6 +55,10 @@ class BagReader {
 
   int late() const { return late_; }
 
+  /// Images of the frames read so far, small, at most 40 a sensor, for showing.
+  const std::vector<Picture>& pictures() const { return pictures_; }
+  std::vector<double> picture_stamps() const;
+
  private:
   struct Measurement {
     int source;
@@ -76,6 +81,7 @@ class BagReader {
 
   void convert(const Measurement& measurement, Instant& instant);
   void segment(const Measurement& measurement, Instant& instant);
+  void keep_picture(const Measurement& measurement, const cv::Mat& image);
   sensor_msgs::CameraInfoConstPtr camera_info(const std::string& topic, const ros::Time& stamp) const;
   std::optional<Eigen::Isometry3d> pose(const std_msgs::Header& header, std::string& reason) const;
 
@@ -92,6 +98,8 @@ class BagReader {
 
   tf2::BufferCore poses_;
   std::map<int, std::unique_ptr<Segmenter>> segmenters_;  ///< by source
+  std::map<int, std::size_t> images_;                     ///< seen, by source
+  std::vector<Picture> pictures_;
   std::map<std::string, std::map<ros::Time, sensor_msgs::CameraInfoConstPtr>> cameras_;
   std::map<ros::Time, std::vector<Measurement>> pending_;
   std::vector<LoadSample> loads_;

@@ -8,12 +8,14 @@
 #include <vector>
 
 #include "tissue_stiffness/report/results.hpp"
+#include "tissue_stiffness/types/replay.hpp"
 
 namespace tissue_stiffness {
 
 /// An estimation run: what it found, and how long it took.
 struct EstimationRun {
   Results results;
+  Showing showing;                                           ///< the free run at the final estimate
   std::map<std::string, std::vector<double>> stage_samples;  ///< wall time of each stage in each frame that used it [s]
   double seconds = 0.0;                                      ///< wall time over all frames, reading included
   int late = 0;                                              ///< messages that came too late for their frame

@@ -1,0 +1,17 @@
+# cmake -DOUTPUT=x.cpp -DFOLDER=resources/report -P embed.cmake: the report's template, style, scripts and libraries as C++
+# strings, so that the page can be written wherever the tools are installed.
+file(GLOB scripts ${FOLDER}/js/*.js)
+list(SORT scripts)
+set(REPORT_JS "")
+foreach(script ${scripts})
+  file(READ ${script} text)
+  string(APPEND REPORT_JS "${text}")
+endforeach()
+file(READ ${FOLDER}/report.html.in REPORT_TEMPLATE)
+file(READ ${FOLDER}/report.css REPORT_CSS)
+file(READ ${FOLDER}/vendor/uplot.min.js UPLOT_JS)
+file(READ ${FOLDER}/vendor/uplot.min.css UPLOT_CSS)
+file(READ ${FOLDER}/vendor/three.min.js THREE_JS)
+file(READ ${FOLDER}/vendor/LICENSE.uplot UPLOT_LICENSE)
+file(READ ${FOLDER}/vendor/LICENSE.three THREE_LICENSE)
+configure_file(${FOLDER}/assets.cpp.in ${OUTPUT} @ONLY)

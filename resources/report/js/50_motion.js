@@ -1,0 +1,49 @@
+// One tracked thing, measured and predicted.
+function range(values) {
+  let low = Infinity, high = -Infinity;
+  for (const v of values) if (Number.isFinite(v)) { low = Math.min(low, v); high = Math.max(high, v); }
+  return high - low;
+}
+
+function liveliest(tracks) {
+  let best = { track: 0, component: 0, range: -1 };
+  tracks.forEach((track, t) => track.components.forEach((c, k) => {
+    const r = range(c.measured);
+    if (r > best.range) best = { track: t, component: k, range: r };
+  }));
+  return best;
+}
+
+function startMotion() {
+  const host = document.querySelector("[data-chart=motion]"), tracks = $("track"), components = $("component");
+  if (!player.replay.tracks.length) return;
+  const best = liveliest(player.replay.tracks);
+  player.replay.tracks.forEach((t, i) => tracks.append(element("option", { value: i }, t.name)));
+  const listComponents = () => {
+    const before = components.value;
+    const list = player.replay.tracks[Number(tracks.value)].components;
+    components.replaceChildren(...list.map((c, i) => element("option", { value: i }, c.name)));
+    components.value = before !== "" && Number(before) < list.length ? before : "0";
+  };
+  tracks.value = best.track;
+  listComponents();
+  components.value = best.component;
+  const chart = addChart(host, () => {
+    const track = player.replay.tracks[Number(tracks.value)], c = track.components[Number(components.value)];
+    const scale = track.unit === "m" ? 1e3 : 1, unit = track.unit === "m" ? "mm" : "pixel";
+    const values = (list) => Array.from(list, (v) => (Number.isFinite(v) ? scale * v : null));
+    return {
+      title: track.name + ", " + c.name + " [" + unit + "]",
+      clock: true,
+      data: [player.replay.time, values(c.measured), values(c.predicted)],
+      scales: { x: { time: false } },
+      axes: [axis("time since the first stamp [s]"), axis(null, { size: 62 })],
+      series: [timeSeries, line("measured", "measured", { width: 1, points: { show: true, size: 4, fill: colour("measured"), space: 0 } }),
+        line("predicted, " + player.replay.name, "predicted")],
+    };
+  });
+  tracks.addEventListener("change", () => { listComponents(); chart.draw(); });
+  components.addEventListener("change", chart.draw);
+  let drawn = player.model;
+  player.listen(() => { if (drawn !== player.model) { drawn = player.model; chart.draw(); } });
+}

@@ -1,0 +1,225 @@
+// The surface in three dimensions, coloured by misfit.
+const stops = [[0, "#3b6fb6"], [0.25, "#6fb7c9"], [0.5, "#f4e8a4"], [0.75, "#f0904a"], [1, "#b5172f"]];
+
+function shade(share, out) {
+  const s = Math.min(1, Math.max(0, share));
+  let k = 0;
+  while (k < stops.length - 2 && s > stops[k + 1][0]) ++k;
+  return out.set(stops[k][1]).lerp(shade.other.set(stops[k + 1][1]), (s - stops[k][0]) / (stops[k + 1][0] - stops[k][0]));
+}
+shade.other = new THREE.Color();
+
+// Root mean square over the frames at each vertex.
+function overFrames(values, vertices) {
+  const sum = new Float64Array(vertices), count = new Float64Array(vertices);
+  for (let i = 0; i < values.length; ++i) {
+    if (Number.isNaN(values[i])) continue;
+    sum[i % vertices] += values[i] ** 2;
+    count[i % vertices] += 1;
+  }
+  return sum.map((s, v) => (count[v] > 0 ? Math.sqrt(s / count[v]) : NaN));
+}
+
+// For vertices that were never measured: the nearest ones that were, within three times the distance between those.
+function neighbours(rest, everMeasured) {
+  const seen = [], far = (a, b) => Math.hypot(rest[3 * a] - rest[3 * b], rest[3 * a + 1] - rest[3 * b + 1], rest[3 * a + 2] - rest[3 * b + 2]);
+  everMeasured.forEach((yes, v) => { if (yes) seen.push(v); });
+  const nearest = (v, count) => seen.filter((s) => s !== v).map((s) => ({ v: s, far: far(v, s) }))
+    .sort((a, b) => a.far - b.far).slice(0, count);
+  if (seen.length < 4) return everMeasured.map(() => []);
+  const sample = seen.filter((s, i) => i % Math.ceil(seen.length / 60) === 0);
+  const reach = 3 * quantile(sample.map((s) => nearest(s, 1)[0].far), 0.5);
+  return everMeasured.map((yes, v) => (yes ? [] : nearest(v, 4).filter((n) => n.far < reach)));
+}
+
+class SurfaceView {
+  constructor(host) {
+    this.host = host;
+    this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
+    this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
+    host.append(this.renderer.domElement);
+    this.scene = new THREE.Scene();
+    this.camera = new THREE.PerspectiveCamera(32, 1, 1e-4, 100);
+    this.camera.up.set(0, 0, 1);
+    this.controls = new THREE.OrbitControls(this.camera, this.renderer.domElement);
+    this.controls.addEventListener("change", () => this.render());
+    this.scene.add(new THREE.HemisphereLight(0xffffff, 0x99a2b0, 2.2));
+    this.sun = new THREE.DirectionalLight(0xffffff, 1.6);
+    this.scene.add(this.sun);
+    this.build();
+    this.resetView();
+    new ResizeObserver(() => this.resize()).observe(host);
+    this.resize();
+  }
+
+  build() {
+    const { rest, triangles, time } = replays[0].surface, n = rest.length / 3;
+    this.count = n;
+    this.geometry = new THREE.BufferGeometry();
+    this.geometry.setIndex(new THREE.BufferAttribute(triangles, 1));
+    this.geometry.setAttribute("position", new THREE.BufferAttribute(Float32Array.from(rest), 3));
+    this.geometry.setAttribute("color", new THREE.BufferAttribute(new Float32Array(3 * n), 3));
+    this.scene.add(new THREE.Mesh(this.geometry, new THREE.MeshLambertMaterial({ vertexColors: true, side: THREE.DoubleSide })));
+    this.addBox(rest);
+    for (const r of replays) {
+      r.surface.errorAll = overFrames(r.surface.error, n);
+      r.surface.sigmasAll = overFrames(r.surface.sigmas, n);
+    }
+    // One scale for all models, so that the better one looks it.
+    const given = replays[0].surface;
+    this.most = { error: quantile(given.error, 0.98) || 1, sigmas: Math.max(3, quantile(given.sigmas, 0.98) || 3) };
+    this.near = neighbours(rest, Array.from(given.errorAll, (x) => Number.isFinite(x)));
+    this.points = new THREE.BufferGeometry();
+    this.tracked = replays[0].tracks.map((t, i) => i).filter((i) => replays[0].tracks[i].components.length === 3);
+    this.points.setAttribute("position", new THREE.BufferAttribute(new Float32Array(3 * this.tracked.length), 3));
+    this.dots = new THREE.Points(this.points, new THREE.PointsMaterial({ size: 5 * Math.min(2, devicePixelRatio) / 2 + 2, sizeAttenuation: false }));
+    this.dots.frustumCulled = false;
+    this.scene.add(this.dots);
+  }
+
+  addBox(rest) {
+    const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+    const { displacement } = replays[0].surface;
+    const stretch = (values, base) => values.forEach((v, i) => {
+      const x = base ? base[i % base.length] + v : v;
+      low[i % 3] = Math.min(low[i % 3], x);
+      high[i % 3] = Math.max(high[i % 3], x);
+    });
+    stretch(rest);
+    this.restBox = [low.slice(), high.slice()];
+    stretch(displacement, rest);
+    this.low = low;
+    this.high = high;
+    const corner = (k) => [0, 1, 2].map((a) => ((k >> a) & 1 ? high[a] : low[a]));
+    const edges = [];
+    for (let k = 0; k < 8; ++k) for (let a = 0; a < 3; ++a) if (!((k >> a) & 1)) edges.push(...corner(k), ...corner(k | (1 << a)));
+    const lines = new THREE.BufferGeometry();
+    lines.setAttribute("position", new THREE.BufferAttribute(Float32Array.from(edges), 3));
+    this.box = new THREE.LineSegments(lines, new THREE.LineBasicMaterial());
+    this.scene.add(this.box);
+    const [a, b] = this.restBox;
+    this.host.append(element("span", { className: "soft size" },
+      "at rest " + [0, 1, 2].map((i) => shortNumber(1e3 * (b[i] - a[i]), 3)).join(" × ") + " mm (x, y, z)"));
+  }
+
+  resetView() {
+    const centre = new THREE.Vector3(...this.low.map((l, i) => 0.5 * (l + this.high[i])));
+    const radius = 0.5 * Math.hypot(...this.low.map((l, i) => this.high[i] - l));
+    const narrow = Math.min(1, this.host.clientWidth / Math.max(1, this.host.clientHeight));
+    const distance = (1.05 * radius) / Math.sin((Math.PI / 180) * 16) / narrow;
+    this.controls.target.copy(centre);
+    this.camera.position.copy(centre).add(new THREE.Vector3(0.72, -1, 0.55).normalize().multiplyScalar(distance));
+    this.camera.near = distance / 100;
+    this.camera.far = distance * 20;
+    this.camera.updateProjectionMatrix();
+    this.controls.update();
+    this.render();
+  }
+
+  resize() {
+    const width = Math.max(50, this.host.clientWidth), height = Math.max(50, this.host.clientHeight);
+    this.renderer.setSize(width, height);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.render();
+  }
+
+  render() {
+    this.sun.position.copy(this.camera.position);
+    this.box.material.color.set(colour("edge"));
+    this.dots.material.color.set(colour("text"));
+    this.renderer.render(this.scene, this.camera);
+  }
+
+  // Displacement between two kept frames, misfit of the nearer one.
+  show(time) {
+    const s = player.replay.surface, at = place(s.time, time), n = 3 * this.count;
+    const from = at.index * n, next = Math.min(at.index + 1, s.time.length - 1) * n;
+    const magnify = Number($("magnify-value").textContent);
+    const position = this.geometry.attributes.position.array;
+    for (let i = 0; i < n; ++i) {
+      position[i] = s.rest[i] + magnify * ((1 - at.share) * s.displacement[from + i] + at.share * s.displacement[next + i]);
+    }
+    this.geometry.attributes.position.needsUpdate = true;
+    this.geometry.computeVertexNormals();
+    this.geometry.computeBoundingSphere();
+    this.paint(s, at.share > 0.5 ? next / 3 : from / 3);
+    this.placeDots(time, magnify);
+    this.render();
+  }
+
+  paint(s, from) {
+    const kind = document.querySelector("input[name=colour]:checked").value;
+    const all = document.querySelector("input[name=span]:checked").value === "all";
+    const values = all ? s[kind + "All"] : s[kind], start = all ? 0 : from;
+    const most = this.most[kind], colours = this.geometry.attributes.color.array, c = new THREE.Color();
+    const nothing = new THREE.Color("#8d96a3");
+    for (let v = 0; v < this.count; ++v) {
+      let value = values[start + v];
+      if (Number.isNaN(value)) {
+        let sum = 0, weight = 0;
+        for (const near of this.near[v]) {
+          const x = values[start + near.v];
+          if (!Number.isNaN(x)) { sum += x / near.far; weight += 1 / near.far; }
+        }
+        value = weight > 0 ? sum / weight : NaN;
+      }
+      const shown = Number.isNaN(value) ? nothing : shade(value / most, c);
+      colours[3 * v] = shown.r;
+      colours[3 * v + 1] = shown.g;
+      colours[3 * v + 2] = shown.b;
+    }
+    this.geometry.attributes.color.needsUpdate = true;
+    this.drawScale(kind, most);
+  }
+
+  drawScale(kind, most) {
+    const unit = kind === "error" ? " mm" : " sigma";
+    $("colour-bar").replaceChildren(element("span", {}, "0"), element("i", {}),
+      element("span", {}, shortNumber(most, 2) + unit), element("em", {}, "nothing measured"));
+  }
+
+  // Measured positions, which mean nothing beside a magnified body.
+  placeDots(time, magnify) {
+    this.dots.visible = Boolean($("measured") && $("measured").checked) && magnify === 1;
+    if (!this.dots.visible) return;
+    const at = place(player.replay.time, time), k = at.index + (at.share > 0.5 ? 1 : 0), array = this.points.attributes.position.array;
+    this.tracked.forEach((t, i) => player.replay.tracks[t].components.forEach((c, a) => { array[3 * i + a] = c.measured[k]; }));
+    this.points.attributes.position.needsUpdate = true;
+  }
+
+  turn(on) {
+    this.controls.autoRotate = on;
+    const step = () => {
+      if (!this.controls.autoRotate) return;
+      this.controls.update();
+      requestAnimationFrame(step);
+    };
+    if (on) requestAnimationFrame(step);
+  }
+}
+
+function startSurface() {
+  const host = $("surface");
+  let view;
+  try {
+    view = new SurfaceView(host);
+  } catch (error) {
+    host.replaceChildren(element("p", { className: "soft" }, "This browser cannot show the surface (no WebGL)."));
+    host.dataset.webgl = "no";
+    return;
+  }
+  const stops_css = stops.map(([at, c]) => c + " " + 100 * at + "%").join(",");
+  document.documentElement.style.setProperty("--misfit-scale", "linear-gradient(90deg," + stops_css + ")");
+  if (!view.tracked.length) $("measured").closest("label").remove();
+  player.listen((time) => view.show(time));
+  const again = () => view.show(player.time);
+  for (const input of document.querySelectorAll("input[name=colour],input[name=span]")) input.addEventListener("change", again);
+  if ($("measured")) $("measured").addEventListener("change", again);
+  $("magnify").addEventListener("input", () => {
+    $("magnify-value").textContent = [1, 2, 5, 10, 20, 50][Number($("magnify").value)];
+    again();
+  });
+  $("turn").addEventListener("change", () => view.turn($("turn").checked));
+  $("view").addEventListener("click", () => view.resetView());
+}

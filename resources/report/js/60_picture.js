@@ -1,0 +1,45 @@
+// Camera images with the measured and the predicted outline.
+function startPicture() {
+  const canvas = $("picture");
+  if (!canvas) return;
+  const source = showing.pictures[0].source;
+  const pictures = showing.pictures.filter((p) => p.source === source).map((p) => {
+    const image = new Image();
+    image.onload = () => player.tell();
+    image.src = p.jpeg;
+    return { time: p.time, image };
+  });
+  const context = canvas.getContext("2d");
+  const stroke = (style) => {
+    context.strokeStyle = "#000a";
+    context.lineWidth = 4;
+    context.stroke();
+    context.strokeStyle = style;
+    context.lineWidth = 2;
+    context.stroke();
+  };
+  const draw = (time) => {
+    const times = pictures.map((p) => p.time), at = place(times, time);
+    const picture = pictures[at.index + (at.share > 0.5 ? 1 : 0)], image = picture.image;
+    if (!image.complete || !image.naturalWidth) return;
+    const outline = player.replay.outlines.find((o) => o.source === source && Math.abs(o.time - picture.time) < 1e-6);
+    canvas.width = 2 * image.naturalWidth;
+    canvas.height = 2 * image.naturalHeight;
+    context.drawImage(image, 0, 0, canvas.width, canvas.height);
+    if (!outline) return;
+    const scale = (0.1 * canvas.width) / outline.width, half = (0.5 * canvas.width) / outline.width;
+    const p = outline.predicted, m = outline.measured;
+    context.lineJoin = context.lineCap = "round";
+    context.beginPath();
+    for (let i = 0; i + 3 < p.length; i += 4) {
+      context.moveTo(scale * p[i] + half, scale * p[i + 1] + half);
+      context.lineTo(scale * p[i + 2] + half, scale * p[i + 3] + half);
+    }
+    stroke(colour("predicted-on-image"));
+    context.beginPath();
+    for (let i = 0; i + 1 < m.length; i += 2) context.lineTo(scale * m[i] + half, scale * m[i + 1] + half);
+    if (outline.closed) context.closePath();
+    stroke(colour("measured-on-image"));
+  };
+  player.listen(draw);
+}

@@ -1,0 +1,200 @@
+#include <algorithm>
+#include <cmath>
+
+#include "tissue_stiffness/report/course.hpp"
+#include "tissue_stiffness/report/effect_words.hpp"
+#include "tissue_stiffness/report/page.hpp"
+#include "tissue_stiffness/report/text.hpp"
+#include "tissue_stiffness/report/write_diagnosis.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr std::size_t kShownEffects = 6;  // in full; the others in a table to fold out
+
+std::string millimetres(double metres) {
+  return std::isfinite(metres) ? short_number(1e3 * metres, 3) + " mm" : "-";
+}
+
+std::string percent(double share) {
+  return short_number(100.0 * share, 3) + " %";
+}
+
+std::string capital(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
+std::string paragraph(const std::string& text) {
+  return text.empty() ? "" : "<p>" + escape_html(text) + "</p>";
+}
+
+std::string verdict_badge(const std::string& verdict) {
+  const std::string colour = verdict == "adequate" ? "good" : verdict == "missing" ? "warn" : "bad";
+  const std::string text = verdict == "missing"    ? "an effect is missing"
+                           : verdict == "numerics" ? "mesh too coarse to tell"
+                           : verdict == "adequate" ? "model adequate"
+                                                   : "error not explained";
+  return "<span class=\"badge " + colour + "\">" + text + "</span>";
+}
+
+/// Young's moduli of a step: "19.0 kPa".
+std::string moduli(const DiagnosisStep& step) {
+  std::string text;
+  for (const auto& [name, value] : step.parameters) {
+    if (name.find(".young_modulus") == std::string::npos) continue;
+    const ShownUnit unit = shown_unit(value, "Pa");
+    text += (text.empty() ? "" : ", ") + short_number(unit.scale * value, 4) + " " + unit.name;
+  }
+  return text;
+}
+
+std::string answer(const Diagnosis& d) {
+  std::string text =
+      "<p>" + verdict_badge(d.verdict) + "</p><p class=\"verdict\">" + escape_html(diagnosis_sentence(d)) + "</p>";
+  const DiagnosisStep &first = d.steps.front(), &last = d.steps.back();
+  if (d.steps.size() > 1) {
+    text += "<p class=\"answer\"><span class=\"name\">Young's modulus, with " + escape_html(effect_list(d.final_effects)) +
+            "</span><b>" + escape_html(moduli(last)) + "</b> <span class=\"interval\">the given model says " +
+            escape_html(moduli(first)) + "</span></p>" +
+            paragraph("With " + effect_list(d.final_effects) + " the held-out error falls from " +
+                      millimetres(first.held_out_rms) + " to " + millimetres(last.held_out_rms) + "; the noise is " +
+                      millimetres(last.noise_floor) + ". Then: " + d.final_verdict + ".");
+  } else if (!moduli(first).empty()) {
+    text += "<p class=\"answer\"><span class=\"name\">Young's modulus of the given model</span><b>" +
+            escape_html(moduli(first)) + "</b> <span class=\"interval\">" +
+            (d.verdict == "adequate" ? "" : "biased by what is missing") + "</span></p>";
+  }
+  return section("answer", "", text);
+}
+
+std::string part(const std::string& name, double metres, double sigmas) {
+  return "<div><dt>" + name + "</dt><dd>" + millimetres(metres) + "<small>" + escape_html(short_number(sigmas, 3)) +
+         " sigma</small></dd></div>";
+}
+
+std::string fails(const Diagnosis& d) {
+  const ErrorParts &m = d.metres, &s = d.sigmas;
+  return section("fails", "Where and when the given model fails",
+                 "<dl class=\"facts\">" + part("Error, rms", m.total, s.total) + part("of it noise", m.noise, s.noise) +
+                     part("beyond noise", m.structured, s.structured) + part("of the mesh", m.numerical, s.numerical) +
+                     "</dl><p><b>Where:</b> " + escape_html(d.where) + ".</p><p><b>When:</b> " + escape_html(d.when) +
+                     ".</p>" + chart_place("residual-time") + "<div class=\"grid\">" + chart_place("residual-node") +
+                     chart_place("residual-amplitude") + chart_place("residual-frequency") + chart_place("residual-phase") +
+                     "</div>");
+}
+
+/// A refit may even come out worse than the model as given.
+std::string gain(double explained) {
+  return explained > 5e-4 ? percent(explained) : "nothing";
+}
+
+std::string chance(double p) {
+  return p > 0.0 ? "p = " + short_number(p, 2) : "p < 1e-300";
+}
+
+/// "the motion dies away faster ...: viscous damping would remove 91 % of the misfit (...)".
+std::string story(const MissingEffect& c) {
+  std::string text = capital(effect_sign(c.effect)) + ". Adding " + effect_title(c.effect) + " would remove " +
+                     gain(c.explained) + " of the squared error";
+  if (std::isfinite(c.held_out_rms_after)) {
+    text += "; on frames that the fit has not seen, the error goes from " + millimetres(c.held_out_rms_before) + " to " +
+            millimetres(c.held_out_rms_after);
+  }
+  text += ".";
+  std::vector<std::string> alike;
+  for (const auto& twin : c.confusable_with) alike.push_back(twin.effect);
+  if (!alike.empty()) text += " In this recording it looks like " + effect_list(alike) + ".";
+  return text;
+}
+
+std::string parameter_words(const MissingEffect& c) {
+  std::string text;
+  for (const auto& [name, value] : c.parameters) {
+    text += (text.empty() ? "" : ", ") + effect_title(name) + " = " + short_number(value, 3);
+  }
+  return text;
+}
+
+std::string twin_words(const MissingEffect& c) {
+  std::string text;
+  for (const auto& twin : c.confusable_with) {
+    text += (text.empty() ? "" : ", ") + effect_title(twin.effect) + " (" + short_number(twin.cosine, 2) + ")";
+  }
+  return text;
+}
+
+std::string effect_card(const MissingEffect& c, bool in_set) {
+  const std::string width = short_number(std::clamp(100.0 * c.explained, 0.0, 100.0), 3);
+  return "<li" + std::string(in_set ? " class=\"chosen\"" : "") + "><h3>" + escape_html(capital(effect_title(c.effect))) +
+         "<span>" + (c.explained > 5e-4 ? percent(c.explained) : "0 %") +
+         "</span></h3><div class=\"bar\"><i style=\"width:" + width + "%\"></i></div>" + paragraph(story(c)) +
+         "<p class=\"soft\">log evidence " + short_number(c.log_bayes_factor, 3) + " · " + escape_html(chance(c.p_value)) +
+         " · size " + short_number(c.size, 2) + " sigma · " + escape_html(parameter_words(c)) + "</p></li>";
+}
+
+std::string effect_row(const MissingEffect& c) {
+  const auto cell = [](const std::string& text) { return "<td class=\"n\">" + escape_html(text) + "</td>"; };
+  return "<tr><td>" + escape_html(effect_title(c.effect)) + "</td>" + cell(percent(c.explained)) +
+         cell(millimetres(c.held_out_rms_after)) + cell(short_number(c.log_bayes_factor, 3)) +
+         cell(short_number(c.p_value, 2)) + "<td>" + escape_html(twin_words(c)) + "</td></tr>";
+}
+
+std::string ranking(const Diagnosis& d) {
+  std::string cards, rows;
+  for (std::size_t i = 0; i < d.candidates.size(); ++i) {
+    const MissingEffect& c = d.candidates[i];
+    const bool in_set = std::find(d.set.begin(), d.set.end(), c.effect) != d.set.end();
+    if (i < kShownEffects) cards += effect_card(c, in_set);
+    rows += effect_row(c);
+  }
+  if (cards.empty()) return "";
+  std::string apart;
+  if (!d.next_experiment.empty())
+    apart = "<p class=\"next\"><b>To tell them apart:</b> " + escape_html(d.next_experiment) + ".</p>";
+  return section(
+      "missing", "What could be missing",
+      "<ol class=\"effects\">" + cards + "</ol>" + apart + "<details><summary>All " + std::to_string(d.candidates.size()) +
+          " effects that were tried</summary><div class=\"scroll\"><table><tr><th>effect</th><th "
+          "class=\"n\">explains</th><th class=\"n\">held-out error after</th><th class=\"n\">log evidence</th><th "
+          "class=\"n\">p</th><th>looks like (cosine)</th></tr>" +
+          rows + "</table></div></details>");
+}
+
+std::string staircase(const Diagnosis& d) {
+  std::string rows;
+  for (const DiagnosisStep& step : d.steps) {
+    const std::string name = step.effects.empty() ? "as given" : "+ " + effect_title(step.effects.back());
+    rows += "<tr><td>" + escape_html(name) + "</td><td class=\"n\">" + millimetres(step.held_out_rms) +
+            "</td><td class=\"n\">" + millimetres(step.train_rms) + "</td><td class=\"n\">" +
+            millimetres(step.noise_floor) + "</td><td class=\"n\">" + escape_html(moduli(step)) + "</td></tr>";
+  }
+  return section("staircase", "The error, step by step",
+                 "<div id=\"steps\"></div><div class=\"scroll\"><table><tr><th>model</th><th class=\"n\">held-out "
+                 "error</th><th class=\"n\">fitted frames</th><th class=\"n\">noise</th><th class=\"n\">Young's "
+                 "modulus</th></tr>" +
+                     rows + "</table></div>");
+}
+
+}  // namespace
+
+std::string diagnosis_html(const Diagnosis& d, const DiagnosisTexts& texts, const Showing& showing) {
+  const bool proposed = !d.final_effects.empty();
+  Page page;
+  page.title = texts.model + " - diagnosis";
+  page.heading = "What does the model miss?";
+  page.subheading = texts.model + " · " + texts.recording;
+  page.body =
+      answer(d) + player(showing) + fails(d) + ranking(d) + staircase(d) +
+      section(
+          "model", "",
+          file_details("The given model", texts.model_text, "", !proposed) +
+              (proposed ? file_details("The proposed model: model_next.yaml", texts.next_model_text, texts.model_text, true)
+                        : "")) +
+      section("timings", "", "<p>The diagnosis took " + escape_html(short_number(d.seconds, 3)) + " s.</p>") +
+      colophon(texts.command_line, texts.versions);
+  page.data = "{\"diagnosis\":" + diagnosis_json(d) + ",\"showing\":" + showing_json(showing) + "}";
+  return page.html();
+}
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,137 @@
+#include "tissue_stiffness/report/page.hpp"
+
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "tissue_stiffness/report/assets.hpp"
+#include "tissue_stiffness/report/text.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+/// Inside a script element only '<' can do harm.
+std::string safe_json(const std::string& json) {
+  std::string out;
+  out.reserve(json.size());
+  for (const char c : json) {
+    if (c == '<') {
+      out += "\\u003c";
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+std::string fill(const std::string& page, const std::map<std::string, std::string>& values) {
+  std::string out;
+  std::size_t from = 0;
+  for (std::size_t at = page.find("{{"); at != std::string::npos; at = page.find("{{", from)) {
+    const std::size_t end = page.find("}}", at);
+    out += page.substr(from, at - from) + values.at(page.substr(at + 2, end - at - 2));
+    from = end + 2;
+  }
+  return out + page.substr(from);
+}
+
+std::string licence(const std::string& name, const std::string& text) {
+  return "<details><summary>" + name + "</summary><pre>" + escape_html(text) + "</pre></details>";
+}
+
+}  // namespace
+
+std::string Page::html() const {
+  return fill(report_assets.page, {{"title", escape_html(title)},
+                                   {"heading", escape_html(heading)},
+                                   {"subheading", escape_html(subheading)},
+                                   {"uplot_style", report_assets.uplot_style},
+                                   {"style", report_assets.style},
+                                   {"body", body},
+                                   {"data", safe_json(data)},
+                                   {"uplot", report_assets.uplot},
+                                   {"three", report_assets.three},
+                                   {"script", report_assets.script}});
+}
+
+std::string section(const std::string& id, const std::string& title, const std::string& content) {
+  if (content.empty()) return "";
+  const std::string head = title.empty() ? "" : "<h2>" + escape_html(title) + "</h2>";
+  return "<section id=\"" + id + "\">" + head + content + "</section>\n";
+}
+
+std::string chart_place(const std::string& id) {
+  return "<div class=\"chart\" data-chart=\"" + id + "\"></div>";
+}
+
+std::string player(const Showing& showing) {
+  const std::vector<Replay>& replays = showing.replays;
+  if (replays.empty()) return "";
+  std::string models;
+  if (replays.size() > 1) {
+    models = "<fieldset class=\"choice\" id=\"which-model\"><legend>Model</legend>";
+    for (std::size_t i = 0; i < replays.size(); ++i) {
+      models += "<label><input type=\"radio\" name=\"model\" value=\"" + std::to_string(i) + "\"" +
+                (i == 0 ? " checked" : "") + "><span>" + escape_html(replays[i].name) + "</span></label>";
+    }
+    models += "</fieldset>";
+  }
+  const std::string colours =
+      "<fieldset class=\"choice\" id=\"colour\"><legend>Misfit in</legend>"
+      "<label><input type=\"radio\" name=\"colour\" value=\"error\" checked><span>mm</span></label>"
+      "<label><input type=\"radio\" name=\"colour\" value=\"sigmas\"><span>sigma</span></label></fieldset>"
+      "<fieldset class=\"choice\" id=\"span\"><legend>of</legend>"
+      "<label><input type=\"radio\" name=\"span\" value=\"frame\" checked><span>this frame</span></label>"
+      "<label><input type=\"radio\" name=\"span\" value=\"all\"><span>all frames</span></label></fieldset>";
+  const std::string stage =
+      "<div class=\"stages\"><div class=\"stage\"><div id=\"surface\"></div><div id=\"colour-bar\"></div>"
+      "<div class=\"controls\">" +
+      colours +
+      "<label class=\"slider\" title=\"Displacement, magnified\">motion ×<output id=\"magnify-value\">1</output>"
+      "<input type=\"range\" id=\"magnify\" min=\"0\" max=\"5\" step=\"1\" value=\"0\"></label>"
+      "<label class=\"tick\"><input type=\"checkbox\" id=\"measured\" checked> measured points</label>"
+      "<label class=\"tick\"><input type=\"checkbox\" id=\"turn\"> turn</label>"
+      "<button type=\"button\" id=\"view\">Reset view</button></div></div>" +
+      (showing.pictures.empty()
+           ? ""
+           : "<div class=\"stage\"><canvas id=\"picture\"></canvas><p class=\"key\"><i class=\"measured\">"
+             "</i>measured outline <i class=\"predicted\"></i>predicted outline</p></div>") +
+      "</div>";
+  const std::string motion =
+      "<div class=\"controls\"><label>Show <select id=\"track\"></select></label> <label>along <select id=\"component\">"
+      "</select></label></div>" +
+      chart_place("motion");
+  const std::string bar =
+      "<div class=\"player\"><button type=\"button\" id=\"play\" aria-label=\"Play\">▶</button>"
+      "<input type=\"range\" id=\"scrub\" min=\"0\" value=\"0\" step=\"any\" aria-label=\"Time\">"
+      "<output id=\"clock\">0.00 s</output><select id=\"speed\" aria-label=\"Speed\"><option value=\"0.1\">0.1×</option>"
+      "<option value=\"0.25\">¼×</option><option value=\"1\" selected>1×</option><option value=\"4\">4×</option></select>"
+      "</div>";
+  return section("replay", "Model against measurement", models + stage + motion + bar);
+}
+
+std::string file_details(const std::string& summary, const std::string& text, const std::string& before, bool open) {
+  if (text.empty()) return "";
+  std::set<std::string> known;
+  std::istringstream old(before), lines(text);
+  std::string line, marked;
+  while (std::getline(old, line)) known.insert(line);
+  while (std::getline(lines, line)) {
+    const bool added = !before.empty() && known.count(line) == 0;
+    marked += added ? "<ins>" + escape_html(line) + "</ins>\n" : escape_html(line) + "\n";
+  }
+  return "<details" + std::string(open ? " open" : "") + "><summary>" + escape_html(summary) + "</summary><pre>" + marked +
+         "</pre></details>";
+}
+
+std::string colophon(const std::string& command_line, const std::vector<std::pair<std::string, std::string>>& versions) {
+  std::string list;
+  for (const auto& [name, version] : versions) list += (list.empty() ? "" : " · ") + name + " " + version;
+  return section(
+      "made", "How to make this again",
+      "<pre>" + escape_html(command_line) + "</pre><p class=\"soft\">" + escape_html(list) +
+          "</p><p class=\"soft\">The page needs no network. It carries two libraries under the MIT licence:</p>" +
+          licence("uPlot", report_assets.uplot_licence) + licence("three.js", report_assets.three_licence));
+}
+
+}  // namespace tissue_stiffness
