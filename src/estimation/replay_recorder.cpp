@@ -40,10 +40,23 @@ Eigen::Vector4d edges(const Eigen::Matrix2Xd& points) {
   return out;
 }
 
-Eigen::Matrix2Xd end_points(const Eigen::Matrix4Xd& pieces) {
-  Eigen::Matrix2Xd points(2, 2 * pieces.cols());
-  points << pieces.topRows<2>(), pieces.bottomRows<2>();
-  return points;
+/// The points of an outline that the model has a counterpart for, and these counterparts [pixel].
+struct FacingPoints {
+  Eigen::Matrix2Xd measured, predicted;
+};
+FacingPoints facing_points(const Contour& contour, const Prediction& p, Eigen::Index from) {
+  const Eigen::Index n = contour.size();
+  FacingPoints out{contour.points, Eigen::Matrix2Xd::Constant(2, n, kNaN)};
+  if (n == 0) return out;
+  Eigen::Index far = 0;
+  (contour.points.colwise() - contour.points.col(0)).colwise().squaredNorm().maxCoeff(&far);
+  const double pixels = (contour.points.col(far) - contour.points.col(0)).norm();
+  const double scale = (p.places.col(from + far) - p.places.col(from)).norm() / pixels;  // metres a pixel
+  for (Eigen::Index i = 0; i < n; ++i) {
+    out.predicted.col(i) = contour.points.col(i) + contour.normals.col(i) * p.predicted[from + i] / scale;
+    if (!out.predicted.col(i).allFinite()) out.measured.col(i).setConstant(kNaN);
+  }
+  return out;
 }
 
 double mean_finite(const Eigen::VectorXd& values) {
@@ -103,7 +116,8 @@ void ReplayRecorder::add_tracks(const FreeFrame& frame) {
     const Key whole{observation.source, -1};
     if (observation.kind == ObservationKind::contour) {
       kinds_[whole] = observation.kind;
-      seen_.back()[whole] = {edges(observation.contour->points), edges(end_points(frame.outline(observation)))};
+      const FacingPoints points = facing_points(*observation.contour, frame.prediction, from);
+      seen_.back()[whole] = {edges(points.measured), edges(points.predicted)};
     } else if (observation.kind == ObservationKind::points) {
       kinds_[whole] = observation.kind;
       const Prediction& p = frame.prediction;

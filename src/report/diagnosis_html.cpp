@@ -151,7 +151,7 @@ std::string ranking(const Diagnosis& d) {
   if (cards.empty()) return "";
   std::string apart;
   if (!d.next_experiment.empty())
-    apart = "<p class=\"next\"><b>To tell them apart:</b> " + escape_html(d.next_experiment) + ".</p>";
+    apart = "<p class=\"next\"><b>To tell them apart:</b> " + escape_html(effect_title(d.next_experiment)) + ".</p>";
   return section(
       "missing", "What could be missing",
       "<ol class=\"effects\">" + cards + "</ol>" + apart + "<details><summary>All " + std::to_string(d.candidates.size()) +
@@ -163,16 +163,19 @@ std::string ranking(const Diagnosis& d) {
 
 std::string staircase(const Diagnosis& d) {
   std::string rows;
+  std::size_t known = 0;
   for (const DiagnosisStep& step : d.steps) {
-    const std::string name = step.effects.empty() ? "as given" : "+ " + effect_title(step.effects.back());
+    const std::vector<std::string> added(step.effects.begin() + static_cast<std::ptrdiff_t>(known), step.effects.end());
+    known = step.effects.size();
+    const std::string name = added.empty() ? "as given" : "+ " + effect_list(added);
     rows += "<tr><td>" + escape_html(name) + "</td><td class=\"n\">" + millimetres(step.held_out_rms) +
             "</td><td class=\"n\">" + millimetres(step.train_rms) + "</td><td class=\"n\">" +
             millimetres(step.noise_floor) + "</td><td class=\"n\">" + escape_html(moduli(step)) + "</td></tr>";
   }
   return section("staircase", "The error, step by step",
-                 "<div id=\"steps\"></div><div class=\"scroll\"><table><tr><th>model</th><th class=\"n\">held-out "
+                 "<div id=\"steps\"></div><div class=\"scroll\"><table><thead><tr><th>model</th><th class=\"n\">held-out "
                  "error</th><th class=\"n\">fitted frames</th><th class=\"n\">noise</th><th class=\"n\">Young's "
-                 "modulus</th></tr>" +
+                 "modulus</th></tr></thead>" +
                      rows + "</table></div>");
 }
 
@@ -181,9 +184,9 @@ std::string staircase(const Diagnosis& d) {
 std::string diagnosis_html(const Diagnosis& d, const DiagnosisTexts& texts, const Showing& showing) {
   const bool proposed = !d.final_effects.empty();
   Page page;
-  page.title = texts.model + " - diagnosis";
+  page.title = short_path(texts.model) + " - diagnosis";
   page.heading = "What does the model miss?";
-  page.subheading = texts.model + " · " + texts.recording;
+  page.subheading = short_path(texts.model) + " · " + short_path(texts.recording);
   page.body =
       answer(d) + player(showing) + fails(d) + ranking(d) + staircase(d) +
       section(

@@ -1,5 +1,6 @@
 #include "tissue_stiffness/report/page.hpp"
 
+#include <filesystem>
 #include <map>
 #include <set>
 #include <sstream>
@@ -39,7 +40,42 @@ std::string licence(const std::string& name, const std::string& text) {
   return "<details><summary>" + name + "</summary><pre>" + escape_html(text) + "</pre></details>";
 }
 
+/// Buttons, one of which is down.
+std::string choice(const std::string& name, const std::string& legend,
+                   const std::vector<std::pair<std::string, std::string>>& options) {
+  std::string text = "<fieldset class=\"choice\" id=\"choose-" + name + "\"><legend>" + legend + "</legend>";
+  for (std::size_t i = 0; i < options.size(); ++i) {
+    text += "<label><input type=\"radio\" name=\"" + name + "\" value=\"" + options[i].first + "\"" +
+            (i == 0 ? " checked" : "") + "><span>" + escape_html(options[i].second) + "</span></label>";
+  }
+  return text + "</fieldset>";
+}
+
+std::string model_choice(const std::vector<Replay>& replays) {
+  std::vector<std::pair<std::string, std::string>> models;
+  for (std::size_t i = 0; i < replays.size(); ++i) models.emplace_back(std::to_string(i), replays[i].name);
+  return models.size() > 1 ? choice("model", "Model", models) : "";
+}
+
+/// The surface in three dimensions with its controls.
+std::string surface_place() {
+  return "<div id=\"surface\"></div><div id=\"colour-bar\"></div><div class=\"controls\">" +
+         choice("colour", "Misfit in", {{"error", "mm"}, {"sigmas", "sigma"}}) +
+         choice("span", "of", {{"frame", "this frame"}, {"all", "all frames"}}) +
+         "<label class=\"slider\" title=\"Displacement, magnified\">motion ×<output id=\"magnify-value\">1</output>"
+         "<input type=\"range\" id=\"magnify\" min=\"0\" max=\"5\" step=\"1\" value=\"0\"></label>"
+         "<label class=\"tick\"><input type=\"checkbox\" id=\"measured\" checked> measured points</label>"
+         "<label class=\"tick\"><input type=\"checkbox\" id=\"glass\"> glass where nothing was measured</label>"
+         "<label class=\"tick\"><input type=\"checkbox\" id=\"turn\"> turn</label>"
+         "<button type=\"button\" id=\"view\">Reset view</button></div>";
+}
+
 }  // namespace
+
+std::string short_path(const std::string& file) {
+  const std::filesystem::path path(file);
+  return (path.parent_path().filename() / path.filename()).string();
+}
 
 std::string Page::html() const {
   return fill(report_assets.page, {{"title", escape_html(title)},
@@ -65,49 +101,22 @@ std::string chart_place(const std::string& id) {
 }
 
 std::string player(const Showing& showing) {
-  const std::vector<Replay>& replays = showing.replays;
-  if (replays.empty()) return "";
-  std::string models;
-  if (replays.size() > 1) {
-    models = "<fieldset class=\"choice\" id=\"which-model\"><legend>Model</legend>";
-    for (std::size_t i = 0; i < replays.size(); ++i) {
-      models += "<label><input type=\"radio\" name=\"model\" value=\"" + std::to_string(i) + "\"" +
-                (i == 0 ? " checked" : "") + "><span>" + escape_html(replays[i].name) + "</span></label>";
-    }
-    models += "</fieldset>";
-  }
-  const std::string colours =
-      "<fieldset class=\"choice\" id=\"colour\"><legend>Misfit in</legend>"
-      "<label><input type=\"radio\" name=\"colour\" value=\"error\" checked><span>mm</span></label>"
-      "<label><input type=\"radio\" name=\"colour\" value=\"sigmas\"><span>sigma</span></label></fieldset>"
-      "<fieldset class=\"choice\" id=\"span\"><legend>of</legend>"
-      "<label><input type=\"radio\" name=\"span\" value=\"frame\" checked><span>this frame</span></label>"
-      "<label><input type=\"radio\" name=\"span\" value=\"all\"><span>all frames</span></label></fieldset>";
-  const std::string stage =
-      "<div class=\"stages\"><div class=\"stage\"><div id=\"surface\"></div><div id=\"colour-bar\"></div>"
-      "<div class=\"controls\">" +
-      colours +
-      "<label class=\"slider\" title=\"Displacement, magnified\">motion ×<output id=\"magnify-value\">1</output>"
-      "<input type=\"range\" id=\"magnify\" min=\"0\" max=\"5\" step=\"1\" value=\"0\"></label>"
-      "<label class=\"tick\"><input type=\"checkbox\" id=\"measured\" checked> measured points</label>"
-      "<label class=\"tick\"><input type=\"checkbox\" id=\"turn\"> turn</label>"
-      "<button type=\"button\" id=\"view\">Reset view</button></div></div>" +
-      (showing.pictures.empty()
-           ? ""
-           : "<div class=\"stage\"><canvas id=\"picture\"></canvas><p class=\"key\"><i class=\"measured\">"
-             "</i>measured outline <i class=\"predicted\"></i>predicted outline</p></div>") +
-      "</div>";
+  if (showing.replays.empty()) return "";
+  const std::string picture =
+      "<div class=\"stage\"><canvas id=\"picture\"></canvas><p class=\"key\"><i class=\"measured\"></i>measured outline "
+      "<i class=\"predicted\"></i>predicted outline</p></div>";
   const std::string motion =
-      "<div class=\"controls\"><label>Show <select id=\"track\"></select></label> <label>along <select id=\"component\">"
+      "<div class=\"stage" + std::string(showing.pictures.empty() ? "" : " wide") +
+      "\"><div class=\"controls\"><label>Show <select id=\"track\"></select></label> <label>along <select id=\"component\">"
       "</select></label></div>" +
-      chart_place("motion");
+      chart_place("motion") + "</div>";
   const std::string bar =
       "<div class=\"player\"><button type=\"button\" id=\"play\" aria-label=\"Play\">▶</button>"
       "<input type=\"range\" id=\"scrub\" min=\"0\" value=\"0\" step=\"any\" aria-label=\"Time\">"
-      "<output id=\"clock\">0.00 s</output><select id=\"speed\" aria-label=\"Speed\"><option value=\"0.1\">0.1×</option>"
-      "<option value=\"0.25\">¼×</option><option value=\"1\" selected>1×</option><option value=\"4\">4×</option></select>"
-      "</div>";
-  return section("replay", "Model against measurement", models + stage + motion + bar);
+      "<output id=\"clock\"></output><select id=\"speed\" aria-label=\"Speed\"></select></div>";
+  return section("replay", "Model against measurement",
+                 model_choice(showing.replays) + "<div class=\"stages\"><div class=\"stage\">" + surface_place() +
+                     "</div>" + (showing.pictures.empty() ? "" : picture) + motion + "</div>" + bar);
 }
 
 std::string file_details(const std::string& summary, const std::string& text, const std::string& before, bool open) {

@@ -47,12 +47,19 @@ std::string identifiability_badge(const IdentifiabilityRecord& record) {
   return badge(record.verdict == "none" ? "bad" : "warn", record.verdict == "none" ? "not determined" : "only a ratio");
 }
 
-/// Young's moduli first, three at most; the table has all.
-std::vector<ParameterEstimate> headline(std::vector<ParameterEstimate> parameters) {
-  std::stable_partition(parameters.begin(), parameters.end(),
-                        [](const ParameterEstimate& p) { return p.name.find(".young_modulus") != std::string::npos; });
-  if (parameters.size() > 3) parameters.resize(3);
-  return parameters;
+bool is_modulus(const std::string& name) {
+  return name.find(".young_modulus") != std::string::npos;
+}
+
+/// Young's moduli; without one the first parameters. Three at most; the table has all.
+std::vector<ParameterEstimate> headline(const std::vector<ParameterEstimate>& parameters) {
+  std::vector<ParameterEstimate> shown;
+  for (const ParameterEstimate& p : parameters) {
+    if (is_modulus(p.name)) shown.push_back(p);
+  }
+  if (shown.empty()) shown = parameters;
+  if (shown.size() > 3) shown.resize(3);
+  return shown;
 }
 
 std::string answer(const Results& results) {
@@ -165,12 +172,17 @@ std::string timing_table(const Results& results) {
                      rows + "</table></div>");
 }
 
-/// E against time, and the error against time, where there are frames.
+/// What the headline shows against time; other parameters to fold out.
 std::string courses(const Results& results) {
   if (results.used() == 0) return "";
-  std::string charts;
-  for (const ParameterEstimate& p : results.parameters) charts += chart_place("parameter:" + escape_html(p.name));
-  return section("course", "The estimate over time", charts);
+  const std::vector<ParameterEstimate> first = headline(results.parameters);
+  std::string charts, others;
+  for (const ParameterEstimate& p : results.parameters) {
+    const bool shown = std::any_of(first.begin(), first.end(), [&](const auto& other) { return other.name == p.name; });
+    (shown ? charts : others) += chart_place("parameter:" + escape_html(p.name));
+  }
+  if (!others.empty()) others = "<details><summary>Other parameters</summary>" + others + "</details>";
+  return section("course", "The estimate over time", charts + others);
 }
 
 std::string misfit(const Results& results) {
@@ -192,9 +204,9 @@ std::string choices(const Results& results) {
 
 std::string report_html(const Results& results, const Showing& showing) {
   Page page;
-  page.title = results.model + " - tissue stiffness";
+  page.title = short_path(results.model) + " - tissue stiffness";
   page.heading = "Tissue stiffness";
-  page.subheading = results.model + (results.recording.empty() ? "" : " · " + results.recording);
+  page.subheading = short_path(results.model) + " · " + short_path(results.recording);
   page.body = answer(results) + facts(results) + courses(results) + player(showing) + misfit(results) +
               parameter_table(results) + skipped_table(results) + choices(results) +
               section("model", "", file_details("Model file", results.model_text, "", true)) + timing_table(results) +

@@ -28,7 +28,7 @@ std::string diagnosis_sentence(const Diagnosis& d) {
           millimetres(best.held_out_rms_before) + " to " + millimetres(best.held_out_rms_after) + ").";
   if (d.set.size() > 1) {
     text += " These data fit as well: " + effect_list({d.set.begin() + 1, d.set.end()}) + ".";
-    if (!d.next_experiment.empty()) text += " To tell them apart: " + d.next_experiment + ".";
+    if (!d.next_experiment.empty()) text += " To tell them apart: " + effect_title(d.next_experiment) + ".";
   }
   return text;
 }

@@ -21,6 +21,9 @@ struct Page {
 /// A card; nothing when there is no content.
 std::string section(const std::string& id, const std::string& title, const std::string& content);
 
+/// A file with the folder that it lies in.
+std::string short_path(const std::string& file);
+
 /// The place of a chart, which the page's script fills: `id` is known to it.
 std::string chart_place(const std::string& id);
 

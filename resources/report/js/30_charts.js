@@ -5,9 +5,14 @@ const font = '12px system-ui, "Segoe UI", "DejaVu Sans", sans-serif';
 
 function axis(label, extra) {
   return Object.assign({
-    stroke: colour("soft"), font, label, labelFont: font, labelSize: 18, labelGap: 2,
+    stroke: colour("soft"), font, label, labelFont: font, labelSize: 16, labelGap: 0, size: 32,
     grid: { stroke: colour("edge"), width: 1 }, ticks: { stroke: colour("edge"), width: 1, size: 4 },
   }, extra);
+}
+
+function nearest(times, time) {
+  const at = place(times, time);
+  return at.index + (at.share > 0.5 ? 1 : 0);
 }
 
 // A vertical line that follows the player's clock; a click on the chart moves the clock.
@@ -19,11 +24,13 @@ function clockLine(u) {
     const x = u.valToPos(time, "x");
     line.style.display = x >= 0 && x <= u.over.clientWidth ? "" : "none";
     line.style.transform = "translateX(" + x + "px)";
+    if (u.cursor.left < 0) u.setLegend({ idx: nearest(u.data[0], time) });
   };
   u.moveClock = move;
   u.over.addEventListener("click", () => {
     if (u.cursor.left >= 0) { setPlaying(false); player.show(u.posToVal(u.cursor.left, "x")); }
   });
+  u.over.addEventListener("mouseleave", () => move(player.time));
   move(player.time);
 }
 
@@ -33,18 +40,21 @@ function addChart(host, make) {
   chart.draw = () => {
     if (chart.plot) chart.plot.destroy();
     host.replaceChildren();
-    const { title, note, controls, data, clock, height, legendLive, ...options } = chart.make();
+    const { title, note, controls, data, clock, height, ...options } = chart.make();
     if (title) host.append(element("h3", {}, title));
     if (note) host.append(element("p", { className: "soft note" }, note));
     if (controls) host.append(controls);
     const size = { width: Math.max(200, host.clientWidth), height: height || (host.clientWidth < 480 ? 210 : 260) };
+    const hooks = Object.assign({}, options.hooks);
+    hooks.draw = [...(hooks.draw || []), (u) => { if (u.moveClock) u.moveClock(player.time); }];
     chart.plot = new uPlot(Object.assign(size, {
       cursor: { y: false, points: { size: 7 }, drag: { x: true, y: false } },
-      legend: { live: legendLive !== false },
-    }, options), data, host);
+    }, options, { hooks }), data, host);
+    host.classList.toggle("still", !clock || !replays.length);
     host.setAttribute("role", "img");
     host.setAttribute("aria-label", title || options.label || "chart");
     if (clock) clockLine(chart.plot);
+    requestAnimationFrame(() => { if (chart.plot.moveClock) chart.plot.moveClock(player.time); });
   };
   chart.draw();
   charts.push(chart);
@@ -52,7 +62,6 @@ function addChart(host, make) {
     const width = Math.max(200, host.clientWidth);
     if (chart.plot && Math.abs(chart.plot.width - width) > 1) {
       chart.plot.setSize({ width, height: chart.plot.height });
-      if (chart.plot.moveClock) chart.plot.moveClock(player.time);
     }
   }).observe(host);
   return chart;
@@ -64,7 +73,7 @@ function line(label, name, extra) {
   }, extra);
 }
 
-const timeSeries = { label: "time [s]", value: (u, v) => (finite(v) ? v.toFixed(2) : "–") };
+const timeSeries = { label: "time [s]", value: (u, v) => (finite(v) ? v.toFixed(clockDigits()) : "–") };
 const constant = (count, value) => Array(count).fill(value);
 
 // Room above the data, zero below.

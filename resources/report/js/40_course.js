@@ -22,7 +22,7 @@ function parameterChart(host, parameter) {
       title: parameter.title + (parameter.unit ? " [" + parameter.unit + "]" : ""),
       controls, clock: true,
       data: [cut(course.time), cut(parameter.mean), lower, upper],
-      scales: { x: { time: false }, y: logarithmic ? { distr: 3 } : { range: (u, a, b) => uPlot.rangeNum(a, b, 0.08, true) } },
+      scales: { x: { time: false }, y: logarithmic ? { distr: 3, range: () => [low / 1.15, high * 1.15] } : { range: (u, a, b) => uPlot.rangeNum(a, b, 0.08, true) } },
       axes: [axis("time since the first stamp [s]"), axis(null, {
         size: 62, values: (u, ticks) => ticks.map((v) => (v === null ? "" : shortNumber(v, 4))) })],
       series: [timeSeries, line("estimate", "predicted"),
@@ -69,7 +69,7 @@ function misfitChart(host) {
     scales: { x: { time: false }, y: { range: fromZero } },
     axes: [axis("time since the first stamp [s]"), axis(null, { size: 62 })],
     series: [timeSeries, line("measurement − model", "error", { fill: colour("error-soft") }),
-      line("noise of the sensors", "noise", { dash: [6, 5] }), { label: "in sigmas", scale: "none", show: true, stroke: "transparent",
+      line("noise of the sensors", "noise", { dash: [6, 5] }), { label: "in sigmas", scale: "none", stroke: "transparent", points: { show: false },
         value: (u, v) => shortNumber(v, 3) }],
     hooks: { draw: [skippedMarks] },
   }));

@@ -20,16 +20,29 @@ function overFrames(values, vertices) {
   return sum.map((s, v) => (count[v] > 0 ? Math.sqrt(s / count[v]) : NaN));
 }
 
-// For vertices that were never measured: the nearest ones that were, within three times the distance between those.
-function neighbours(rest, everMeasured) {
-  const seen = [], far = (a, b) => Math.hypot(rest[3 * a] - rest[3 * b], rest[3 * a + 1] - rest[3 * b + 1], rest[3 * a + 2] - rest[3 * b + 2]);
-  everMeasured.forEach((yes, v) => { if (yes) seen.push(v); });
-  const nearest = (v, count) => seen.filter((s) => s !== v).map((s) => ({ v: s, far: far(v, s) }))
-    .sort((a, b) => a.far - b.far).slice(0, count);
-  if (seen.length < 4) return everMeasured.map(() => []);
-  const sample = seen.filter((s, i) => i % Math.ceil(seen.length / 60) === 0);
-  const reach = 3 * quantile(sample.map((s) => nearest(s, 1)[0].far), 0.5);
-  return everMeasured.map((yes, v) => (yes ? [] : nearest(v, 4).filter((n) => n.far < reach)));
+// For vertices that were never measured: those that were, at most three edges away along the surface.
+function neighbours(rest, triangles, everMeasured) {
+  const edges = everMeasured.map(() => new Set());
+  for (let i = 0; i < triangles.length; i += 3) {
+    for (let k = 0; k < 3; ++k) {
+      const a = triangles[i + k], b = triangles[i + ((k + 1) % 3)];
+      edges[a].add(b);
+      edges[b].add(a);
+    }
+  }
+  const far = (a, b) => Math.hypot(...[0, 1, 2].map((k) => rest[3 * a + k] - rest[3 * b + k]));
+  return everMeasured.map((yes, v) => {
+    if (yes) return [];
+    const known = new Set([v]), found = [];
+    let ring = [v];
+    for (let step = 0; step < 3; ++step) {
+      const next = [];
+      for (const r of ring) for (const e of edges[r]) if (!known.has(e)) { known.add(e); next.push(e); }
+      for (const e of next) if (everMeasured[e]) found.push({ v: e, far: far(v, e) });
+      ring = next;
+    }
+    return found;
+  });
 }
 
 class SurfaceView {
@@ -58,8 +71,12 @@ class SurfaceView {
     this.geometry = new THREE.BufferGeometry();
     this.geometry.setIndex(new THREE.BufferAttribute(triangles, 1));
     this.geometry.setAttribute("position", new THREE.BufferAttribute(Float32Array.from(rest), 3));
-    this.geometry.setAttribute("color", new THREE.BufferAttribute(new Float32Array(3 * n), 3));
-    this.scene.add(new THREE.Mesh(this.geometry, new THREE.MeshLambertMaterial({ vertexColors: true, side: THREE.DoubleSide })));
+    this.geometry.setAttribute("color", new THREE.BufferAttribute(new Float32Array(4 * n), 4));
+    // What was measured is solid, and hides what lies behind it; the rest may be glass. Pushed back a little, so that
+    // points on the surface are seen whole.
+    const material = { vertexColors: true, side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 60 };
+    this.scene.add(new THREE.Mesh(this.geometry, new THREE.MeshLambertMaterial({ ...material, alphaTest: 0.6 })),
+      new THREE.Mesh(this.geometry, new THREE.MeshLambertMaterial({ ...material, transparent: true, depthWrite: false })));
     this.addBox(rest);
     for (const r of replays) {
       r.surface.errorAll = overFrames(r.surface.error, n);
@@ -68,7 +85,13 @@ class SurfaceView {
     // One scale for all models, so that the better one looks it.
     const given = replays[0].surface;
     this.most = { error: quantile(given.error, 0.98) || 1, sigmas: Math.max(3, quantile(given.sigmas, 0.98) || 3) };
-    this.near = neighbours(rest, Array.from(given.errorAll, (x) => Number.isFinite(x)));
+    // Outlines pass over the body: one frame alone tells of few places.
+    if (given.error.filter(Number.isFinite).length < 0.3 * given.time.length * given.errorAll.filter(Number.isFinite).length) {
+      document.querySelector("input[name=span][value=all]").checked = true;
+    }
+    this.near = neighbours(rest, triangles, Array.from(given.errorAll, (x) => Number.isFinite(x)));
+    const told = this.near.filter((near, v) => near.length || Number.isFinite(given.errorAll[v])).length;
+    $("glass").checked = told < 0.5 * n;
     this.points = new THREE.BufferGeometry();
     this.tracked = replays[0].tracks.map((t, i) => i).filter((i) => replays[0].tracks[i].components.length === 3);
     this.points.setAttribute("position", new THREE.BufferAttribute(new Float32Array(3 * this.tracked.length), 3));
@@ -106,7 +129,7 @@ class SurfaceView {
     const centre = new THREE.Vector3(...this.low.map((l, i) => 0.5 * (l + this.high[i])));
     const radius = 0.5 * Math.hypot(...this.low.map((l, i) => this.high[i] - l));
     const narrow = Math.min(1, this.host.clientWidth / Math.max(1, this.host.clientHeight));
-    const distance = (1.05 * radius) / Math.sin((Math.PI / 180) * 16) / narrow;
+    const distance = (0.92 * radius) / Math.sin((Math.PI / 180) * 16) / narrow;
     this.controls.target.copy(centre);
     this.camera.position.copy(centre).add(new THREE.Vector3(0.72, -1, 0.55).normalize().multiplyScalar(distance));
     this.camera.near = distance / 100;
@@ -153,7 +176,7 @@ class SurfaceView {
     const all = document.querySelector("input[name=span]:checked").value === "all";
     const values = all ? s[kind + "All"] : s[kind], start = all ? 0 : from;
     const most = this.most[kind], colours = this.geometry.attributes.color.array, c = new THREE.Color();
-    const nothing = new THREE.Color("#8d96a3");
+    const nothing = new THREE.Color("#8d96a3"), glass = $("glass").checked ? 0.16 : 1;
     for (let v = 0; v < this.count; ++v) {
       let value = values[start + v];
       if (Number.isNaN(value)) {
@@ -165,9 +188,7 @@ class SurfaceView {
         value = weight > 0 ? sum / weight : NaN;
       }
       const shown = Number.isNaN(value) ? nothing : shade(value / most, c);
-      colours[3 * v] = shown.r;
-      colours[3 * v + 1] = shown.g;
-      colours[3 * v + 2] = shown.b;
+      colours.set([shown.r, shown.g, shown.b, shown === nothing ? glass : 1], 4 * v);
     }
     this.geometry.attributes.color.needsUpdate = true;
     this.drawScale(kind, most);
@@ -183,7 +204,7 @@ class SurfaceView {
   placeDots(time, magnify) {
     this.dots.visible = Boolean($("measured") && $("measured").checked) && magnify === 1;
     if (!this.dots.visible) return;
-    const at = place(player.replay.time, time), k = at.index + (at.share > 0.5 ? 1 : 0), array = this.points.attributes.position.array;
+    const k = nearest(player.replay.time, time), array = this.points.attributes.position.array;
     this.tracked.forEach((t, i) => player.replay.tracks[t].components.forEach((c, a) => { array[3 * i + a] = c.measured[k]; }));
     this.points.attributes.position.needsUpdate = true;
   }
@@ -220,6 +241,7 @@ function startSurface() {
     $("magnify-value").textContent = [1, 2, 5, 10, 20, 50][Number($("magnify").value)];
     again();
   });
+  $("glass").addEventListener("change", again);
   $("turn").addEventListener("change", () => view.turn($("turn").checked));
   $("view").addEventListener("click", () => view.resetView());
 }

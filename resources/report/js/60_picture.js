@@ -19,8 +19,7 @@ function startPicture() {
     context.stroke();
   };
   const draw = (time) => {
-    const times = pictures.map((p) => p.time), at = place(times, time);
-    const picture = pictures[at.index + (at.share > 0.5 ? 1 : 0)], image = picture.image;
+    const picture = pictures[nearest(pictures.map((p) => p.time), time)], image = picture.image;
     if (!image.complete || !image.naturalWidth) return;
     const outline = player.replay.outlines.find((o) => o.source === source && Math.abs(o.time - picture.time) < 1e-6);
     canvas.width = 2 * image.naturalWidth;

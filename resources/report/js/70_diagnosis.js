@@ -48,24 +48,20 @@ function categorical(names, values, label) {
   };
 }
 
+// Words and numbers are those of the table below it.
 function staircase() {
   const host = $("steps");
   if (!host) return;
   const steps = page.diagnosis.steps, most = Math.max(...steps.map((s) => Math.max(s.held_out_rms, s.noise_floor)));
-  const floor = steps[steps.length - 1].noise_floor;
-  const known = [];
-  for (const s of steps) {
-    const added = s.effects.filter((e) => !known.includes(e));
-    known.push(...added);
-    const name = added.length ? "+ " + added.join(" and ").replaceAll("_", " ") : "as given";
-    const column = element("div", { className: "step" });
-    column.append(element("b", {}, shortNumber(1e3 * s.held_out_rms, 3) + " mm"));
-    const block = element("i", {});
-    block.style.height = (100 * s.held_out_rms) / most + "%";
-    column.append(element("div", { className: "rise" }, block), element("span", {}, name));
-    host.append(column);
-  }
-  const noise = element("div", { className: "floor" }, element("span", {}, "noise " + shortNumber(1e3 * floor, 3) + " mm"));
-  noise.style.setProperty("--at", floor / most);
+  const rows = document.querySelectorAll("#staircase tbody tr");
+  steps.forEach((step, i) => {
+    const cells = rows[i].cells, block = element("i", {});
+    block.style.height = (100 * step.held_out_rms) / most + "%";
+    host.append(element("div", { className: "step" }, element("b", {}, cells[1].textContent),
+      element("div", { className: "rise" }, block), element("span", {}, cells[0].textContent)));
+  });
+  const noise = element("div", { className: "floor" },
+    element("span", {}, "noise " + rows[steps.length - 1].cells[3].textContent));
+  noise.style.setProperty("--at", steps[steps.length - 1].noise_floor / most);
   host.append(noise);
 }

@@ -1,0 +1,131 @@
+// Every control of the page, used. What is not used here fails the test.
+import assert from "node:assert/strict";
+import { surfaceColours, surfaceHash } from "./browser.js";
+
+const clock = async (page) => parseFloat(await page.textContent("#clock"));
+
+async function changesSurface(page, what, act) {
+  const before = await surfaceHash(page);
+  await act();
+  assert.notEqual(await surfaceHash(page), before, what + " changes the surface");
+}
+
+async function choose(page, name, value) {
+  await page.locator(`input[name=${name}][value="${value}"] + span`).click();
+}
+
+async function scrubTo(page, share) {
+  await page.locator("#scrub").evaluate((input, s) => {
+    input.value = Number(input.min) + s * (Number(input.max) - Number(input.min));
+    input.dispatchEvent(new Event("input"));
+  }, share);
+}
+
+async function usePlayer(page) {
+  await scrubTo(page, 0);
+  const first = await clock(page);
+  await changesSurface(page, "the scrubber", () => scrubTo(page, 0.63));
+  assert.ok((await clock(page)) > first, "the scrubber moves the clock");
+  const line = () => page.locator(".clock-line").first().evaluate((e) => e.style.transform);
+  const before = await line();
+  await scrubTo(page, 0.1);
+  assert.notEqual(await line(), before, "the line in the charts follows");
+  const start = await clock(page);
+  await page.click("#play");
+  await page.waitForFunction((t) => parseFloat(document.getElementById("clock").textContent) > t, start);
+  await page.click("#play");
+  const stopped = await clock(page);
+  await page.waitForTimeout(250);
+  assert.equal(await clock(page), stopped, "pause stops the clock");
+  const speeds = await page.locator("#speed option").evaluateAll((all) => all.map((o) => o.value));
+  await page.selectOption("#speed", speeds[0]);
+  await scrubTo(page, 0.2);
+  await page.click("#play");
+  await page.waitForFunction(() => document.getElementById("play").getAttribute("aria-label") === "Play", null, { timeout: 60000 });
+  assert.equal(await page.locator("#scrub").evaluate((i) => i.value === i.max), true, "playing ends at the end");
+}
+
+async function useSurface(page) {
+  await scrubTo(page, 0.7);
+  assert.ok((await surfaceColours(page)) > 50, "the surface is there");
+  const scale = await page.textContent("#colour-bar");
+  await choose(page, "colour", "sigmas");
+  assert.notEqual(await page.textContent("#colour-bar"), scale);
+  const other = (await page.isChecked("input[name=span][value=all]")) ? "frame" : "all";
+  await changesSurface(page, "all frames", () => choose(page, "span", other));
+  await choose(page, "colour", "error");
+  assert.equal(await page.textContent("#colour-bar"), scale);
+  if (await page.locator("#measured").count()) await changesSurface(page, "hiding points", () => page.click("#measured"));
+  await changesSurface(page, "magnifying", () => page.locator("#magnify").fill("3"));
+  assert.equal(await page.textContent("#magnify-value"), "10");
+  await page.locator("#magnify").fill("0");
+  const glass = await page.isChecked("#glass");
+  await page.click("#glass");
+  assert.equal(await page.isChecked("#glass"), !glass);
+  const still = await surfaceHash(page);
+  await page.click("#turn");
+  await page.waitForTimeout(600);
+  await page.click("#turn");
+  assert.notEqual(await surfaceHash(page), still, "turning turns");
+  await page.click("#view");
+  const home = await surfaceHash(page);
+  const box = await page.locator("#surface").boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width / 2 + 80, box.y + box.height / 2 + 20, { steps: 4 });
+  await page.mouse.up();
+  assert.notEqual(await surfaceHash(page), home, "dragging turns the surface");
+  await changesSurface(page, "the reset", () => page.click("#view"));
+  for (const radio of await page.locator("input[name=model]").all()) {
+    const value = await radio.getAttribute("value");
+    if (value === "0") continue;
+    await changesSurface(page, "another model", () => choose(page, "model", value));
+    await changesSurface(page, "the given model", () => choose(page, "model", "0"));
+  }
+}
+
+async function useMotion(page) {
+  const title = () => page.textContent("[data-chart=motion] h3");
+  for (const list of ["#track", "#component"]) {
+    const values = await page.locator(list + " option").evaluateAll((all) => all.map((o) => o.value));
+    const before = await title(), now = await page.locator(list).inputValue();
+    const other = values.find((v) => v !== now);
+    if (other === undefined) continue;
+    await page.selectOption(list, other);
+    assert.notEqual(await title(), before, list + " changes the chart");
+  }
+}
+
+async function useRest(page) {
+  for (const box of await page.locator("[data-chart] input[type=checkbox]").all()) {
+    if (!(await box.isVisible())) continue;
+    const plot = await box.evaluate((e) => { e.closest("[data-chart]").dataset.tried = "yes"; return e.id; });
+    await page.evaluate((id) => document.getElementById(id).click(), plot);
+    assert.ok(await page.locator("[data-chart][data-tried] canvas").count(), "the chart is drawn again");
+  }
+  for (const details of await page.locator("details").all()) {
+    const was = await details.evaluate((e) => e.open);
+    await details.locator("> summary").click();
+    assert.equal(await details.evaluate((e) => e.open), !was, "details fold");
+    if (was) await details.locator("> summary").click();
+  }
+  const ground = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+  const light = await ground();
+  await page.click("#theme");
+  await page.click("#theme");
+  assert.notEqual(await ground(), light, "the theme's button makes it dark");
+  await page.click("#theme");
+  assert.equal(await ground(), light);
+}
+
+const used = new Set(["play", "scrub", "speed", "colour", "span", "model", "measured", "magnify", "glass", "turn", "view",
+  "track", "component", "theme"]);
+
+export async function checkControls(page) {
+  const names = await page.locator("button, input, select").evaluateAll((all) => all.map((e) => e.name || e.id));
+  for (const name of names) assert.ok(used.has(name) || name.startsWith("close-"), "a control that no test uses: " + name);
+  await usePlayer(page);
+  await useSurface(page);
+  await useMotion(page);
+  await useRest(page);
+}
