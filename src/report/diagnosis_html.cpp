@@ -95,9 +95,11 @@ std::string chance(double p) {
 
 /// "the motion dies away faster ...: viscous damping would remove 91 % of the misfit (...)".
 std::string story(const MissingEffect& c) {
+  const bool refitted = std::isfinite(c.held_out_rms_after);
   std::string text = capital(effect_sign(c.effect)) + ". Adding " + effect_title(c.effect) + " would remove " +
-                     gain(c.explained) + " of the squared error";
-  if (std::isfinite(c.held_out_rms_after)) {
+                     gain(c.explained) + " of the squared error" +
+                     (refitted ? "" : ", to first order; it was not refitted");
+  if (refitted) {
     text += "; on frames that the fit has not seen, the error goes from " + millimetres(c.held_out_rms_before) + " to " +
             millimetres(c.held_out_rms_after);
   }

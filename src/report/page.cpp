@@ -103,20 +103,20 @@ std::string chart_place(const std::string& id) {
 std::string player(const Showing& showing) {
   if (showing.replays.empty()) return "";
   const std::string picture =
-      "<div class=\"stage\"><canvas id=\"picture\"></canvas><p class=\"key\"><i class=\"measured\"></i>measured outline "
-      "<i class=\"predicted\"></i>predicted outline</p></div>";
+      "<canvas id=\"picture\"></canvas><p class=\"key\"><i class=\"measured\"></i>measured outline "
+      "<i class=\"predicted\"></i>predicted outline</p>";
   const std::string motion =
-      "<div class=\"stage" + std::string(showing.pictures.empty() ? "" : " wide") +
-      "\"><div class=\"controls\"><label>Show <select id=\"track\"></select></label> <label>along <select id=\"component\">"
+      "<div class=\"controls\"><label>Show <select id=\"track\"></select></label> <label>along <select id=\"component\">"
       "</select></label></div>" +
-      chart_place("motion") + "</div>";
+      chart_place("motion");
   const std::string bar =
       "<div class=\"player\"><button type=\"button\" id=\"play\" aria-label=\"Play\">▶</button>"
       "<input type=\"range\" id=\"scrub\" min=\"0\" value=\"0\" step=\"any\" aria-label=\"Time\">"
       "<output id=\"clock\"></output><select id=\"speed\" aria-label=\"Speed\"></select></div>";
   return section("replay", "Model against measurement",
                  model_choice(showing.replays) + "<div class=\"stages\"><div class=\"stage\">" + surface_place() +
-                     "</div>" + (showing.pictures.empty() ? "" : picture) + motion + "</div>" + bar);
+                     "</div><div class=\"stage\">" + (showing.pictures.empty() ? "" : picture) + motion + "</div></div>" +
+                     bar);
 }
 
 std::string file_details(const std::string& summary, const std::string& text, const std::string& before, bool open) {

@@ -49,6 +49,14 @@ TEST_F(RoundTrip, FindsTheModulusFromImages) {
   const EstimationRun run = this->run(8e5, contour(), camera);
   EXPECT_NEAR(run.results.parameters.at(0).mean, 8e5, 0.05 * 8e5);
   EXPECT_GT(run.stage_samples.count("segment"), 0U);
+  ASSERT_EQ(run.showing.pictures.size(), 20U);
+  EXPECT_EQ(run.showing.pictures.front().jpeg.substr(0, 2), "\xff\xd8");
+  const Replay& replay = run.showing.replays.at(0);
+  ASSERT_EQ(replay.outlines.size(), 20U);
+  EXPECT_EQ(replay.outlines.front().width, 480);
+  EXPECT_GT(replay.outlines.front().predicted.cols(), 4);
+  const ReplayTrack& outline = replay.tracks.at(0);
+  EXPECT_LT((outline.measured - outline.predicted).cwiseAbs().maxCoeff(), 3.0);  // pixels
 }
 
 TEST_F(RoundTrip, GivesTheSameBytesForTheSameInput) {

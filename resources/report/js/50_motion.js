@@ -34,7 +34,7 @@ function startMotion() {
     const values = (list) => Array.from(list, (v) => (Number.isFinite(v) ? scale * v : null));
     return {
       title: track.name + ", " + c.name + " [" + unit + "]",
-      clock: true,
+      clock: true, height: innerWidth > 900 && !showing.pictures.length ? 340 : 0,
       data: [player.replay.time, values(c.measured), values(c.predicted)],
       scales: { x: { time: false } },
       axes: [axis("time since the first stamp [s]"), axis(null, { size: 62 })],

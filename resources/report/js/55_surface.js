@@ -129,7 +129,7 @@ class SurfaceView {
     const centre = new THREE.Vector3(...this.low.map((l, i) => 0.5 * (l + this.high[i])));
     const radius = 0.5 * Math.hypot(...this.low.map((l, i) => this.high[i] - l));
     const narrow = Math.min(1, this.host.clientWidth / Math.max(1, this.host.clientHeight));
-    const distance = (0.92 * radius) / Math.sin((Math.PI / 180) * 16) / narrow;
+    const distance = (1.02 * radius) / Math.sin((Math.PI / 180) * 16) / narrow;
     this.controls.target.copy(centre);
     this.camera.position.copy(centre).add(new THREE.Vector3(0.72, -1, 0.55).normalize().multiplyScalar(distance));
     this.camera.near = distance / 100;

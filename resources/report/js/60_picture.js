@@ -10,12 +10,9 @@ function startPicture() {
     return { time: p.time, image };
   });
   const context = canvas.getContext("2d");
-  const stroke = (style) => {
-    context.strokeStyle = "#000a";
-    context.lineWidth = 4;
-    context.stroke();
+  const stroke = (style, width) => {
     context.strokeStyle = style;
-    context.lineWidth = 2;
+    context.lineWidth = width;
     context.stroke();
   };
   const draw = (time) => {
@@ -30,15 +27,15 @@ function startPicture() {
     const p = outline.predicted, m = outline.measured;
     context.lineJoin = context.lineCap = "round";
     context.beginPath();
+    for (let i = 0; i + 1 < m.length; i += 2) context.lineTo(scale * m[i] + half, scale * m[i + 1] + half);
+    if (outline.closed) context.closePath();
+    stroke(colour("measured-on-image"), 5);
+    context.beginPath();
     for (let i = 0; i + 3 < p.length; i += 4) {
       context.moveTo(scale * p[i] + half, scale * p[i + 1] + half);
       context.lineTo(scale * p[i + 2] + half, scale * p[i + 3] + half);
     }
-    stroke(colour("predicted-on-image"));
-    context.beginPath();
-    for (let i = 0; i + 1 < m.length; i += 2) context.lineTo(scale * m[i] + half, scale * m[i + 1] + half);
-    if (outline.closed) context.closePath();
-    stroke(colour("measured-on-image"));
+    stroke(colour("predicted-on-image"), 2);
   };
   player.listen(draw);
 }

@@ -121,11 +121,38 @@ async function useRest(page) {
 const used = new Set(["play", "scrub", "speed", "colour", "span", "model", "measured", "magnify", "glass", "turn", "view",
   "track", "component", "theme"]);
 
+// Both outlines are on the picture, and it plays.
+async function checkPicture(page) {
+  if (!(await page.locator("#picture").count())) return;
+  const look = () => page.evaluate(() => {
+    const canvas = document.getElementById("picture"), style = getComputedStyle(document.documentElement);
+    const context = Object.assign(document.createElement("canvas"), { width: canvas.width, height: canvas.height }).getContext("2d");
+    context.drawImage(canvas, 0, 0);
+    const pixels = context.getImageData(0, 0, canvas.width, canvas.height).data;
+    const wanted = ["measured-on-image", "predicted-on-image"].map((name) =>
+      style.getPropertyValue("--" + name).trim().match(/[0-9a-f]{2}/g).map((h) => parseInt(h, 16)));
+    const seen = [0, 0];
+    let sum = 0;
+    for (let i = 0; i < pixels.length; i += 4) {
+      wanted.forEach((c, k) => { if (c.every((x, j) => Math.abs(x - pixels[i + j]) < 8)) ++seen[k]; });
+      sum = (31 * sum + pixels[i]) % 1000003;
+    }
+    return { seen, sum };
+  });
+  await scrubTo(page, 0);
+  await page.waitForFunction(() => document.getElementById("picture").width > 300);
+  const first = await look();
+  assert.ok(first.seen[0] > 100 && first.seen[1] > 100, "both outlines are drawn: " + first.seen);
+  await scrubTo(page, 0.5);
+  assert.notEqual((await look()).sum, first.sum, "the picture plays");
+}
+
 export async function checkControls(page) {
   const names = await page.locator("button, input, select").evaluateAll((all) => all.map((e) => e.name || e.id));
   for (const name of names) assert.ok(used.has(name) || name.startsWith("close-"), "a control that no test uses: " + name);
   await usePlayer(page);
   await useSurface(page);
   await useMotion(page);
+  await checkPicture(page);
   await useRest(page);
 }
