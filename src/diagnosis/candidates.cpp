@@ -99,6 +99,10 @@ bool stays_linear(const Study& base, const Candidate& candidate) {
 
 }  // namespace
 
+bool Candidate::allows(const Eigen::VectorXd& amplitude) const {
+  return amplitude.size() == 0 || (amplitude.minCoeff() >= lower && amplitude.maxCoeff() <= upper);
+}
+
 std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd& w,
                                        const std::vector<std::string>& ignore) {
   const ProposalContext context = context_of(base, w);
@@ -109,6 +113,11 @@ std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd&
     bool first = true, linear = true;
     for (Proposal& proposal : spec.proposals(context)) {
       all.push_back({spec.name, std::move(proposal), {}});
+      for (const ParameterSpec& parameter : spec.parameters) {
+        if (parameter.name != all.back().proposal.amplitude) continue;
+        all.back().lower = parameter.lower;
+        all.back().upper = parameter.upper;
+      }
       if (first) linear = !base.model().nonlinear() && stays_linear(base, all.back());
       first = false;
       (linear ? together : alone).push_back(all.size() - 1);

@@ -9,6 +9,8 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr std::size_t kRefits = 6;      // candidates that are simulated anew
+constexpr std::ptrdiff_t kWaysOf = 3;   // leading effects that are refitted in two ways
+constexpr double kSameWay = 0.8;        // cosine above which two ways are one
 constexpr std::size_t kPairs = 3;       // and pairs
 constexpr double kRemainder = 0.25;     // of the mesh's error that a mesh twice as fine still has, or more
 constexpr double kTwin = 0.9;           // cosine above which two effects look alike
@@ -34,27 +36,23 @@ class Look {
     options.progress("tangents of the library");
     const Eigen::VectorXd std = base.fit.covariance.diagonal().cwiseSqrt();
     candidates_ = find_candidates(*base.study, base.fit.w, options.ignore);
-    Eigen::MatrixXd known = base_tangents(*base.study, base.fit.w, std, base.rows);
+    const Eigen::MatrixXd known = base_tangents(*base.study, base.fit.w, std, base.rows);
     options.progress("what a finer mesh would change");
     const FinerMesh finer = finer_mesh(base);
     by_mesh_ = finer.explained;
     floor_ = Scorer(base.rows.error, known, base.rows.offsets, 1.0).remaining(finer.change);
     // An effect has to explain what the mesh does not.
-    known.conservativeResize(Eigen::NoChange, known.cols() + 1);
-    known.rightCols<1>() = finer.change;
-    scorer_ = std::make_unique<Scorer>(base.rows.error, known, base.rows.offsets, 1.0);
+    scorer_ = std::make_unique<Scorer>(base.rows.error - finer.change, known, base.rows.offsets, 1.0);
     ranked_ = rank(*scorer_, candidates_, kRemainder * floor_);
   }
 
   Finding find(const std::vector<std::string>& wanted) {
     require_proposed(wanted);
     refit_singles(wanted);
+    const bool left = !noise() && (refits_.empty() || refits_.front().cost > kAdequate * kAdequate * rows_);
+    if (left && wanted.empty() && by_mesh_ < kExplains * structured()) refit_pairs();
     Finding out;
     out.verdict = judge();
-    if (out.verdict == "unexplained" && wanted.empty()) {
-      refit_pairs();
-      out.verdict = judge();
-    }
     out.floor = floor_;
     if (out.verdict == "missing" || out.verdict == "unexplained") out.set = set();
     describe_all(out.effects);
@@ -65,6 +63,8 @@ class Look {
  private:
   void require_proposed(const std::vector<std::string>& wanted) const;
   void refit_singles(const std::vector<std::string>& wanted);
+  void add_other_way(const Ranked& r);
+  void drop_worse_ways();
   void refit_pairs();
   void add_refit(const std::vector<Addition>& additions);
   void sort_refits();
@@ -72,6 +72,7 @@ class Look {
   std::vector<std::string> set() const;
   void describe_all(std::vector<MissingEffect>& out) const;
   MissingEffect describe(const Ranked& r) const;
+  bool noise() const { return cost_ < kAdequate * kAdequate * rows_; }
   double structured() const { return std::max(0.0, cost_ - rows_); }
 
   const Fitted& base_;
@@ -107,10 +108,35 @@ void Look::add_refit(const std::vector<Addition>& additions) {
 void Look::refit_singles(const std::vector<std::string>& wanted) {
   for (const Ranked& r : ranked_) {
     const bool asked = std::find(wanted.begin(), wanted.end(), r.effect) != wanted.end();
-    if (!asked && (!r.declared || refits_.size() >= kRefits || !wanted.empty())) continue;
+    const bool worth = r.declared || (r.promising && !noise());
+    if (!asked && (!worth || refits_.size() >= kRefits || !wanted.empty())) continue;
     add_refit({{r.best, r.score.amplitude}});
+    if (&r - ranked_.data() < kWaysOf) add_other_way(r);
   }
   sort_refits();
+}
+
+// Of the leading effects also the best of the ways that look different: tangents choose badly between directions.
+void Look::add_other_way(const Ranked& r) {
+  const Candidate* other = nullptr;
+  Score best;
+  for (const Candidate& candidate : candidates_) {
+    if (candidate.effect != r.effect || &candidate == r.best) continue;
+    Score score = scorer_->score(candidate.tangent);
+    if (score.cosine_with(r.score) > kSameWay || !candidate.allows(score.amplitude)) continue;
+    if (other != nullptr && score.log_bayes_factor <= best.log_bayes_factor) continue;
+    other = &candidate;
+    best = std::move(score);
+  }
+  if (other != nullptr && best.log_bayes_factor > kSameEvidence) add_refit({{other, best.amplitude}});
+}
+
+// One refit an effect, the best.
+void Look::drop_worse_ways() {
+  for (auto refit = refits_.begin(); refit != refits_.end();) {
+    const bool known = std::any_of(refits_.begin(), refit, [&](const Refit& r) { return r.effects == refit->effects; });
+    refit = known ? refits_.erase(refit) : refit + 1;
+  }
 }
 
 void Look::refit_pairs() {
@@ -135,10 +161,11 @@ void Look::sort_refits() {
   std::stable_sort(refits_.begin(), refits_.end(), [&](const Refit& a, const Refit& b) {
     return evidence(a, rows_, variance) > evidence(b, rows_, variance);
   });
+  drop_worse_ways();
 }
 
 std::string Look::judge() const {
-  if (cost_ < kAdequate * kAdequate * rows_ && (refits_.empty() || !proven(base_, refits_.front()))) return "adequate";
+  if (noise() && (refits_.empty() || !proven(base_, refits_.front()))) return "adequate";
   if (by_mesh_ > kExplains * structured()) return "numerics";
   if (refits_.empty() || !proven(base_, refits_.front())) return "unexplained";
   const double left = refits_.front().cost - rows_;
@@ -174,14 +201,16 @@ MissingEffect Look::describe(const Ranked& r) const {
     out.parameters[r.effect + "." + r.best->proposal.amplitude + suffix] = r.score.amplitude[i];
   }
   out.held_out_rms_before = rms_error(base_.rows, base_.study->recording(), true);
-  for (const Refit& refit : refits_) {
-    const auto at = std::find(refit.effects.begin(), refit.effects.end(), r.effect);
-    if (at == refit.effects.end()) continue;
-    out.parameters = refit.parameters;
-    out.held_out_rms_after = refit.held_out_rms;
-    out.explained = 1.0 - refit.cost / cost_;
-    out.entry = refit.entries[static_cast<std::size_t>(at - refit.effects.begin())];
-    break;  // the best of its refits
+  for (const std::size_t size : {2, 1}) {  // its own refit says more of it than a pair's
+    const auto refit = std::find_if(refits_.begin(), refits_.end(), [&](const Refit& known) {
+      return known.effects.size() == size && std::count(known.effects.begin(), known.effects.end(), r.effect) > 0;
+    });
+    if (refit == refits_.end()) continue;
+    const auto at = std::find(refit->effects.begin(), refit->effects.end(), r.effect) - refit->effects.begin();
+    out.parameters = refit->parameters;
+    out.held_out_rms_after = refit->held_out_rms;
+    out.explained = 1.0 - refit->cost / cost_;
+    out.entry = refit->entries[static_cast<std::size_t>(at)];
   }
   for (const Ranked& other : ranked_) {
     if (other.effect == r.effect) continue;

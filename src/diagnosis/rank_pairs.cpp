@@ -36,15 +36,15 @@ std::vector<RankedPair> rank_pairs(const Scorer& scorer, const std::vector<Candi
     for (std::size_t j = i + 1; j < ways.size(); ++j) {
       const Candidate &a = *ways[i].candidate, &b = *ways[j].candidate;
       if (a.effect == b.effect) continue;
+      const Eigen::Index split = a.tangent.columns.cols();
       const Score score = scorer.score(a.tangent, b.tangent);
+      const Eigen::VectorXd first = score.amplitude.head(split),
+                            second = score.amplitude.tail(score.amplitude.size() - split);
+      if (!a.allows(first) || !b.allows(second)) continue;
       const double alone = std::max(ways[i].log_bayes_factor, ways[j].log_bayes_factor);
       RankedPair& known = best[{a.effect, b.effect}];
       if (known.first.way != nullptr && known.evidence >= score.log_bayes_factor) continue;
-      const Eigen::Index split = a.tangent.columns.cols();
-      known = {{&a, score.amplitude.head(split)},
-               {&b, score.amplitude.tail(score.amplitude.size() - split)},
-               score.log_bayes_factor,
-               score.log_bayes_factor - alone};
+      known = {{&a, first}, {&b, second}, score.log_bayes_factor, score.log_bayes_factor - alone};
     }
   }
   std::vector<RankedPair> pairs;

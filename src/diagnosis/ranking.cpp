@@ -8,7 +8,8 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kEvidence = 5.0;  // log Bayes factor from which an effect is declared
+constexpr double kImpossible = -1e3;  // log Bayes factor of an amplitude out of bounds
+constexpr double kEvidence = 5.0;     // log Bayes factor from which an effect is declared
 constexpr double kSignificance = 0.01;
 constexpr double kOverFloor = 0.75;  // of what the numerics may explain
 constexpr double kLeastSize = 0.1;   // [sigma]; false winners on clean recordings stay below
@@ -17,14 +18,16 @@ constexpr double kLeastSize = 0.1;   // [sigma]; false winners on clean recordin
 
 std::vector<Ranked> rank(const Scorer& scorer, const std::vector<Candidate>& candidates, double floor) {
   std::vector<Score> scores(candidates.size());
-  tbb::parallel_for(std::size_t{0}, candidates.size(),
-                    [&](std::size_t c) { scores[c] = scorer.score(candidates[c].tangent); });
+  tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t c) {
+    scores[c] = scorer.score(candidates[c].tangent);
+    if (!candidates[c].allows(scores[c].amplitude)) scores[c].log_bayes_factor = kImpossible;
+  });
   std::vector<Ranked> ranked;
   std::map<std::string, std::vector<double>> factors;
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     factors[candidates[c].effect].push_back(scores[c].log_bayes_factor);
     auto at = std::find_if(ranked.begin(), ranked.end(), [&](const Ranked& r) { return r.effect == candidates[c].effect; });
-    if (at == ranked.end()) at = ranked.insert(ranked.end(), {candidates[c].effect, nullptr, {}, 0.0, false});
+    if (at == ranked.end()) at = ranked.insert(ranked.end(), {candidates[c].effect, nullptr, {}, 0.0, false, false});
     if (at->best != nullptr && scores[c].log_bayes_factor <= at->score.log_bayes_factor) continue;
     at->best = &candidates[c];
     at->score = scores[c];
@@ -34,7 +37,8 @@ std::vector<Ranked> rank(const Scorer& scorer, const std::vector<Candidate>& can
     const std::vector<double>& ways = factors[r.effect];
     r.evidence = log_mean_exp(ways);
     const double p = std::min(1.0, r.score.p_value * effects * static_cast<double>(ways.size()));
-    r.declared = r.evidence > kEvidence && p < kSignificance && r.score.size > std::max(kOverFloor * floor, kLeastSize);
+    r.promising = r.evidence > kEvidence && r.score.size > std::max(kOverFloor * floor, kLeastSize);
+    r.declared = r.promising && p < kSignificance;
   }
   std::stable_sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) { return a.evidence > b.evidence; });
   return ranked;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,11 @@ struct Candidate {
   std::string effect;
   Proposal proposal;
   Tangent tangent;
+  double lower = -std::numeric_limits<double>::infinity();  ///< bounds of the amplitude
+  double upper = std::numeric_limits<double>::infinity();
+
+  /// Within the bounds: nothing is explained by a negative damping.
+  bool allows(const Eigen::VectorXd& amplitude) const;
 };
 
 /// Everything that the library proposes for the fitted base model, but for effects to `ignore`. The tangents of all linear

@@ -12,9 +12,10 @@ namespace tissue_stiffness {
 struct Ranked {
   std::string effect;
   const Candidate* best = nullptr;
-  Score score;            ///< of the best way
-  double evidence = 0.0;  ///< log-mean-exp of the log Bayes factors of all ways
-  bool declared = false;  ///< evidence, p-value after multiplicity and size all speak for it
+  Score score;             ///< of the best way
+  double evidence = 0.0;   ///< log-mean-exp of the log Bayes factors of all ways
+  bool promising = false;  ///< evidence and size speak for it
+  bool declared = false;   ///< and the p-value after multiplicity too
 };
 
 /// All effects that are proposed, most evidence first. `floor`: rms that the numerics may explain [sigma].
