@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::size_t kMostFrames = 480;
 constexpr std::size_t kMostVertices = 1600;
-constexpr std::size_t kSurfaceNumbers = 160000;  // vertices x frames of the surface
-constexpr std::size_t kTrackNumbers = 32000;     // tracks x frames
+constexpr std::size_t kSurfaceNumbers = 90000;  // vertices x frames of the surface
+constexpr std::size_t kTrackNumbers = 32000;    // tracks x frames
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Drops every second entry: what was kept of every frame is then kept of every second one.

@@ -123,8 +123,11 @@ class Run {
     }
     run_.results.rms_error = std::sqrt(error / count);
     run_.results.relative_error = std::sqrt(error / motion);
-    run_.showing = {reader.first_stamp(), {recorder.finish()}, reader.pictures()};
-    run_.showing.replays.front().name = "the estimate";
+    run_.showing = {reader.first_stamp(), {}, reader.pictures()};
+    Replay replay = recorder.finish();
+    if (replay.time.empty()) return;  // of a very long recording the estimator keeps no frames
+    replay.name = "the estimate";
+    run_.showing.replays.push_back(std::move(replay));
   }
 
   const ModelSettings& settings_;

@@ -24,13 +24,23 @@ function parameterChart(host, parameter) {
       data: [cut(course.time), cut(parameter.mean), lower, upper],
       scales: { x: { time: false }, y: logarithmic ? { distr: 3, range: () => [low / 1.15, high * 1.15] } : { range: (u, a, b) => uPlot.rangeNum(a, b, 0.08, true) } },
       axes: [axis("time since the first stamp [s]"), axis(null, {
-        size: 62, values: (u, ticks) => ticks.map((v) => (v === null ? "" : shortNumber(v, 4))) })],
+        size: 62, ...(logarithmic ? { splits: () => roundSteps(low / 1.15, high * 1.15), filter: (u, ticks) => ticks } : {}),
+        values: (u, ticks) => ticks.map((v) => (v === null ? "" : shortNumber(v, 4))) })],
       series: [timeSeries, line("estimate", "predicted"),
         line("95 % from", "predicted", { width: 0.5 }), line("to", "predicted", { width: 0.5 })],
       bands: [{ series: [3, 2], fill: colour("band") }],
       hooks: { draw: [(u) => level(u, last, colour("predicted"))] },
     };
   });
+}
+
+// 1, 2 and 5 times powers of ten in between; over many decades powers of ten alone.
+function roundSteps(low, high) {
+  const all = [], decades = Math.log10(high / low);
+  for (let power = Math.floor(Math.log10(low)); power <= Math.log10(high); ++power) {
+    for (const digit of decades > 3 ? [1] : [1, 2, 5]) all.push(digit * 10 ** power);
+  }
+  return all.filter((x) => x >= low && x <= high);
 }
 
 // A dashed level across the chart.

@@ -46,9 +46,9 @@ function neighbours(rest, triangles, everMeasured) {
 }
 
 class SurfaceView {
-  constructor(host) {
+  constructor(host, renderer) {
     this.host = host;
-    this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
+    this.renderer = renderer;
     this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
     host.append(this.renderer.domElement);
     this.scene = new THREE.Scene();
@@ -56,6 +56,14 @@ class SurfaceView {
     this.camera.up.set(0, 0, 1);
     this.controls = new THREE.OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener("change", () => this.render());
+    // The page still scrolls over the surface: by wheel without Ctrl, by a finger that goes up or down.
+    const canvas = this.renderer.domElement;
+    canvas.style.touchAction = "pan-y";
+    canvas.addEventListener("pointerdown", () => { this.controls.enableZoom = true; }, { capture: true });
+    canvas.addEventListener("wheel", (event) => { this.controls.enableZoom = event.ctrlKey || event.metaKey; }, { capture: true, passive: true });
+    canvas.setAttribute("role", "img");
+    canvas.setAttribute("aria-label", "Surface of the model, coloured by misfit; drag to turn, Ctrl and wheel to zoom");
+    canvas.title = "Drag to turn, Ctrl and wheel to zoom";
     this.scene.add(new THREE.HemisphereLight(0xffffff, 0x99a2b0, 2.2));
     this.sun = new THREE.DirectionalLight(0xffffff, 1.6);
     this.scene.add(this.sun);
@@ -222,16 +230,17 @@ class SurfaceView {
 
 function startSurface() {
   const host = $("surface");
-  let view;
+  let renderer;
   try {
-    view = new SurfaceView(host);
+    renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
   } catch (error) {
     host.replaceChildren(element("p", { className: "soft" }, "This browser cannot show the surface (no WebGL)."));
     host.dataset.webgl = "no";
     return;
   }
-  const stops_css = stops.map(([at, c]) => c + " " + 100 * at + "%").join(",");
-  document.documentElement.style.setProperty("--misfit-scale", "linear-gradient(90deg," + stops_css + ")");
+  const view = new SurfaceView(host, renderer);
+  const gradient = stops.map(([at, c]) => c + " " + 100 * at + "%").join(",");
+  document.documentElement.style.setProperty("--misfit-scale", "linear-gradient(90deg," + gradient + ")");
   if (!view.tracked.length) $("measured").closest("label").remove();
   player.listen((time) => view.show(time));
   const again = () => view.show(player.time);
