@@ -131,7 +131,7 @@ def read_options(root, arguments):
     parser.add_argument('--live', choices=('none', 'images', 'all'), default='images',
                         help='recordings played through the nodes too: the image recordings %s and %s, or all' % LIVE)
     parser.add_argument('names', nargs='*', metavar='NAME', help='of ' + ', '.join(CASES))
-    options = parser.parse_args(arguments)
+    options = parser.parse_intermixed_args(arguments)
     unknown = [name for name in options.names if name not in CASES]
     if unknown:
         parser.error('found %s; allowed: %s' % (unknown[0], ', '.join(CASES)))

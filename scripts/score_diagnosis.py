@@ -54,7 +54,7 @@ def main():
     parser.add_argument('--diagnose')
     parser.add_argument('--shared')
     parser.add_argument('--output')
-    arguments = parser.parse_args()
+    arguments = parser.parse_intermixed_args()
     arguments.diagnose = arguments.diagnose or os.path.join(arguments.root, 'build/devel/lib/tissue_stiffness/diagnose')
     arguments.shared = arguments.shared or os.path.join(arguments.root, '..', 'shared')
     arguments.output = arguments.output or os.path.join(arguments.root, 'output', 'score_diagnosis')

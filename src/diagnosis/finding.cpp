@@ -11,6 +11,7 @@ namespace {
 constexpr std::size_t kRefits = 6;      // candidates that are simulated anew
 constexpr std::ptrdiff_t kWaysOf = 3;   // leading effects that are refitted in two ways
 constexpr double kSameWay = 0.8;        // cosine above which two ways are one
+constexpr std::size_t kOthers = 4;      // and more, when those leave more than noise
 constexpr std::size_t kPairs = 3;       // and pairs
 constexpr double kRemainder = 0.25;     // of the mesh's error that a mesh twice as fine still has, or more
 constexpr double kTwin = 0.9;           // cosine above which two effects look alike
@@ -49,8 +50,9 @@ class Look {
   Finding find(const std::vector<std::string>& wanted) {
     require_proposed(wanted);
     refit_singles(wanted);
-    const bool left = !noise() && (refits_.empty() || refits_.front().cost > kAdequate * kAdequate * rows_);
-    if (left && wanted.empty() && by_mesh_ < kExplains * structured()) refit_pairs();
+    const bool by_effect = wanted.empty() && !noise() && by_mesh_ < kExplains * structured();
+    if (by_effect && leaves_more_than_noise()) refit_others();
+    if (by_effect && leaves_more_than_noise()) refit_pairs();
     Finding out;
     out.verdict = judge();
     out.floor = floor_;
@@ -63,6 +65,7 @@ class Look {
  private:
   void require_proposed(const std::vector<std::string>& wanted) const;
   void refit_singles(const std::vector<std::string>& wanted);
+  void refit_others();
   void add_other_way(const Ranked& r);
   void drop_worse_ways();
   void refit_pairs();
@@ -72,6 +75,7 @@ class Look {
   std::vector<std::string> set() const;
   void describe_all(std::vector<MissingEffect>& out) const;
   MissingEffect describe(const Ranked& r) const;
+  bool leaves_more_than_noise() const { return refits_.empty() || refits_.front().cost > kAdequate * kAdequate * rows_; }
   bool noise() const { return cost_ < kAdequate * kAdequate * rows_; }
   double structured() const { return std::max(0.0, cost_ - rows_); }
 
@@ -108,10 +112,18 @@ void Look::add_refit(const std::vector<Addition>& additions) {
 void Look::refit_singles(const std::vector<std::string>& wanted) {
   for (const Ranked& r : ranked_) {
     const bool asked = std::find(wanted.begin(), wanted.end(), r.effect) != wanted.end();
-    const bool worth = r.declared || (r.promising && !noise());
-    if (!asked && (!worth || refits_.size() >= kRefits || !wanted.empty())) continue;
+    if (!asked && (!r.declared || refits_.size() >= kRefits || !wanted.empty())) continue;
     add_refit({{r.best, r.score.amplitude}});
-    if (&r - ranked_.data() < kWaysOf) add_other_way(r);
+  }
+  sort_refits();
+}
+
+// What correlated errors could have made as well; and other ways of the leading effects.
+void Look::refit_others() {
+  std::size_t others = 0;
+  for (const Ranked& r : ranked_) {
+    if (&r - ranked_.data() < kWaysOf && r.promising) add_other_way(r);
+    if (r.promising && !r.declared && others++ < kOthers) add_refit({{r.best, r.score.amplitude}});
   }
   sort_refits();
 }
@@ -165,9 +177,11 @@ void Look::sort_refits() {
 }
 
 std::string Look::judge() const {
-  if (noise() && (refits_.empty() || !proven(base_, refits_.front()))) return "adequate";
+  const bool gained = !refits_.empty() && proven(base_, refits_.front());
+  // Within the noise, what the mesh explains about as well is no sign of an effect.
+  if (noise() && (!gained || by_mesh_ > 0.5 * (cost_ - refits_.front().cost))) return "adequate";
   if (by_mesh_ > kExplains * structured()) return "numerics";
-  if (refits_.empty() || !proven(base_, refits_.front())) return "unexplained";
+  if (!gained) return "unexplained";
   const double left = refits_.front().cost - rows_;
   const bool explains = left < (1.0 - kExplains) * structured() || left < floor_ * floor_ * rows_;
   return explains ? "missing" : "unexplained";
