@@ -40,7 +40,10 @@ await visit("numbers", pages[1], {}, (page) => checkDiagnosis(page, diagnose));
 for (const file of pages) {
   await check("below 4 MB: " + file, () => assert.ok(statSync(file).size < 4e6));
   await visit("controls", file, {}, checkControls);
-  await visit("light", file, { colorScheme: "light" }, (page) => page.screenshot(picture(file, "light")));
+  await visit("light", file, { colorScheme: "light" }, async (page) => {
+    await page.screenshot(picture(file, "light"));
+    await page.locator("#replay").screenshot({ path: file.replace(/\.html$/, "-replay.png") });
+  });
   await visit("dark", file, { colorScheme: "dark" }, async (page) => {
     const ground = await page.evaluate(() => getComputedStyle(document.body).backgroundColor);
     assert.ok(ground.match(/\d+/g).every((c) => Number(c) < 60), "a dark ground: " + ground);
