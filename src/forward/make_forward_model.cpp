@@ -1,10 +1,17 @@
+#include "tissue_stiffness/forward/first_order_model.hpp"
 #include "tissue_stiffness/forward/full_model.hpp"
 #include "tissue_stiffness/forward/reduced_model.hpp"
 
 namespace tissue_stiffness {
 
 std::unique_ptr<ForwardModel> make_forward_model(const Model& model) {
-  if (!model.nonlinear()) return std::make_unique<ReducedModel>(model);
+  return make_forward_model(model, BasisOptions());
+}
+
+std::unique_ptr<ForwardModel> make_forward_model(const Model& model, const BasisOptions& basis) {
+  const bool left_out = basis.nonlinear == BasisOptions::Nonlinear::left_out;
+  if (!model.nonlinear() || left_out) return std::make_unique<ReducedModel>(model, basis);
+  if (basis.nonlinear == BasisOptions::Nonlinear::first_order) return std::make_unique<FirstOrderModel>(model, basis);
   FullModel::Options options;
   options.step = model.settings().time.step;
   return std::make_unique<FullModel>(model, options);

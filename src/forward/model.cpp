@@ -143,6 +143,11 @@ bool Model::estimated(const Part& part, const std::vector<int>& shape) const {
   });
 }
 
+bool Model::estimated(const Part& part) const {
+  return std::any_of(free_.begin(), free_.end(),
+                     [&](const FreeParameter& p) { return p.name.rfind(part.label + ".", 0) == 0; });
+}
+
 void Model::add_initial_velocity() {
   const auto offset = known_.size();
   known_.conservativeResize(offset + 3);

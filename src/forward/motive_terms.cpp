@@ -4,10 +4,13 @@
 #include <cmath>
 #include <utility>
 
+#include "tissue_stiffness/forward/extra_force.hpp"
+
 namespace tissue_stiffness {
 namespace {
 
 constexpr double kSameRatio = 1e-9;
+constexpr double kModerate = 0.03;  // strain at which effects that are not linear are looked at
 
 void append(Eigen::MatrixXd& to, const Eigen::MatrixXd& columns) {
   to.conservativeResize(columns.rows(), to.cols() + columns.cols());
@@ -187,6 +190,32 @@ Eigen::MatrixXd sleeping_forces(const Model& model, const PriorView& prior, std:
   if (!sum.isZero(0.0)) append(forces, sum);
   for (const auto& term : part.terms.mass) {
     if (sleeps(term.coefficient)) append(forces, term.matrix * u);
+  }
+  return forces;
+}
+
+Eigen::MatrixXd extra_forces(const Model& model, const PriorView& prior, std::size_t index, const Eigen::MatrixXd& u,
+                             const StrainRows& strains) {
+  Eigen::MatrixXd forces(u.rows(), 0);
+  const auto& part = model.parts()[index];
+  if (!adds_extra_force(part) || u.cols() == 0) return forces;
+  Eigen::VectorXd theta = prior.theta;
+  for (const int i : part.indices) theta[i] = prior.generic[i];
+  const ExtraForce extra(model, theta);
+  const Eigen::VectorXd still = Eigen::VectorXd::Zero(u.rows());
+  const double largest = strains.cwiseAbs().maxCoeff();
+  const auto look = [&](const Eigen::VectorXd& motion) {
+    for (const double sign : {1.0, -1.0}) {
+      const Eigen::VectorXd force = extra(model.first_stamp(), sign * kModerate / largest * motion, still);
+      if (!force.isZero(0.0)) append(forces, force);
+    }
+  };
+  for (Eigen::Index i = 0; i < u.cols(); ++i) {
+    look(u.col(i));
+    for (Eigen::Index j = 0; j < i; ++j) {
+      look(u.col(i) + u.col(j));
+      look(u.col(i) - u.col(j));
+    }
   }
   return forces;
 }

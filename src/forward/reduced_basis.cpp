@@ -51,7 +51,7 @@ class Builder {
         options_(options),
         prior_(model),
         mass_(model.mass(prior_.theta)),
-        stiffness_(model.stiffness(prior_.theta)),
+        stiffness_(model.reference_stiffness(prior_.theta)),
         held_(stiffness_, mass_, model.fixed(prior_.theta)) {}
 
   ReducedBasis build() {
@@ -124,13 +124,15 @@ class Builder {
   void add_sleeping(OrthonormalBasis& basis, const Eigen::MatrixXd& acting) const {
     const Eigen::MatrixXd motion = leading_motion(basis, acting);
     const StrainRows rows = strains(model_.fem(), motion);
+    const bool first_order = options_.nonlinear == BasisOptions::Nonlinear::first_order;
     std::vector<Eigen::MatrixXd> blocks;
     int parts = 0;
     for (std::size_t p = 0; p < model_.parts().size(); ++p) {
       if (!model_.parts()[p].effect->released_nodes().empty()) continue;
       const std::size_t before = blocks.size();
       for (Eigen::MatrixXd block :
-           {sleeping_loads(model_, prior_, mass_, p), sleeping_forces(model_, prior_, p, motion, rows)}) {
+           {sleeping_loads(model_, prior_, mass_, p), sleeping_forces(model_, prior_, p, motion, rows),
+            first_order ? extra_forces(model_, prior_, p, motion, rows) : Eigen::MatrixXd()}) {
         if (block.cols() > 0) blocks.push_back(std::move(block));
       }
       if (blocks.size() > before) ++parts;
@@ -200,7 +202,7 @@ class Builder {
       Eigen::VectorXd theta = prior_.theta;
       const Eigen::VectorXd& soft = part.effect->releases(part.parameters(prior)) ? prior : prior_.generic;
       for (const int index : part.indices) theta[index] = soft[index];
-      const StaticResponse respond(model_.stiffness(theta), mass_, model_.fixed(theta));
+      const StaticResponse respond(model_.reference_stiffness(theta), mass_, model_.fixed(theta));
       const Eigen::Index before = held.size();
       OrthonormalBasis basis(mass_, before + options_.released);
       basis.add(held.vectors(), before);

@@ -52,7 +52,9 @@ Eigen::MatrixXd project_matrix(const SparseMatrix& k, const Eigen::MatrixXd& bas
 }  // namespace
 
 ReducedModel::ReducedModel(const Model& model, const BasisOptions& options) : model_(model) {
-  if (model.nonlinear()) throw InputError("model", "a nonlinear effect", "linear effects only, in a reduced basis");
+  if (model.nonlinear() && options.nonlinear == BasisOptions::Nonlinear::in_full) {
+    throw InputError("model", "a nonlinear effect", "linear effects only, in a reduced basis");
+  }
   basis_ = build_reduced_basis(model, options);
   project();
 }

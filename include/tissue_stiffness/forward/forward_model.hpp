@@ -36,7 +36,9 @@ class ForwardModel {
   virtual std::string description() const = 0;
 };
 
+struct BasisOptions;
 /// Reduced for a linear model, full otherwise.
 std::unique_ptr<ForwardModel> make_forward_model(const Model& model);
+std::unique_ptr<ForwardModel> make_forward_model(const Model& model, const BasisOptions& options);
 
 }  // namespace tissue_stiffness

@@ -106,6 +106,8 @@ class Model {
   const std::vector<Part>& parts() const { return parts_; }
   /// True when one of these parameters (indices of the part's) is estimated.
   bool estimated(const Part& part, const std::vector<int>& shape) const;
+  /// True when any of its own parameters is.
+  bool estimated(const Part& part) const;
   /// Value of a load term over time: measured, by a rhythm, or 1; the load factor included.
   double load_value(const LoadTerm& term, const Eigen::VectorXd& parameters, double load_factor, double time) const;
   /// Share of finite strain in a part's force, 0 to 1.

@@ -33,4 +33,9 @@ std::vector<SparseMatrix> sleeping_stiffness(const Model& model, const PriorView
 Eigen::MatrixXd sleeping_forces(const Model& model, const PriorView& prior, std::size_t part, const Eigen::MatrixXd& u,
                                 const StrainRows& strains);
 
+/// Forces of a part that is not linear when the body moves as the columns of u and as their sums and differences, scaled to
+/// moderate strain; 3n each.
+Eigen::MatrixXd extra_forces(const Model& model, const PriorView& prior, std::size_t part, const Eigen::MatrixXd& u,
+                             const StrainRows& strains);
+
 }  // namespace tissue_stiffness

@@ -18,6 +18,8 @@ struct BasisOptions {
   int per_part = 32;  ///< more for each effect that is absent at the prior, or whose place or angle is estimated
   int largest = 160;  ///< with those; supports that may give way come on top
   int released = 40;  ///< for each support that may give way
+  /// What becomes of effects that are not linear: simulated in full, at first order (FirstOrderModel), or not at all.
+  enum class Nonlinear { in_full, first_order, left_out } nonlinear = Nonlinear::in_full;
 };
 
 /// Load-dependent Ritz vectors (Wilson, Yuan & Dickens 1982), repeated K^-1 M solves from the static responses to the

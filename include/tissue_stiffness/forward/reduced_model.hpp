@@ -24,7 +24,7 @@ struct ReducedModes {
 /// projected anew for each theta. Thread safe.
 class ReducedModel : public ForwardModel {
  public:
-  /// Throws InputError for a nonlinear model or one that nothing moves.
+  /// Throws InputError for a model that nothing moves, and for a nonlinear one that is to be simulated in full.
   explicit ReducedModel(const Model& model, const BasisOptions& options = {});
 
   std::unique_ptr<Trajectory> start(const Eigen::VectorXd& theta, double start) const override;

@@ -1,0 +1,112 @@
+// Tissue that grows stiffer the more it is strained.
+#include <Eigen/Cholesky>
+
+#include "tissue_stiffness/effects/registry.hpp"
+#include "tissue_stiffness/effects/solids.hpp"
+
+namespace tissue_stiffness::effects {
+namespace {
+
+constexpr double kMostExponent = 50.0;  // of the exponential: beyond it a step has diverged
+
+// exp(b Q) - 1 with Q = 2 psi / E, and its derivative with respect to psi.
+StressScale excess(double b, double modulus, double psi) {
+  const double exponent = 2.0 * b * psi / modulus;
+  if (!(exponent < kMostExponent)) throw NumericalError("strain_stiffening: strain beyond every bound");
+  return {std::expm1(exponent), 2.0 * b / modulus * std::exp(exponent)};
+}
+
+class StrainStiffening : public Effect {
+ public:
+  explicit StrainStiffening(const EffectContext& context) : fem_(context.fem), solids_(context, 1) {}
+
+  bool needs_elasticity() const override { return true; }
+  bool nonlinear() const override { return true; }
+  bool has_finite_form() const override { return true; }
+
+  // Small strain.
+  void add_force(const Motion& motion, const Parameters& p, Eigen::VectorXd& force) const override {
+    if (p[0] == 0.0 || motion.finite_share == 1.0) return;
+    const StrainRows rows = strains(fem_, motion.displacement);
+    force -= (1.0 - motion.finite_share) * stress_force(fem_, [&](int e, int q) -> Strain {
+               const Point x = look(rows, e, q, p);
+               return x.excess.value * x.stress;
+             });
+  }
+  void add_stiffness(const Motion& motion, const Parameters& p, SparseMatrix& stiffness) const override {
+    if (p[0] == 0.0 || motion.finite_share == 1.0) return;
+    const StrainRows rows = strains(fem_, motion.displacement);
+    const StrainFactorField factor = [&](int e, int q) -> StrainFactor {
+      const Point x = look(rows, e, q, p);
+      if (!(x.excess.value > 0.0)) return StrainFactor(6, 0);
+      const Eigen::Matrix<double, 6, 6> d =
+          x.excess.value * x.factor * x.factor.transpose() + x.excess.slope * x.stress * x.stress.transpose();
+      return StrainFactor(Eigen::Matrix<double, 6, 6>(d.llt().matrixL()));
+    };
+    add_strain_stiffness(fem_, factor, 1.0 - motion.finite_share, stiffness);
+  }
+
+  void add_finite_force(const Motion& motion, const Parameters& p, Eigen::VectorXd& force) const override {
+    for (std::size_t s = 0; p[0] != 0.0 && s < solids_.count(); ++s) {
+      solids_.finite(s).add_force(lame(solids_.modulus(s, p), solids_.ratio(s, p)), motion.displacement, law(s, p), force);
+    }
+  }
+  void add_finite_stiffness(const Motion& motion, const Parameters& p, SparseMatrix& stiffness) const override {
+    for (std::size_t s = 0; p[0] != 0.0 && s < solids_.count(); ++s) {
+      solids_.finite(s).add_stiffness(lame(solids_.modulus(s, p), solids_.ratio(s, p)), motion.displacement, law(s, p),
+                                      stiffness);
+    }
+  }
+
+ private:
+  struct Point {
+    StrainFactor factor;  ///< of the elasticity there
+    Strain stress;
+    StressScale excess;
+  };
+  Point look(const StrainRows& rows, int e, int q, const Parameters& p) const {
+    Point x{StrainFactor::Zero(6, 6), Strain::Zero(), {0.0, 0.0}};
+    for (std::size_t s = 0; s < solids_.count(); ++s) {
+      if (!solids_.holds(s, e)) continue;
+      const Lame c = lame(solids_.modulus(s, p), solids_.ratio(s, p));
+      x.factor = isotropic_factor(c.lambda, c.mu);
+      const Strain strain = rows.block<6, 1>(6 * (static_cast<Eigen::Index>(e) * fem_.points_per_element() + q), 0);
+      x.stress = x.factor * (x.factor.transpose() * strain);
+      x.excess = excess(p[0], solids_.modulus(s, p), 0.5 * strain.dot(x.stress));
+    }
+    return x;
+  }
+  PointLaw law(std::size_t s, const Parameters& p) const {
+    const double b = p[0], modulus = solids_.modulus(s, p);
+    return [b, modulus](int, int, double psi) { return excess(b, modulus, psi); };
+  }
+
+  const Discretisation& fem_;
+  Solids solids_;
+};
+
+std::vector<Proposal> propose(const ProposalContext& context) {
+  if (context.holds("strain_stiffening")) return {};
+  return {{"strain_stiffening: {exponent: " + normal(0.0, 10.0) + "}", "exponent",
+           "strain_stiffening: {exponent: " + log_normal(10.0, 4.0) + "}"}};
+}
+
+}  // namespace
+
+EffectSpec strain_stiffening_spec() {
+  EffectSpec spec;
+  spec.name = "strain_stiffening";
+  spec.summary = "elastic stress grows exponentially with the stored energy";
+  spec.formula =
+      "sigma exp(b Q), Q = 2 psi / E (the square of the strain in uniaxial stretch); psi the elasticity's energy";
+  spec.source = "Fung 1967; Demiray 1972";
+  spec.parameters = {{"exponent", "b", "-", 0.0, 1e6, ParameterSpec::Default::required, 0.0, 0.0, 1}};
+  spec.proposals = propose;
+  return spec;
+}
+
+std::unique_ptr<Effect> make_strain_stiffening(const Value&, const EffectContext& context) {
+  return std::make_unique<StrainStiffening>(context);
+}
+
+}  // namespace tissue_stiffness::effects
