@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "tissue_stiffness/effects/registry.hpp"
+#include "tissue_stiffness/forward/extra_force.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -91,10 +92,11 @@ void read_tangents(const Study& study, const Study& base, const Eigen::VectorXd&
   }
 }
 
-bool stays_linear(const Study& base, const Candidate& candidate) {
+bool is_linear(const Study& base, const Candidate& candidate) {
   ModelSettings settings = base.model().settings();
   add_effect(settings, candidate.proposal.yaml);
-  return !Model(settings, base.model().mesh()).nonlinear();
+  const Model model(settings, base.model().mesh());
+  return !adds_extra_force(model.parts().back());
 }
 
 }  // namespace
@@ -107,7 +109,7 @@ std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd&
                                        const std::vector<std::string>& ignore) {
   const ProposalContext context = context_of(base, w);
   std::vector<Candidate> all;
-  std::vector<std::size_t> together, alone;
+  std::vector<std::size_t> linear_ones, others;
   for (const EffectSpec& spec : effect_specs()) {
     if (!spec.proposals || std::find(ignore.begin(), ignore.end(), spec.name) != ignore.end()) continue;
     bool first = true, linear = true;
@@ -115,15 +117,16 @@ std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd&
       all.push_back({spec.name, std::move(proposal), {}});
       for (const ParameterSpec& parameter : spec.parameters) {
         if (parameter.name != all.back().proposal.amplitude) continue;
-        all.back().lower = parameter.lower;
-        all.back().upper = parameter.upper;
+        all.back().lower = parameter.lower - parameter.absent;
+        all.back().upper = 2.0 * (parameter.upper - parameter.absent);  // a tangent may overshoot
       }
-      if (first) linear = !base.model().nonlinear() && stays_linear(base, all.back());
+      if (first) linear = is_linear(base, all.back());
       first = false;
-      (linear ? together : alone).push_back(all.size() - 1);
+      all.back().linear = linear;
+      (linear ? linear_ones : others).push_back(all.size() - 1);
     }
   }
-  const auto study_of = [&](const std::vector<std::size_t>& members, bool enrich) {
+  const auto study_of = [&](const std::vector<std::size_t>& members, int per_part, BasisOptions::Nonlinear nonlinear) {
     ModelSettings settings = base.model().settings();
     std::vector<Candidate*> candidates;
     for (const std::size_t c : members) {
@@ -131,12 +134,13 @@ std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd&
       candidates.push_back(&all[c]);
     }
     BasisOptions options;
-    if (enrich) options.per_part = 4;
+    options.per_part = per_part;
+    options.nonlinear = nonlinear;
     const Study study(settings, base.model().mesh(), base.recording(), options);
     read_tangents(study, base, w, candidates);
   };
-  if (!together.empty()) study_of(together, true);
-  for (const std::size_t c : alone) study_of({c}, false);
+  if (!linear_ones.empty()) study_of(linear_ones, 4, BasisOptions::Nonlinear::left_out);
+  if (!others.empty()) study_of(others, 16, BasisOptions::Nonlinear::first_order);
   return all;
 }
 
@@ -148,7 +152,7 @@ Eigen::MatrixXd base_tangents(const Study& base, const Eigen::VectorXd& w, const
     Eigen::VectorXd up = w, down = w;
     up[i] += step;
     down[i] -= step;
-    out.col(i) = rows.used.cwiseProduct(base.rows(up).predicted - base.rows(down).predicted) / (2.0 * step);
+    out.col(i) = rows.used.cwiseProduct(base.quick_rows(up).predicted - base.quick_rows(down).predicted) / (2.0 * step);
   });
   return out;
 }

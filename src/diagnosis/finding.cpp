@@ -1,5 +1,7 @@
 #include "tissue_stiffness/diagnosis/finding.hpp"
 
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -17,6 +19,7 @@ constexpr double kRemainder = 0.25;     // of the mesh's error that a mesh twice
 constexpr double kTwin = 0.9;           // cosine above which two effects look alike
 constexpr double kSameEvidence = 5.0;   // log evidence within which refits are not told apart
 constexpr double kAdequate = 1.1;       // rms in sigmas up to which a residual may be noise
+constexpr double kPromise = 0.2;        // of the structured part
 constexpr double kExplains = 0.8;       // of the structured part: less is no explanation
 constexpr double kHeldOutGain = 0.995;  // of the held-out rms: what an accepted effect must fall below
 
@@ -34,12 +37,16 @@ class Look {
  public:
   Look(const Fitted& base, const DiagnosisOptions& options)
       : base_(base), options_(options), rows_(rows_used(base.rows)), cost_(base.rows.error.squaredNorm()) {
-    options.progress("tangents of the library");
+    options.progress("tangents of the library, and what a finer mesh would change");
     const Eigen::VectorXd std = base.fit.covariance.diagonal().cwiseSqrt();
-    candidates_ = find_candidates(*base.study, base.fit.w, options.ignore);
-    const Eigen::MatrixXd known = base_tangents(*base.study, base.fit.w, std, base.rows);
-    options.progress("what a finer mesh would change");
-    const FinerMesh finer = finer_mesh(base);
+    Eigen::MatrixXd known;
+    FinerMesh finer;
+    tbb::parallel_invoke(
+        [&] {
+          candidates_ = find_candidates(*base.study, base.fit.w, options.ignore);
+          known = base_tangents(*base.study, base.fit.w, std, base.rows);
+        },
+        [&] { finer = finer_mesh(base); });
     by_mesh_ = finer.explained;
     floor_ = Scorer(base.rows.error, known, base.rows.offsets, 1.0).remaining(finer.change);
     // An effect has to explain what the mesh does not.
@@ -52,6 +59,7 @@ class Look {
     refit_singles(wanted);
     const bool by_effect = wanted.empty() && !noise() && by_mesh_ < kExplains * structured();
     if (by_effect && leaves_more_than_noise()) refit_others();
+    if (by_effect && leaves_more_than_noise()) refit_rest();
     if (by_effect && leaves_more_than_noise()) refit_pairs();
     Finding out;
     out.verdict = judge();
@@ -68,7 +76,15 @@ class Look {
   void refit_others();
   void add_other_way(const Ranked& r);
   void drop_worse_ways();
+  void refit_rest();
   void refit_pairs();
+  bool refitted(const std::string& effect) const {
+    return std::any_of(refits_.begin(), refits_.end(), [&](const Refit& r) { return r.effects.front() == effect; });
+  }
+  /// Runs in full take long: none for an effect whose tangent explains next to nothing.
+  bool worth_full_runs(const Ranked& r) const {
+    return r.best->linear || r.score.explained * cost_ > kPromise * structured();
+  }
   void add_refit(const std::vector<Addition>& additions);
   void sort_refits();
   std::string judge() const;
@@ -103,7 +119,7 @@ void Look::add_refit(const std::vector<Addition>& additions) {
   for (const Addition& a : additions) names += (names.empty() ? "" : " and ") + a.way->effect;
   options_.progress("refit with " + names);
   try {
-    refits_.push_back(refit(*base_.study, base_.fit.w, additions));
+    refits_.push_back(refit(*base_.study, base_.fit, base_.rows, additions));
   } catch (const NumericalError&) {
     base_.study->recording().checkpoint();  // a study that was ended; else a model that cannot be run explains nothing
   }
@@ -112,7 +128,7 @@ void Look::add_refit(const std::vector<Addition>& additions) {
 void Look::refit_singles(const std::vector<std::string>& wanted) {
   for (const Ranked& r : ranked_) {
     const bool asked = std::find(wanted.begin(), wanted.end(), r.effect) != wanted.end();
-    if (!asked && (!r.declared || refits_.size() >= kRefits || !wanted.empty())) continue;
+    if (!asked && (!r.declared || !worth_full_runs(r) || refits_.size() >= kRefits || !wanted.empty())) continue;
     add_refit({{r.best, r.score.amplitude}});
   }
   sort_refits();
@@ -123,7 +139,7 @@ void Look::refit_others() {
   std::size_t others = 0;
   for (const Ranked& r : ranked_) {
     if (&r - ranked_.data() < kWaysOf && r.promising) add_other_way(r);
-    if (r.promising && !r.declared && others++ < kOthers) add_refit({{r.best, r.score.amplitude}});
+    if (r.promising && !r.declared && worth_full_runs(r) && others++ < kOthers) add_refit({{r.best, r.score.amplitude}});
   }
   sort_refits();
 }
@@ -151,15 +167,21 @@ void Look::drop_worse_ways() {
   }
 }
 
+// Where phases have drifted apart a tangent says little: what it leaves unexplained may still be a single effect's.
+void Look::refit_rest() {
+  for (const Ranked& r : ranked_) {
+    if (r.best->linear && r.evidence > kSameEvidence && !refitted(r.effect)) add_refit({{r.best, r.score.amplitude}});
+  }
+  sort_refits();
+}
+
 void Look::refit_pairs() {
   std::size_t done = 0;
   for (const RankedPair& pair : rank_pairs(*scorer_, candidates_)) {
     if (done++ == kPairs) break;
-    if (pair.gain < kSameEvidence) continue;
+    if (pair.gain < kSameEvidence || !pair.first.way->linear || !pair.second.way->linear) continue;
     for (const Addition* member : {&pair.first, &pair.second}) {  // a pair has to beat its better half
-      const bool known = std::any_of(refits_.begin(), refits_.end(),
-                                     [&](const Refit& r) { return r.effects.front() == member->way->effect; });
-      if (!known) add_refit({*member});
+      if (!refitted(member->way->effect)) add_refit({*member});
     }
     add_refit({pair.first, pair.second});
   }

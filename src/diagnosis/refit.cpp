@@ -12,10 +12,12 @@ namespace {
 constexpr double kBaseSpread = 0.05;   // prior standard deviations, of the base's parameters at first
 constexpr double kAddedSpread = 0.25;  // and of the added ones
 constexpr double kLeastFactor = 1.02;  // of a log-normal prior in the proposed model file
+constexpr double kPromise = 0.1;       // of the structured part: what quick runs have to explain before a full one
 constexpr double kPriorWidth = 5.0;    // posterior standard deviations
 
 struct Start {
   Eigen::VectorXd w, spread;
+  BatchFit fit;  ///< from there, without full runs
 };
 
 // The tangent's amplitude of an added parameter; NaN where it has none. Amplitudes' components come in order.
@@ -34,7 +36,7 @@ double tangent_value(const FreeParameter& parameter, const std::vector<Addition>
 std::vector<Start> starts(const Study& study, const Study& base, const Eigen::VectorXd& w,
                           const std::vector<Addition>& additions) {
   const auto& free = study.model().free_parameters();
-  Start prior{study.model().prior_mean(), kAddedSpread * study.model().prior_std()};
+  Start prior{study.model().prior_mean(), kAddedSpread * study.model().prior_std(), {}};
   Start tangent = prior;
   std::vector<Eigen::Index> taken(additions.size(), 0);
   bool differs = false;
@@ -92,32 +94,55 @@ std::string fitted_entry(const Study& study, const Study& base, const BatchFit& 
   return out;
 }
 
-}  // namespace
-
-Refit refit(const Study& base, const Eigen::VectorXd& w, const std::vector<Addition>& additions) {
-  ModelSettings settings = base.model().settings();
-  for (const Addition& addition : additions) add_effect(settings, addition.way->proposal.refine);
-  const Study study(settings, base.model().mesh(), base.recording());
-  std::optional<BatchFit> best;
-  std::string reason;
-  for (const Start& start : starts(study, base, w, additions)) {
+// The start whose fit without full runs is best. A run that rings may need the base's parameters in another minimum.
+std::optional<Start> quick_start(const Study& study, const Study& base, const std::vector<Start>& starts,
+                                 std::string& reason) {
+  std::vector<Eigen::Index> shared;  // with the base
+  for (std::size_t i = 0; i < study.model().free_parameters().size(); ++i) {
+    if (base.index(study.model().free_parameters()[i].name) >= 0) shared.push_back(static_cast<Eigen::Index>(i));
+  }
+  std::optional<Start> best;
+  for (Start start : starts) {
     try {
-      BatchFit fit = study.fit(start.w, start.spread, false);
-      if (!best || fit.cost < best->cost) best = std::move(fit);
+      start.w = study.scan_near(start.w, shared);
+      start.fit = study.quick_fit(start.w, start.spread);
+      if (!best || start.fit.cost < best->fit.cost) best = std::move(start);
     } catch (const NumericalError& error) {
       reason = error.what();
     }
   }
-  if (!best) throw NumericalError(additions.front().way->effect + " cannot be refitted: " + reason);
-  const Study::Rows rows = study.rows(best->w);
+  return best;
+}
+
+double structured(const Study::Rows& rows) {
+  return rows.error.squaredNorm() - static_cast<double>((rows.used.array() > 0.0).count());
+}
+
+}  // namespace
+
+Refit refit(const Study& base, const BatchFit& fit, const Study::Rows& base_rows, const std::vector<Addition>& additions) {
+  ModelSettings settings = base.model().settings();
+  for (const Addition& addition : additions) add_effect(settings, addition.way->proposal.refine);
+  Study study(settings, base.model().mesh(), base.recording());
+  study.borrow(base);
+  std::string reason;
+  std::optional<Start> start = quick_start(study, base, starts(study, base, fit.w, additions), reason);
+  if (!start) throw NumericalError(additions.front().way->effect + " cannot be refitted: " + reason);
+  Study::Rows rows = study.quick_rows(start->fit.w);
+  const double gain = base_rows.error.squaredNorm() - rows.error.squaredNorm();
+  const bool only_quick = base.model().nonlinear() && gain < kPromise * structured(base_rows);
+  if (study.model().nonlinear() && !only_quick) {
+    start->fit = study.fit(start->fit.w, start->spread, false);
+    rows = study.rows(start->fit.w);
+  }
   Refit out;
   for (const Addition& addition : additions) {
     out.effects.push_back(addition.way->effect);
-    out.entries.push_back(fitted_entry(study, base, *best, *addition.way));
+    out.entries.push_back(fitted_entry(study, base, start->fit, *addition.way));
   }
   for (std::size_t i = 0; i < study.model().free_parameters().size(); ++i) {
     const FreeParameter& p = study.model().free_parameters()[i];
-    out.parameters[p.name] = p.to_value(best->w[static_cast<Eigen::Index>(i)]);
+    out.parameters[p.name] = p.to_value(start->fit.w[static_cast<Eigen::Index>(i)]);
   }
   out.train_rms = rms_error(rows, base.recording(), false);
   out.held_out_rms = rms_error(rows, base.recording(), true);

@@ -1,15 +1,26 @@
 #include "tissue_stiffness/diagnosis/study.hpp"
 
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
 #include <cmath>
 
 #include "tissue_stiffness/estimation/compare.hpp"
 #include "tissue_stiffness/estimation/coordinate_scan.hpp"
+#include "tissue_stiffness/forward/extra_force.hpp"
 #include "tissue_stiffness/meshing/build_mesh.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
 constexpr int kScanPoints = 12;
+constexpr int kMostRuns = 8;         // moves of a fit from one full run to the next
+constexpr int kMostCuts = 3;         // of a move that makes it worse
+constexpr double kSettled = 0.2;     // posterior standard deviations: moves that need no further run
+constexpr double kGain = 1e-4;       // relative fall of the cost below which it is over
+constexpr double kNarrower = 4.0;    // posterior standard deviations that the next fit looks across
+constexpr int kNearPoints = 10;      // on either side
+constexpr double kNearStep = 0.045;  // of the prior's standard deviation: 5 % of a modulus known to a factor of 3
 
 }  // namespace
 
@@ -35,22 +46,42 @@ Study::Study(const ModelSettings& settings, const TetMesh& mesh, std::map<std::s
     const auto course = model_.courses().find(sample.topic);
     if (course != model_.courses().end()) course->second->add(sample.time, sample.value);
   }
-  if (model_.nonlinear()) {
-    forward_ = make_forward_model(model_);
-  } else {
-    forward_ = std::make_unique<ReducedModel>(model_, basis);
-  }
-  forward_->focus(observed_nodes(operators_, recording.frames));
+  forward_ = make_forward_model(model_, basis);
+  const std::vector<int> nodes = observed_nodes(operators_, recording.frames);
+  forward_->focus(nodes);
+  if (!model_.nonlinear() || basis.nonlinear != BasisOptions::Nonlinear::in_full) return;
+  BasisOptions quick = basis;
+  const auto& parts = model_.parts();
+  const bool steered = std::any_of(parts.begin(), parts.end(), [&](const Model::Part& part) {
+    return adds_extra_force(part) && model_.estimated(part);
+  });
+  quick.nonlinear = steered ? BasisOptions::Nonlinear::first_order : BasisOptions::Nonlinear::left_out;
+  quick_ = make_forward_model(model_, quick);
+  quick_->focus(nodes);
 }
 
-FitProblem Study::problem(const std::vector<Frame>& frames) const {
+void Study::borrow(const Study& base) {
+  if (!base.anchored_ || !quick_) return;
+  anchored_ = std::make_unique<AnchoredModel>(*forward_, *quick_);
+  anchored_->move_as(*base.anchored_);
+}
+
+FitProblem Study::problem(const ForwardModel& forward, const std::vector<Frame>& frames) const {
   return {
-      model_, *forward_, operators_, frames, recording_.first_stamp + model_.settings().time.start, recording_.checkpoint};
+      model_, forward, operators_, frames, recording_.first_stamp + model_.settings().time.start, recording_.checkpoint};
 }
 
 Study::Rows Study::rows(const Eigen::VectorXd& w) const {
-  const FitProblem all = problem(recording_.frames);
-  Ensemble run(model_, *forward_, operators_);
+  return rows_of(*forward_, w);
+}
+
+Study::Rows Study::quick_rows(const Eigen::VectorXd& w) const {
+  return rows_of(quick(), w);
+}
+
+Study::Rows Study::rows_of(const ForwardModel& forward, const Eigen::VectorXd& w) const {
+  const FitProblem all = problem(forward, recording_.frames);
+  Ensemble run(model_, forward, operators_);
   run.restart(w, all.start);
   std::vector<Prediction> predictions;
   Rows out;
@@ -81,14 +112,73 @@ Study::Rows Study::rows(const Eigen::VectorXd& w) const {
 }
 
 BatchFit Study::fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread, bool all_frames) const {
-  return fit_batch(problem(all_frames ? recording_.frames : training_), start, spread);
+  const std::vector<Frame>& frames = all_frames ? recording_.frames : training_;
+  return quick_ ? fit_from_run_to_run(frames, start, spread) : fit_batch(problem(*forward_, frames), start, spread);
+}
+
+BatchFit Study::quick_fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread) const {
+  return fit_batch(problem(quick(), training_), start, spread);
+}
+
+// Every full run says by how much quick ones are off there; a fit that allows for it says where the next one has to be.
+BatchFit Study::fit_from_run_to_run(const std::vector<Frame>& frames, Eigen::VectorXd at, Eigen::VectorXd spread) const {
+  const double start = problem(*forward_, frames).start;
+  std::vector<double> times;
+  for (const Frame& frame : frames) times.push_back(frame.time);
+  const auto run = [&](const Eigen::VectorXd& w) {
+    auto runs = std::make_unique<AnchoredModel>(*forward_, *quick_);
+    runs->anchor(model_.theta(w), start, times);
+    return runs;
+  };
+  anchored_ = run(at);
+  double cost = free_fit(problem(*anchored_, frames), at).cost;
+  BatchFit fit;
+  for (int k = 0; k < kMostRuns; ++k) {
+    fit = fit_batch(problem(*anchored_, frames), at, spread);
+    const Eigen::VectorXd std = fit.covariance.diagonal().cwiseSqrt();
+    Eigen::VectorXd move = fit.w - at;
+    if ((move.array().abs() < kSettled * std.array()).all()) return fit;
+    double gain = 0.0;
+    for (int cut = 0; cut < kMostCuts && !(gain > 0.0); ++cut, move *= 0.3) {
+      auto there = run(at + move);
+      const double now = free_fit(problem(*there, frames), at + move).cost;
+      gain = cost - now;
+      if (!(gain > 0.0)) continue;
+      at += move;
+      cost = now;
+      anchored_ = std::move(there);
+    }
+    if (!(gain > kGain * cost)) break;
+    spread = spread.cwiseMin(kNarrower * std);
+  }
+  fit.w = at;
+  return fit;
 }
 
 Eigen::VectorXd Study::scan(const Eigen::VectorXd& start) const {
-  const FitProblem train = problem(training_);
+  const FitProblem train = problem(quick(), training_);
   return scan_coordinates([&](const Eigen::VectorXd& w) { return free_fit(train, w).cost; }, start, model_.prior_mean(),
                           model_.prior_std(), kScanPoints)
       .best;
+}
+
+Eigen::VectorXd Study::scan_near(const Eigen::VectorXd& start, const std::vector<Eigen::Index>& coordinates) const {
+  const FitProblem train = problem(quick(), training_);
+  const Eigen::VectorXd std = model_.prior_std();
+  Eigen::VectorXd best = start;
+  for (const Eigen::Index i : coordinates) {
+    const Eigen::VectorXd from = best;
+    const auto place = [&](int k) {
+      return Eigen::VectorXd(from + k * kNearStep * std[i] * Eigen::VectorXd::Unit(from.size(), i));
+    };
+    Eigen::VectorXd costs(2 * kNearPoints + 1);
+    tbb::parallel_for(-kNearPoints, kNearPoints + 1,
+                      [&](int k) { costs[k + kNearPoints] = free_fit(train, place(k)).cost; });
+    Eigen::Index lowest = 0;
+    costs.minCoeff(&lowest);
+    best = place(static_cast<int>(lowest) - kNearPoints);
+  }
+  return best;
 }
 
 Eigen::Index Study::index(const std::string& parameter) const {

@@ -11,7 +11,7 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr std::size_t kKept = 8;  // modes of the last theta: what damping, loads and sensors vary leaves them alone
+constexpr std::size_t kKept = 16;  // modes of the last theta: what damping, loads and sensors vary leaves them alone
 
 Eigen::MatrixX3d unit_motion(Eigen::Index dofs) {
   return Eigen::Matrix3d::Identity().replicate(dofs / 3, 1);
@@ -143,6 +143,23 @@ std::shared_ptr<const ReducedModes> ReducedModel::modes(const Eigen::VectorXd& t
   return modes;
 }
 
+std::shared_ptr<const Eigen::MatrixXd> ReducedModel::shaped(const StrainTerm& term,
+                                                            const Eigen::VectorXd& parameters) const {
+  Eigen::VectorXd shape(static_cast<Eigen::Index>(term.shape.size()));
+  for (std::size_t i = 0; i < term.shape.size(); ++i) shape[static_cast<Eigen::Index>(i)] = parameters[term.shape[i]];
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    for (const Shaped& known : shaped_) {
+      if (known.term == &term && known.shape == shape) return known.projected;
+    }
+  }
+  const Eigen::MatrixXd projected = project_strain_stiffness(model_.fem(), term.at(parameters), strains_);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (shaped_.size() == kKept) shaped_.erase(shaped_.begin());
+  shaped_.push_back({&term, std::move(shape), std::make_shared<const Eigen::MatrixXd>(projected)});
+  return shaped_.back().projected;
+}
+
 ReducedModes ReducedModel::solve(const Eigen::VectorXd& theta) const {
   const Eigen::Index m = basis_.vectors.cols();
   Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(m, m), stiffness = mass;
@@ -169,7 +186,7 @@ ReducedModes ReducedModel::solve(const Eigen::VectorXd& theta) const {
       const double c = term.coefficient(p);
       if (c == 0.0) continue;
       const bool constant = part.strain_stiffness[k].size() > 0;
-      stiffness += c * (constant ? part.strain_stiffness[k] : project_strain_stiffness(model_.fem(), term.at(p), strains_));
+      stiffness += c * (constant ? part.strain_stiffness[k] : *shaped(term, p));
     }
   }
   const std::vector<int> columns = active(theta);

@@ -17,13 +17,15 @@ struct Candidate {
   Tangent tangent;
   double lower = -std::numeric_limits<double>::infinity();  ///< bounds of the amplitude
   double upper = std::numeric_limits<double>::infinity();
+  bool linear = true;  ///< quick to refit
 
   /// Within the bounds: nothing is explained by a negative damping.
   bool allows(const Eigen::VectorXd& amplitude) const;
 };
 
 /// Everything that the library proposes for the fitted base model, but for effects to `ignore`. The tangents of all linear
-/// ones come from one reduced model that holds them all at their absent values; the others get a model each.
+/// ones come from one reduced model that holds them all at their absent values, those of the others from one at first order.
+/// What is not linear in the base is left out of it.
 std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd& w, const std::vector<std::string>& ignore);
 
 /// d rows / d w of the fitted base model, in sigmas: N x free parameters.

@@ -49,8 +49,9 @@ struct Refit {
   int added_parameters = 0;
 };
 
-/// Fits the training frames by full simulation, from the base's fit and the proposals' own starts. Throws NumericalError
-/// when no start can be run.
-Refit refit(const Study& base, const Eigen::VectorXd& w, const std::vector<Addition>& additions);
+/// Fits the training frames by simulation, from the base's fit and the proposals' own starts: in full, but where
+/// quick runs of a model that is not linear explain next to nothing. `rows`: of the base's fit. Throws NumericalError when
+/// no start can be run.
+Refit refit(const Study& base, const BatchFit& fit, const Study::Rows& rows, const std::vector<Addition>& additions);
 
 }  // namespace tissue_stiffness

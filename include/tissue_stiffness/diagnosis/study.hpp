@@ -7,11 +7,13 @@
 
 #include "tissue_stiffness/diagnosis/recording.hpp"
 #include "tissue_stiffness/estimation/batch_fit.hpp"
+#include "tissue_stiffness/forward/anchored_model.hpp"
 #include "tissue_stiffness/forward/reduced_model.hpp"
 
 namespace tissue_stiffness {
 
-/// One model against one recording: free runs and fits. Linear models in their reduced basis, others in full.
+/// One model against one recording: free runs and fits. Linear models in their reduced basis, others in full; fits of those
+/// find the way from one full run to the next by quick runs of what is linear in them.
 class Study {
  public:
   /// Throws as Model does.
@@ -36,21 +38,36 @@ class Study {
   };
   /// The free run at w.
   Rows rows(const Eigen::VectorXd& w) const;
+  /// The same without a full run: off by as much as at the last fit, or at that of the study that was borrowed from.
+  Rows quick_rows(const Eigen::VectorXd& w) const;
   /// Fits the training frames, or all of them.
   BatchFit fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread, bool all_frames) const;
+  /// The same without full runs.
+  BatchFit quick_fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread) const;
+  /// Lets quick runs be off by as much as those of a fitted model with fewer effects.
+  void borrow(const Study& base);
   /// Where a coarse look along each coordinate of the prior finds the training frames explained best.
   Eigen::VectorXd scan(const Eigen::VectorXd& start) const;
+
+  /// The same along some coordinates only, closely and not far from `start`: where a fit of something else left them, a run
+  /// that rings may need them in another minimum.
+  Eigen::VectorXd scan_near(const Eigen::VectorXd& start, const std::vector<Eigen::Index>& coordinates) const;
 
   /// Index of a free parameter by name; -1 when there is none.
   Eigen::Index index(const std::string& parameter) const;
 
  private:
-  FitProblem problem(const std::vector<Frame>& frames) const;
+  FitProblem problem(const ForwardModel& forward, const std::vector<Frame>& frames) const;
+  Rows rows_of(const ForwardModel& forward, const Eigen::VectorXd& w) const;
+  BatchFit fit_from_run_to_run(const std::vector<Frame>& frames, Eigen::VectorXd at, Eigen::VectorXd spread) const;
+  const ForwardModel& quick() const { return anchored_ ? *anchored_ : quick_ ? *quick_ : *forward_; }
 
   const Recording& recording_;
   std::vector<Frame> training_;
   mutable Model model_;
   std::unique_ptr<ForwardModel> forward_;
+  std::unique_ptr<ForwardModel> quick_;              ///< null: forward_ is quick
+  mutable std::unique_ptr<AnchoredModel> anchored_;  ///< to the last full run; null: none yet
   std::vector<std::unique_ptr<ObservationOperator>> operators_;
 };
 

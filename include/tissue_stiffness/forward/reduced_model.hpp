@@ -51,6 +51,12 @@ class ReducedModel : public ForwardModel {
     Eigen::VectorXd key;
     std::shared_ptr<const ReducedModes> modes;
   };
+  struct Shaped {
+    const StrainTerm* term;
+    Eigen::VectorXd shape;
+    std::shared_ptr<const Eigen::MatrixXd> projected;
+  };
+  std::shared_ptr<const Eigen::MatrixXd> shaped(const StrainTerm& term, const Eigen::VectorXd& parameters) const;
   void project();
   void project_part(std::size_t part);
   Eigen::VectorXd key(const Eigen::VectorXd& theta) const;
@@ -65,6 +71,7 @@ class ReducedModel : public ForwardModel {
   StrainRows strains_;                ///< of the basis, where a term needs them for each theta
   mutable std::mutex mutex_;
   mutable std::vector<Known> known_;
+  mutable std::vector<Shaped> shaped_;  ///< the last few projections of terms whose place or angle is estimated
 };
 
 }  // namespace tissue_stiffness
