@@ -35,6 +35,7 @@ const std::map<std::string, std::set<std::string>> kAllowed = [] {
   add("report", {"settings"});
   add("nodes", {"diagnosis", "segmentation", "report"});
   add("tools", {"nodes"});
+  add("rviz", {"nodes"});
   return allowed;
 }();
 
@@ -47,7 +48,8 @@ bool is_ros(const std::string& header) {
 
 /// What is wrong with an include of `header` in `layer`; empty when nothing is.
 std::string fault(const std::string& layer, const std::string& header) {
-  if (is_ros(header) && layer != "nodes" && layer != "tools") return "ROS outside nodes and tools";
+  static const std::set<std::string> with_ros{"nodes", "tools", "rviz"};
+  if (is_ros(header) && with_ros.count(layer) == 0) return "ROS outside nodes, tools and rviz";
   std::smatch match;
   static const std::regex own("^tissue_stiffness/([a-z_]+)/.*");
   if (!std::regex_match(header, match, own) || match[1] == layer) return "";

@@ -13,7 +13,8 @@ EstimatorOutputs::EstimatorOutputs(ros::NodeHandle node, std::string model_frame
       stiffness_(node.advertise<StiffnessEstimate>("stiffness", 100, true)),
       misfit_(node.advertise<MisfitMessage>("misfit", 100)),
       surface_(node.advertise<visualization_msgs::Marker>("tracked_surface", 10)),
-      points_(node.advertise<sensor_msgs::PointCloud2>("tracked_points", 10)) {}
+      points_(node.advertise<sensor_msgs::PointCloud2>("tracked_points", 10)),
+      measured_(node.advertise<sensor_msgs::PointCloud2>("measured_points", 10)) {}
 
 void EstimatorOutputs::prepare(const ModelSettings& settings, const TetMesh& mesh) {
   outlines_.clear();
@@ -40,6 +41,7 @@ void EstimatorOutputs::publish(const Estimator& estimator, const StepResult& res
   if (points_.getNumSubscribers() > 0) {
     points_.publish(surface_cloud(estimator.mesh(), estimator.displacement(), result.misfit, header));
   }
+  if (measured_.getNumSubscribers() > 0) measured_.publish(measured_cloud(frame, header));
   publish_outline(estimator, frame, header);
 }
 

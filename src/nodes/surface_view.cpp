@@ -99,4 +99,26 @@ sensor_msgs::PointCloud2 surface_cloud(const TetMesh& mesh, const Eigen::Matrix3
   return cloud;
 }
 
+sensor_msgs::PointCloud2 measured_cloud(const Frame& frame, const std_msgs::Header& header) {
+  std::size_t count = 0;
+  for (const Observation& seen : frame.observations) count += static_cast<std::size_t>(seen.points.cols());
+  sensor_msgs::PointCloud2 cloud;
+  cloud.header = header;
+  cloud.height = 1;
+  cloud.is_dense = 1;
+  sensor_msgs::PointCloud2Modifier modifier(cloud);
+  constexpr auto real = sensor_msgs::PointField::FLOAT32;
+  modifier.setPointCloud2Fields(4, "x", 1, real, "y", 1, real, "z", 1, real, "source", 1, sensor_msgs::PointField::INT32);
+  modifier.resize(count);
+  sensor_msgs::PointCloud2Iterator<float> value(cloud, "x");
+  sensor_msgs::PointCloud2Iterator<std::int32_t> source(cloud, "source");
+  for (const Observation& seen : frame.observations) {
+    for (Eigen::Index i = 0; i < seen.points.cols(); ++i, ++value, ++source) {
+      for (int axis = 0; axis < 3; ++axis) value[axis] = static_cast<float>(seen.points(axis, i));
+      *source = seen.source;
+    }
+  }
+  return cloud;
+}
+
 }  // namespace tissue_stiffness

@@ -98,6 +98,31 @@ TEST(SurfaceCloud, HoldsPositionDisplacementAndMisfitOfEachSurfaceNode) {
   EXPECT_EQ(to_observation(cloud, settings, 0, 10, Eigen::Isometry3d::Identity()).ids.size(), 10);
 }
 
+TEST(MeasuredCloud, HoldsThePointsOfEverySensorAndSaysWhose) {
+  Frame frame;
+  Observation markers, points, contour;
+  markers.source = 2;
+  markers.points = Eigen::Matrix3Xd::Random(3, 4);
+  points.source = 0;
+  points.points = Eigen::Matrix3Xd::Random(3, 3);
+  contour.kind = ObservationKind::contour;
+  frame.observations = {markers, contour, points};
+  std_msgs::Header header;
+  header.frame_id = "model";
+  const sensor_msgs::PointCloud2 cloud = measured_cloud(frame, header);
+  EXPECT_EQ(cloud.header.frame_id, "model");
+  ASSERT_EQ(cloud.width, 7U);
+  sensor_msgs::PointCloud2ConstIterator<float> x(cloud, "x"), z(cloud, "z");
+  sensor_msgs::PointCloud2ConstIterator<std::int32_t> source(cloud, "source");
+  for (int i = 0; i < 7; ++i, ++x, ++z, ++source) {
+    const Observation& of = i < 4 ? markers : points;
+    EXPECT_EQ(*source, of.source);
+    EXPECT_FLOAT_EQ(*x, static_cast<float>(of.points(0, i < 4 ? i : i - 4)));
+    EXPECT_FLOAT_EQ(*z, static_cast<float>(of.points(2, i < 4 ? i : i - 4)));
+  }
+  EXPECT_EQ(measured_cloud(Frame(), header).width, 0U);
+}
+
 TEST(ModelOutline, IsWhatThePinholeSees) {
   const TetMesh mesh = quadratic_tetrahedron();
   ModelSettings settings;

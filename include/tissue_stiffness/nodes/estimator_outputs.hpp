@@ -10,8 +10,9 @@
 
 namespace tissue_stiffness {
 
-/// The estimator's topics: `stiffness` (latched), `misfit`, `tracked_surface`, `tracked_points`, and for each
-/// contour that the model observes `predicted_contour` (then `predicted_contour_2`, ...): the model's outline in its image.
+/// The estimator's topics: `stiffness` (latched), `misfit`, `tracked_surface`, `tracked_points`,
+/// `measured_points`, and for each contour that the model observes `predicted_contour` (then `predicted_contour_2`, ...):
+/// the model's outline in its image.
 class EstimatorOutputs {
  public:
   EstimatorOutputs(ros::NodeHandle node, std::string model_frame);
@@ -27,7 +28,7 @@ class EstimatorOutputs {
 
   ros::NodeHandle node_;
   std::string model_frame_;
-  ros::Publisher stiffness_, misfit_, surface_, points_;
+  ros::Publisher stiffness_, misfit_, surface_, points_, measured_;
   std::map<int, ModelOutline> outlines_;          ///< by row of the model's observations
   std::map<int, ros::Publisher> outline_topics_;  ///< the same
 };

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "tissue_stiffness/types/misfit.hpp"
+#include "tissue_stiffness/types/observation.hpp"
 #include "tissue_stiffness/types/tet_mesh.hpp"
 
 namespace tissue_stiffness {
@@ -21,5 +22,9 @@ visualization_msgs::Marker surface_marker(const TetMesh& mesh, const Eigen::Matr
 /// `vertex`. The misfit is NaN where nothing was measured.
 sensor_msgs::PointCloud2 surface_cloud(const TetMesh& mesh, const Eigen::Matrix3Xd& displacement, const Misfit& misfit,
                                        const std_msgs::Header& header);
+
+/// Every point that a frame measured, in the model frame, with FLOAT32 fields x y z [m] and the integer `source`, the row
+/// of the model's observations.
+sensor_msgs::PointCloud2 measured_cloud(const Frame& frame, const std_msgs::Header& header);
 
 }  // namespace tissue_stiffness

@@ -1,0 +1,23 @@
+# The rviz panel, where rviz is: a plugin of its own, which nothing else links.
+find_package(Qt5 QUIET COMPONENTS Widgets Test)
+find_package(rviz QUIET)
+find_package(pluginlib QUIET)
+
+set(TISSUE_STIFFNESS_RVIZ FALSE)
+if(Qt5_FOUND AND rviz_FOUND AND pluginlib_FOUND)
+  set(TISSUE_STIFFNESS_RVIZ TRUE)
+  set(target ${PROJECT_NAME}_rviz)
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/rviz/*.cpp)
+  add_library(${target} SHARED ${sources} ${PROJECT_SOURCE_DIR}/include/${PROJECT_NAME}/rviz/stiffness_panel.hpp)
+  set_target_properties(${target} PROPERTIES AUTOMOC ON)
+  target_compile_options(${target} PRIVATE ${tissue_stiffness_warnings})
+  target_compile_definitions(${target} PRIVATE QT_NO_KEYWORDS)  # which ROS headers use as names
+  target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR}/include)
+  target_include_directories(${target} SYSTEM PUBLIC ${rviz_INCLUDE_DIRS} ${pluginlib_INCLUDE_DIRS} ${catkin_INCLUDE_DIRS})
+  target_link_libraries(${target} PUBLIC ${PROJECT_NAME}_report ${rviz_LIBRARIES} ${catkin_LIBRARIES} Qt5::Widgets)
+  add_dependencies(${target} ${PROJECT_NAME}_generate_messages_cpp ${catkin_EXPORTED_TARGETS})
+  install(TARGETS ${target} LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION})
+else()
+  message(STATUS "rviz or Qt not found: no rviz panel; scripts/install_dependencies --rviz installs them")
+endif()
+install(FILES rviz_plugins.xml DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})

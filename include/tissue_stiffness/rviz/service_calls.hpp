@@ -1,0 +1,54 @@
+#pragma once
+
+#include <ros/node_handle.h>
+
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace tissue_stiffness {
+
+/// Calls the estimator's services one after the other in a thread of its own, so that who asks never waits. Answers are
+/// given in that thread.
+class ServiceCalls {
+ public:
+  struct Answer {
+    bool success = false;
+    std::string message;
+    std::vector<std::string> added;  ///< effects that add_effect put into the running model, asked after the call
+    bool added_known = false;
+  };
+  using Done = std::function<void(const Answer&)>;
+
+  ServiceCalls();
+  /// Gives up the call in progress and those that wait; their answers do not come.
+  ~ServiceCalls();
+
+  /// Each calls the service of that name below `node`.
+  void diagnose(const ros::NodeHandle& node, Done done);
+  void add_effect(const ros::NodeHandle& node, const std::string& effect, Done done);
+  void remove_effect(const ros::NodeHandle& node, const std::string& effect, Done done);
+  void reset(const ros::NodeHandle& node, Done done);
+  /// Only what was added; answers nothing when there is no estimator.
+  void list_effects(const ros::NodeHandle& node, Done done);
+
+ private:
+  template <typename Service>
+  Answer ask(ros::NodeHandle node, const std::string& name, Service& service);
+  Answer with_added(const ros::NodeHandle& node, Answer answer);
+  void enqueue(std::function<Answer()> call, Done done);
+  void run();
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<std::pair<std::function<Answer()>, Done>> calls_;
+  ros::ServiceClient running_;  ///< of the call in progress
+  bool stopped_ = false;
+  std::thread thread_;
+};
+
+}  // namespace tissue_stiffness

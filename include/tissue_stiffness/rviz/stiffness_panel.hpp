@@ -1,0 +1,74 @@
+#pragma once
+
+#include <ros/callback_queue.h>
+#include <ros/node_handle.h>
+#include <ros/subscriber.h>
+#include <rviz/panel.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tissue_stiffness/rviz/panel_state.hpp"
+#include "tissue_stiffness/rviz/service_calls.hpp"
+
+class QLabel;
+class QLineEdit;
+class QPushButton;
+class QTreeWidget;
+
+namespace tissue_stiffness {
+
+class CurveView;
+
+/// rviz panel of one estimator: E with its band, the misfit, the state, what the model misses, and buttons that ask, add,
+/// remove and start again. Messages are taken in the GUI's thread, services are called in another. The estimator's
+/// namespace is saved with the config.
+class StiffnessPanel : public rviz::Panel {
+  Q_OBJECT
+ public:
+  explicit StiffnessPanel(QWidget* parent = nullptr);
+  ~StiffnessPanel() override;
+
+  void load(const rviz::Config& config) override;
+  void save(rviz::Config config) const override;
+  QSize sizeHint() const override { return {380, 720}; }
+
+ private:
+  void build_header();
+  void build_buttons();
+  void connect_to(const QString& node_namespace);
+  void take_messages();
+  void show_estimate();
+  void show_effects();
+  /// Effect of the selected row when it is an added one (or not), else what the button means by itself.
+  std::string chosen(bool added) const;
+  void on_diagnose();
+  void on_add();
+  void on_remove();
+  void on_reset();
+  /// Waits for an answer without waiting: buttons rest, the text says for what.
+  void wait_for(const QString& text);
+  /// Runs `done` in the GUI's thread, unless the panel speaks with another estimator by then.
+  ServiceCalls::Done in_gui(ServiceCalls::Done done);
+  /// Ends the waiting; `mark` is put on the curves when the answer is a success.
+  ServiceCalls::Done when_answered(const QString& mark);
+  void answered(const ServiceCalls::Answer& answer, const QString& mark);
+
+  ros::CallbackQueue queue_;
+  std::unique_ptr<ros::NodeHandle> node_;
+  std::vector<ros::Subscriber> subscribers_;
+  PanelState state_;
+  bool estimate_changed_ = true, effects_changed_ = true, waiting_ = false;
+  unsigned connection_ = 0;
+
+  QLabel *quantity_ = nullptr, *headline_ = nullptr, *interval_ = nullptr, *misfit_ = nullptr, *state_badge_ = nullptr;
+  QLabel *verdict_badge_ = nullptr, *summary_ = nullptr, *status_ = nullptr;
+  CurveView *modulus_view_ = nullptr, *misfit_view_ = nullptr;
+  QTreeWidget* effects_ = nullptr;
+  QPushButton *diagnose_ = nullptr, *add_ = nullptr, *remove_ = nullptr, *reset_ = nullptr;
+  QLineEdit* namespace_ = nullptr;
+  std::unique_ptr<ServiceCalls> calls_;
+};
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,286 @@
+#include "tissue_stiffness/rviz/stiffness_panel.hpp"
+
+#include <QHBoxLayout>
+#include <QHeaderView>
+#include <QLabel>
+#include <QLineEdit>
+#include <QPushButton>
+#include <QTimer>
+#include <QTreeWidget>
+#include <QVBoxLayout>
+#include <functional>
+#include <pluginlib/class_list_macros.hpp>
+
+#include "tissue_stiffness/rviz/curve_view.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr int kRefreshMilliseconds = 50;
+constexpr int kEffectRole = Qt::UserRole, kAddedRole = Qt::UserRole + 1;
+
+QString text(const std::string& from) {
+  return QString::fromStdString(from);
+}
+
+void show_badge(QLabel& label, const Badge& badge) {
+  label.setText(text(badge.text));
+  label.setStyleSheet(QString("QLabel { background: #%1; color: white; border-radius: 9px; padding: 2px 10px; }")
+                          .arg(badge.colour, 6, 16, QLatin1Char('0')));
+}
+
+QLabel* name_it(QLabel* label, const char* name) {
+  label->setObjectName(name);
+  return label;
+}
+
+QTreeWidgetItem* item(const EffectRow& row) {
+  auto* out = new QTreeWidgetItem;
+  out->setText(0, (row.added ? QString("✓ ") : QString()) + text(row.title));
+  out->setText(1, row.added ? QString("in the model") : QString::number(100.0 * row.explained, 'f', 0) + " %");
+  out->setText(2, text(row.error));
+  out->setTextAlignment(1, Qt::AlignRight | Qt::AlignVCenter);
+  out->setData(0, kEffectRole, text(row.effect));
+  out->setData(0, kAddedRole, row.added);
+  for (int column = 0; column < 3; ++column) out->setToolTip(column, text(row.details));
+  if (row.suspect || row.added) {
+    QFont bold = out->font(0);
+    bold.setBold(true);
+    out->setFont(0, bold);
+  }
+  if (row.added) out->setForeground(0, QColor(0x2a, 0x8f, 0x57));
+  return out;
+}
+
+}  // namespace
+
+StiffnessPanel::StiffnessPanel(QWidget* parent) : rviz::Panel(parent), calls_(std::make_unique<ServiceCalls>()) {
+  setObjectName("tissue_stiffness_panel");
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(8, 8, 8, 8);
+  build_header();
+  layout->addWidget(modulus_view_ = new CurveView("E with its 95 % band", QColor(0x2f, 0x74, 0xc0), this), 3);
+  layout->addWidget(misfit_view_ = new CurveView("misfit", QColor(0xc7, 0x77, 0x00), this), 3);
+
+  auto* missing = new QHBoxLayout;
+  missing->addWidget(new QLabel("<b>What the model misses</b>", this), 1);
+  missing->addWidget(verdict_badge_ = name_it(new QLabel(this), "verdict"));
+  layout->addLayout(missing);
+  layout->addWidget(summary_ = name_it(new QLabel(this), "summary"));
+  summary_->setWordWrap(true);
+  layout->addWidget(effects_ = new QTreeWidget(this), 4);
+  effects_->setObjectName("effects");
+  effects_->setHeaderLabels({"effect", "explains", "error on unseen frames"});
+  effects_->setRootIsDecorated(false);
+  effects_->header()->setSectionResizeMode(QHeaderView::ResizeToContents);
+  build_buttons();
+
+  auto* place = new QHBoxLayout;
+  place->addWidget(new QLabel("Namespace", this));
+  place->addWidget(namespace_ = new QLineEdit(this), 1);
+  namespace_->setObjectName("namespace");
+  namespace_->setPlaceholderText("of the estimator; empty: rviz's own");
+  layout->addLayout(place);
+  connect(namespace_, &QLineEdit::editingFinished, this, [this] {
+    if (node_ && node_->getUnresolvedNamespace() == namespace_->text().toStdString()) return;
+    connect_to(namespace_->text());
+    Q_EMIT configChanged();
+  });
+
+  auto* timer = new QTimer(this);
+  connect(timer, &QTimer::timeout, this, &StiffnessPanel::take_messages);
+  timer->start(kRefreshMilliseconds);
+  connect_to("");
+}
+
+StiffnessPanel::~StiffnessPanel() {
+  calls_.reset();  // before what its answers speak to
+  subscribers_.clear();
+}
+
+void StiffnessPanel::build_header() {
+  auto* layout = static_cast<QVBoxLayout*>(this->layout());
+  auto* top = new QHBoxLayout;
+  top->addWidget(quantity_ = name_it(new QLabel(this), "quantity"), 1);
+  top->addWidget(state_badge_ = name_it(new QLabel(this), "state"));
+  layout->addLayout(top);
+  layout->addWidget(headline_ = name_it(new QLabel(this), "headline"));
+  QFont large = headline_->font();
+  large.setPointSizeF(2.0 * large.pointSizeF());
+  large.setBold(true);
+  headline_->setFont(large);
+  headline_->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  auto* below = new QHBoxLayout;
+  below->addWidget(interval_ = name_it(new QLabel(this), "interval"), 1);
+  below->addWidget(misfit_ = name_it(new QLabel(this), "misfit"));
+  layout->addLayout(below);
+}
+
+void StiffnessPanel::build_buttons() {
+  auto* row = new QHBoxLayout;
+  const auto button = [&](const char* name, const char* label, const char* tip, void (StiffnessPanel::*pressed)()) {
+    auto* out = new QPushButton(label, this);
+    out->setObjectName(name);
+    out->setToolTip(tip);
+    connect(out, &QPushButton::clicked, this, pressed);
+    row->addWidget(out);
+    return out;
+  };
+  diagnose_ = button("diagnose", "Diagnose", "Look now for what the running model misses", &StiffnessPanel::on_diagnose);
+  add_ = button("add", "Add", "Put the selected effect, or the best, into the running model", &StiffnessPanel::on_add);
+  remove_ =
+      button("remove", "Remove", "Take the selected added effect, or the last, out again", &StiffnessPanel::on_remove);
+  reset_ = button("reset", "Reset", "Let the next frame start from the prior", &StiffnessPanel::on_reset);
+  auto* layout = static_cast<QVBoxLayout*>(this->layout());
+  layout->addLayout(row);
+  layout->addWidget(status_ = name_it(new QLabel(this), "status"));
+  status_->setWordWrap(true);
+}
+
+void StiffnessPanel::connect_to(const QString& node_namespace) {
+  subscribers_.clear();
+  state_.clear();
+  waiting_ = false;
+  ++connection_;  // answers of the one before are not ours any more
+  show_estimate();
+  show_effects();
+  try {
+    node_ = std::make_unique<ros::NodeHandle>(node_namespace.toStdString());
+  } catch (const ros::InvalidNameException& error) {
+    status_->setText(error.what());
+    return;
+  }
+  node_->setCallbackQueue(&queue_);
+  subscribers_ = {
+      node_->subscribe<StiffnessEstimate>("stiffness", 1000,
+                                          [this](const StiffnessEstimate::ConstPtr& message) {
+                                            state_.take(*message);
+                                            estimate_changed_ = true;
+                                          }),
+      node_->subscribe<MisfitMessage>("misfit", 1000,
+                                      [this](const boost::shared_ptr<const MisfitMessage>& message) {
+                                        state_.take(*message);
+                                        estimate_changed_ = true;
+                                      }),
+      node_->subscribe<DiagnosisMessage>("diagnosis", 10, [this](const boost::shared_ptr<const DiagnosisMessage>& message) {
+        state_.take(*message);
+        effects_changed_ = true;
+      })};
+  status_->clear();
+  calls_->list_effects(*node_, in_gui([this](const ServiceCalls::Answer& answer) {
+    if (answer.added_known) state_.set_added(answer.added);
+    effects_changed_ = true;
+  }));
+}
+
+void StiffnessPanel::take_messages() {
+  queue_.callAvailable(ros::WallDuration(0));
+  if (estimate_changed_) show_estimate();
+  if (effects_changed_) show_effects();
+}
+
+void StiffnessPanel::show_estimate() {
+  estimate_changed_ = false;
+  quantity_->setText("<b>" + text(state_.quantity()).toHtmlEscaped() + "</b>");
+  headline_->setText(text(state_.headline()));
+  interval_->setText(text(state_.interval()));
+  misfit_->setText(text(state_.misfit()));
+  show_badge(*state_badge_, state_.state());
+  modulus_view_->show_curve(state_.modulus_curve(), text(state_.modulus_unit()));
+  misfit_view_->show_curve(state_.misfit_curve(), "mm", state_.noise_floor());
+}
+
+void StiffnessPanel::show_effects() {
+  effects_changed_ = false;
+  show_badge(*verdict_badge_, state_.verdict());
+  summary_->setText(text(state_.summary()));
+  const QTreeWidgetItem* before = effects_->currentItem();
+  const QString selected = before != nullptr ? before->data(0, kEffectRole).toString() : QString();
+  effects_->clear();
+  for (const EffectRow& row : state_.rows()) {
+    QTreeWidgetItem* line = item(row);
+    effects_->addTopLevelItem(line);
+    if (text(row.effect) == selected) effects_->setCurrentItem(line);
+  }
+  misfit_view_->show_curve(state_.misfit_curve(), "mm", state_.noise_floor());
+  add_->setEnabled(!waiting_ && !chosen(false).empty());
+  remove_->setEnabled(!waiting_ && !chosen(true).empty());
+  diagnose_->setEnabled(!waiting_);
+  reset_->setEnabled(!waiting_);
+}
+
+std::string StiffnessPanel::chosen(bool added) const {
+  const QTreeWidgetItem* selected = effects_->currentItem();
+  if (selected != nullptr && selected->data(0, kAddedRole).toBool() == added) {
+    return selected->data(0, kEffectRole).toString().toStdString();
+  }
+  return added ? state_.last_added() : state_.best_candidate();
+}
+
+void StiffnessPanel::on_diagnose() {
+  wait_for("looking for what the model misses ...");
+  calls_->diagnose(*node_, when_answered(""));
+}
+
+void StiffnessPanel::on_add() {
+  const std::string effect = chosen(false);
+  wait_for("adding " + text(effect) + " ...");
+  calls_->add_effect(*node_, effect, when_answered("+ " + text(effect)));
+}
+
+void StiffnessPanel::on_remove() {
+  const std::string effect = chosen(true);
+  wait_for("removing " + text(effect) + " ...");
+  calls_->remove_effect(*node_, effect, when_answered("- " + text(effect)));
+}
+
+void StiffnessPanel::on_reset() {
+  wait_for("resetting ...");
+  calls_->reset(*node_, when_answered(""));
+}
+
+void StiffnessPanel::wait_for(const QString& what) {
+  waiting_ = true;
+  status_->setText(what);
+  show_effects();
+}
+
+ServiceCalls::Done StiffnessPanel::in_gui(ServiceCalls::Done done) {
+  return [this, done = std::move(done), connection = connection_](const ServiceCalls::Answer& answer) {
+    const auto deliver = [this, done, connection, answer] {
+      if (connection == connection_) done(answer);
+    };
+    QMetaObject::invokeMethod(this, deliver, Qt::QueuedConnection);
+  };
+}
+
+ServiceCalls::Done StiffnessPanel::when_answered(const QString& mark) {
+  return in_gui([this, mark](const ServiceCalls::Answer& answer) { answered(answer, mark); });
+}
+
+void StiffnessPanel::answered(const ServiceCalls::Answer& answer, const QString& mark) {
+  waiting_ = false;
+  if (answer.added_known) state_.set_added(answer.added);
+  if (answer.success && !mark.isEmpty()) state_.mark(mark.toStdString());
+  status_->setText(text(answer.message));
+  estimate_changed_ = true;
+  show_effects();
+}
+
+void StiffnessPanel::load(const rviz::Config& config) {
+  rviz::Panel::load(config);
+  QString node_namespace;
+  if (config.mapGetString("Namespace", &node_namespace)) {
+    namespace_->setText(node_namespace);
+    connect_to(node_namespace);
+  }
+}
+
+void StiffnessPanel::save(rviz::Config config) const {
+  rviz::Panel::save(config);
+  config.mapSetValue("Namespace", namespace_->text());
+}
+
+}  // namespace tissue_stiffness
+
+PLUGINLIB_EXPORT_CLASS(tissue_stiffness::StiffnessPanel, rviz::Panel)

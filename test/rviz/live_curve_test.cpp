@@ -1,0 +1,103 @@
+#include "tissue_stiffness/rviz/live_curve.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+LiveCurve::Point point(double time, double value, double half_band = 0.0) {
+  return {time, value, value - half_band, value + half_band};
+}
+
+TEST(LiveCurve, KeepsPointsInOrderAndStepsAtOneTime) {
+  LiveCurve curve;
+  curve.add(point(1.0, 18.0));
+  curve.add(point(2.0, 18.5));
+  curve.add(point(2.0, 12.0));
+  ASSERT_EQ(curve.points().size(), 3U);
+  EXPECT_EQ(curve.points()[2].value, 12.0);
+  EXPECT_EQ(curve.times().low, 1.0);
+  EXPECT_EQ(curve.times().high, 2.0);
+}
+
+TEST(LiveCurve, AnEarlierTimeBeginsAnew) {
+  LiveCurve curve;
+  curve.add(point(5.0, 1.0));
+  curve.add(point(6.0, 2.0));
+  curve.mark("+ gravity");
+  curve.add(point(0.1, 3.0));
+  ASSERT_EQ(curve.points().size(), 1U);
+  EXPECT_EQ(curve.points()[0].value, 3.0);
+  EXPECT_TRUE(curve.events().empty());
+}
+
+TEST(LiveCurve, LeavesOutWhatIsNotFinite) {
+  LiveCurve curve;
+  curve.add(point(1.0, kNan));
+  curve.add(point(kNan, 1.0));
+  EXPECT_TRUE(curve.points().empty());
+}
+
+TEST(LiveCurve, AFullOneKeepsTheWholeRunAndTheNewestPoint) {
+  LiveCurve curve(64);
+  for (int i = 0; i <= 100000; ++i) {
+    curve.add(point(0.01 * i, i));
+    ASSERT_EQ(curve.points().back().value, i);
+  }
+  EXPECT_LT(curve.points().size(), 66U);
+  EXPECT_GT(curve.points().size(), 30U);
+  EXPECT_EQ(curve.points().front().value, 0.0);
+  double longest = 0.0;
+  for (std::size_t i = 1; i < curve.points().size(); ++i) {
+    longest = std::max(longest, curve.points()[i].value - curve.points()[i - 1].value);
+    ASSERT_GT(curve.points()[i].value, curve.points()[i - 1].value);
+  }
+  EXPECT_LT(longest, 100000.0 / 25.0);
+}
+
+TEST(LiveCurve, TheRangeShowsAllValuesAndDoesNotLetAWideBandFlattenThem) {
+  LiveCurve curve;
+  curve.add({0.0, 24.0, 3.0, 190.0});
+  curve.add({1.0, 12.0, 11.5, 12.5});
+  const LiveCurve::Range range = curve.values();
+  EXPECT_LE(range.low, 11.5);
+  EXPECT_GE(range.high, 24.0);
+  EXPECT_LT(range.high, 40.0);
+}
+
+TEST(LiveCurve, RangesAreNeverEmpty) {
+  LiveCurve curve;
+  EXPECT_LT(curve.values().low, curve.values().high);
+  EXPECT_LT(curve.times().low, curve.times().high);
+  curve.add(point(1.0, 0.0));
+  EXPECT_LT(curve.values().low, curve.values().high);
+  EXPECT_LT(curve.times().low, curve.times().high);
+}
+
+TEST(Ticks, AreRoundInsideAndFew) {
+  const std::vector<double> found = ticks({0.3, 9.7}, 5);
+  ASSERT_EQ(found.size(), 4U);
+  EXPECT_NEAR(found.front(), 2.0, 1e-12);
+  EXPECT_NEAR(found.back(), 8.0, 1e-12);
+  for (const double span : {1e-6, 0.37, 1.0, 55.0, 1e9}) {
+    const LiveCurve::Range range{1.234 * span, 2.5 * span};
+    for (int most = 1; most < 9; ++most) {
+      const std::vector<double> some = ticks(range, most);
+      EXPECT_LE(some.size(), static_cast<std::size_t>(most));
+      for (const double tick : some) {
+        EXPECT_GE(tick, range.low * (1.0 - 1e-6));
+        EXPECT_LE(tick, range.high * (1.0 + 1e-6));
+      }
+    }
+    EXPECT_GE(ticks(range, 4).size(), 2U);
+  }
+  EXPECT_TRUE(ticks({1.0, 1.0}, 5).empty());
+}
+
+}  // namespace
+}  // namespace tissue_stiffness
