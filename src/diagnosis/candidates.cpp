@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/forward/extra_force.hpp"
@@ -92,11 +93,22 @@ void read_tangents(const Study& study, const Study& base, const Eigen::VectorXd&
   }
 }
 
-bool is_linear(const Study& base, const Candidate& candidate) {
+// Effects among the candidates that a reduced basis holds whole, by one model of them all.
+std::set<std::string> linear_effects(const Study& base, const std::vector<Candidate>& candidates) {
   ModelSettings settings = base.model().settings();
-  add_effect(settings, candidate.proposal.yaml);
-  const Model model(settings, base.model().mesh());
-  return !adds_extra_force(model.parts().back());
+  const std::size_t before = settings.effects.size();
+  std::vector<std::string> names;
+  for (const Candidate& candidate : candidates) {
+    if (!names.empty() && names.back() == candidate.effect) continue;
+    names.push_back(candidate.effect);
+    add_effect(settings, candidate.proposal.yaml);
+  }
+  const Model model(settings, base.model().mesh(), base.model().regions());
+  std::set<std::string> linear;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (!adds_extra_force(model.parts()[before + i])) linear.insert(names[i]);
+  }
+  return linear;
 }
 
 }  // namespace
@@ -109,10 +121,8 @@ std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd&
                                        const std::vector<std::string>& ignore) {
   const ProposalContext context = context_of(base, w);
   std::vector<Candidate> all;
-  std::vector<std::size_t> linear_ones, others;
   for (const EffectSpec& spec : effect_specs()) {
     if (!spec.proposals || std::find(ignore.begin(), ignore.end(), spec.name) != ignore.end()) continue;
-    bool first = true, linear = true;
     for (Proposal& proposal : spec.proposals(context)) {
       all.push_back({spec.name, std::move(proposal), {}});
       for (const ParameterSpec& parameter : spec.parameters) {
@@ -120,11 +130,13 @@ std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd&
         all.back().lower = parameter.lower - parameter.absent;
         all.back().upper = 2.0 * (parameter.upper - parameter.absent);  // a tangent may overshoot
       }
-      if (first) linear = is_linear(base, all.back());
-      first = false;
-      all.back().linear = linear;
-      (linear ? linear_ones : others).push_back(all.size() - 1);
     }
+  }
+  const std::set<std::string> linear = linear_effects(base, all);
+  std::vector<std::size_t> linear_ones, others;
+  for (std::size_t c = 0; c < all.size(); ++c) {
+    all[c].linear = linear.count(all[c].effect) > 0;
+    (all[c].linear ? linear_ones : others).push_back(c);
   }
   const auto study_of = [&](const std::vector<std::size_t>& members, int per_part, BasisOptions::Nonlinear nonlinear) {
     ModelSettings settings = base.model().settings();

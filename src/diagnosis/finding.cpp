@@ -1,9 +1,14 @@
 #include "tissue_stiffness/diagnosis/finding.hpp"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
+#include <optional>
+#include <set>
 
 #include "tissue_stiffness/types/error.hpp"
 
@@ -13,12 +18,14 @@ namespace {
 constexpr std::size_t kRefits = 6;      // candidates that are simulated anew
 constexpr std::ptrdiff_t kWaysOf = 3;   // leading effects that are refitted in two ways
 constexpr double kSameWay = 0.8;        // cosine above which two ways are one
+constexpr std::size_t kKindsOf = 2;      // leading refits whose other kinds are tried
 constexpr std::size_t kOthers = 4;      // and more, when those leave more than noise
 constexpr std::size_t kPairs = 3;       // and pairs
 constexpr double kRemainder = 0.25;     // of the mesh's error that a mesh twice as fine still has, or more
 constexpr double kTwin = 0.9;           // cosine above which two effects look alike
 constexpr double kSameEvidence = 5.0;   // log evidence within which refits are not told apart
 constexpr double kAdequate = 1.1;       // rms in sigmas up to which a residual may be noise
+constexpr double kExplained = 1.02;     // and up to which a refit need not be bettered
 constexpr double kPromise = 0.2;        // of the structured part
 constexpr double kExplains = 0.8;       // of the structured part: less is no explanation
 constexpr double kHeldOutGain = 0.995;  // of the held-out rms: what an accepted effect must fall below
@@ -59,6 +66,7 @@ class Look {
     refit_singles(wanted);
     const bool by_effect = wanted.empty() && !noise() && by_mesh_ < kExplains * structured();
     if (by_effect && leaves_more_than_noise()) refit_others();
+    if (by_effect && leaves_more_than_noise()) refit_other_kinds();
     if (by_effect && leaves_more_than_noise()) refit_rest();
     if (by_effect && leaves_more_than_noise()) refit_pairs();
     Finding out;
@@ -74,7 +82,8 @@ class Look {
   void require_proposed(const std::vector<std::string>& wanted) const;
   void refit_singles(const std::vector<std::string>& wanted);
   void refit_others();
-  void add_other_way(const Ranked& r);
+  void refit_other_kinds();
+  void add_other_way(const Ranked& r, std::vector<std::vector<Addition>>& list) const;
   void drop_worse_ways();
   void refit_rest();
   void refit_pairs();
@@ -85,13 +94,13 @@ class Look {
   bool worth_full_runs(const Ranked& r) const {
     return r.best->linear || r.score.explained * cost_ > kPromise * structured();
   }
-  void add_refit(const std::vector<Addition>& additions);
+  void refit_all(const std::vector<std::vector<Addition>>& list);
   void sort_refits();
   std::string judge() const;
   std::vector<std::string> set() const;
   void describe_all(std::vector<MissingEffect>& out) const;
   MissingEffect describe(const Ranked& r) const;
-  bool leaves_more_than_noise() const { return refits_.empty() || refits_.front().cost > kAdequate * kAdequate * rows_; }
+  bool leaves_more_than_noise() const { return refits_.empty() || refits_.front().cost > kExplained * kExplained * rows_; }
   bool noise() const { return cost_ < kAdequate * kAdequate * rows_; }
   double structured() const { return std::max(0.0, cost_ - rows_); }
 
@@ -114,38 +123,57 @@ void Look::require_proposed(const std::vector<std::string>& wanted) const {
   }
 }
 
-void Look::add_refit(const std::vector<Addition>& additions) {
-  std::string names;
-  for (const Addition& a : additions) names += (names.empty() ? "" : " and ") + a.way->effect;
-  options_.progress("refit with " + names);
-  try {
-    refits_.push_back(refit(*base_.study, base_.fit, base_.rows, additions));
-  } catch (const NumericalError&) {
-    base_.study->recording().checkpoint();  // a study that was ended; else a model that cannot be run explains nothing
+// Each on a core of its own.
+void Look::refit_all(const std::vector<std::vector<Addition>>& list) {
+  std::vector<std::optional<Refit>> done(list.size());
+  std::mutex telling;
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, list.size(), 1),
+      [&](const tbb::blocked_range<std::size_t>& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+          std::string names;
+          for (const Addition& a : list[i]) names += (names.empty() ? "" : " and ") + a.way->effect;
+          {
+            const std::lock_guard<std::mutex> lock(telling);
+            options_.progress("refit with " + names);
+          }
+          try {
+            done[i] = refit(*base_.study, base_.fit, base_.rows, list[i]);
+          } catch (const NumericalError&) {
+            base_.study->recording().checkpoint();  // a study that was ended; else a model that cannot be run explains nothing
+          }
+        }
+      },
+      tbb::simple_partitioner());
+  for (std::optional<Refit>& refit : done) {
+    if (refit) refits_.push_back(std::move(*refit));
   }
+  sort_refits();
 }
 
 void Look::refit_singles(const std::vector<std::string>& wanted) {
+  std::vector<std::vector<Addition>> list;
   for (const Ranked& r : ranked_) {
     const bool asked = std::find(wanted.begin(), wanted.end(), r.effect) != wanted.end();
-    if (!asked && (!r.declared || !worth_full_runs(r) || refits_.size() >= kRefits || !wanted.empty())) continue;
-    add_refit({{r.best, r.score.amplitude}});
+    if (!asked && (!r.declared || !worth_full_runs(r) || list.size() >= kRefits || !wanted.empty())) continue;
+    list.push_back({{r.best, r.score.amplitude}});
   }
-  sort_refits();
+  refit_all(list);
 }
 
 // What correlated errors could have made as well; and other ways of the leading effects.
 void Look::refit_others() {
+  std::vector<std::vector<Addition>> list;
   std::size_t others = 0;
   for (const Ranked& r : ranked_) {
-    if (&r - ranked_.data() < kWaysOf && r.promising) add_other_way(r);
-    if (r.promising && !r.declared && worth_full_runs(r) && others++ < kOthers) add_refit({{r.best, r.score.amplitude}});
+    if (&r - ranked_.data() < kWaysOf && r.promising) add_other_way(r, list);
+    if (r.promising && !r.declared && worth_full_runs(r) && others++ < kOthers) list.push_back({{r.best, r.score.amplitude}});
   }
-  sort_refits();
+  refit_all(list);
 }
 
 // Of the leading effects also the best of the ways that look different: tangents choose badly between directions.
-void Look::add_other_way(const Ranked& r) {
+void Look::add_other_way(const Ranked& r, std::vector<std::vector<Addition>>& list) const {
   const Candidate* other = nullptr;
   Score best;
   for (const Candidate& candidate : candidates_) {
@@ -156,7 +184,22 @@ void Look::add_other_way(const Ranked& r) {
     other = &candidate;
     best = std::move(score);
   }
-  if (other != nullptr && best.log_bayes_factor > kSameEvidence) add_refit({{other, best.amplitude}});
+  if (other != nullptr && best.log_bayes_factor > kSameEvidence) list.push_back({{other, best.amplitude}});
+}
+
+// The leading refits in other directions, or on other regions, from the rhythm (or what else is scanned) that they found.
+void Look::refit_other_kinds() {
+  std::vector<std::vector<Addition>> list;
+  for (std::size_t i = 0; i < std::min(kKindsOf, refits_.size()); ++i) {
+    const Refit& leader = refits_[i];
+    if (leader.effects.size() > 1 || leader.way->proposal.kind.empty()) continue;
+    for (const Candidate& candidate : candidates_) {
+      if (candidate.effect == leader.way->effect && candidate.proposal.is_other_kind_of(leader.way->proposal)) {
+        list.push_back({{&candidate, {}, leader.parameters}});
+      }
+    }
+  }
+  refit_all(list);
 }
 
 // One refit an effect, the best.
@@ -169,23 +212,27 @@ void Look::drop_worse_ways() {
 
 // Where phases have drifted apart a tangent says little: what it leaves unexplained may still be a single effect's.
 void Look::refit_rest() {
+  std::vector<std::vector<Addition>> list;
   for (const Ranked& r : ranked_) {
-    if (r.best->linear && r.evidence > kSameEvidence && !refitted(r.effect)) add_refit({{r.best, r.score.amplitude}});
+    if (r.best->linear && r.evidence > kSameEvidence && !refitted(r.effect)) list.push_back({{r.best, r.score.amplitude}});
   }
-  sort_refits();
+  refit_all(list);
 }
 
 void Look::refit_pairs() {
+  std::vector<std::vector<Addition>> list;
+  std::set<std::string> alone;
   std::size_t done = 0;
   for (const RankedPair& pair : rank_pairs(*scorer_, candidates_)) {
     if (done++ == kPairs) break;
     if (pair.gain < kSameEvidence || !pair.first.way->linear || !pair.second.way->linear) continue;
     for (const Addition* member : {&pair.first, &pair.second}) {  // a pair has to beat its better half
-      if (!refitted(member->way->effect)) add_refit({*member});
+      const std::string& effect = member->way->effect;
+      if (!refitted(effect) && alone.insert(effect).second) list.push_back({*member});
     }
-    add_refit({pair.first, pair.second});
+    list.push_back({pair.first, pair.second});
   }
-  sort_refits();
+  refit_all(list);
 }
 
 void Look::sort_refits() {

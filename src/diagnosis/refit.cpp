@@ -32,6 +32,15 @@ double tangent_value(const FreeParameter& parameter, const std::vector<Addition>
   return std::numeric_limits<double>::quiet_NaN();
 }
 
+double scanned_value(const FreeParameter& parameter, const std::vector<Addition>& additions) {
+  for (const Addition& addition : additions) {
+    const auto known = addition.scanned.find(parameter.name);
+    const std::string amplitude = addition.way->effect + "." + addition.way->proposal.amplitude;
+    if (known != addition.scanned.end() && parameter.name.rfind(amplitude, 0) != 0) return known->second;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
 // The base's fit, and the proposals' priors; with the tangents' amplitudes in their place where that is allowed.
 std::vector<Start> starts(const Study& study, const Study& base, const Eigen::VectorXd& w,
                           const std::vector<Addition>& additions) {
@@ -52,6 +61,8 @@ std::vector<Start> starts(const Study& study, const Study& base, const Eigen::Ve
       tangent.w[k] = allowed ? free[i].to_coordinate(value) : prior.w[k];
       differs = differs || allowed;
       continue;
+    } else if (const double value = scanned_value(free[i], additions); std::isfinite(value)) {
+      prior.w[k] = free[i].to_coordinate(value);
     }
     tangent.w[k] = prior.w[k];
     tangent.spread[k] = prior.spread[k];
@@ -136,6 +147,7 @@ Refit refit(const Study& base, const BatchFit& fit, const Study::Rows& base_rows
     rows = study.rows(start->fit.w);
   }
   Refit out;
+  out.way = additions.front().way;
   for (const Addition& addition : additions) {
     out.effects.push_back(addition.way->effect);
     out.entries.push_back(fitted_entry(study, base, start->fit, *addition.way));

@@ -86,7 +86,8 @@ std::vector<Proposal> propose(const ProposalContext& context) {
                             ", amplitude: " + normal(0.0, scale) + "}",
                         "amplitude",
                         head + ", period: " + log_normal(period, 1.15) + ", onset: " + normal(onset, 0.2 * period) +
-                            ", duration: " + log_normal(arch, 1.5) + ", amplitude: " + normal(scale, 2.0 * scale) + "}"});
+                            ", duration: " + log_normal(arch, 1.5) + ", amplitude: " + normal(scale, 2.0 * scale) + "}",
+                        trial.direction});
       }
     }
   }

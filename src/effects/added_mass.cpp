@@ -38,7 +38,7 @@ std::vector<Proposal> propose(const ProposalContext& context) {
   for (const auto& [name, region] : context.regions) {
     if (region.nodes.empty() || context.names("fixed", name)) continue;
     const std::string head = "added_mass: {region: " + name + ", mass: ";
-    list.push_back({head + normal(0.0, scale) + "}", "mass", head + log_normal(scale, 4.0) + "}"});
+    list.push_back({head + normal(0.0, scale) + "}", "mass", head + log_normal(scale, 4.0) + "}", name});
   }
   return list;
 }

@@ -44,7 +44,7 @@ std::vector<Proposal> propose(const ProposalContext& context) {
     const std::string name = fixed->arguments.at("region").as_text();
     if (context.regions.at(name).facets.empty()) continue;
     const std::string head = "elastic_support: {region: " + name + ", compliance: ";
-    list.push_back({head + normal(0.0, scale) + "}", "compliance", head + log_normal(scale, 4.0) + "}"});
+    list.push_back({head + normal(0.0, scale) + "}", "compliance", head + log_normal(scale, 4.0) + "}", name});
   }
   return list;
 }

@@ -47,7 +47,8 @@ std::vector<Proposal> propose(const ProposalContext& context) {
   for (const FibreField::Trial& trial : FibreField::trials(context.mesh)) {
     const std::string head = "fibre_reinforcement: {direction: " + trial.direction + ", ";
     list.push_back({head + "angle: " + yaml(trial.angle) + ", modulus: " + normal(0.0, scale) + "}", "modulus",
-                    head + "angle: " + normal(trial.angle, 0.3) + ", modulus: " + log_normal(scale, 3.0) + "}"});
+                    head + "angle: " + normal(trial.angle, 0.3) + ", modulus: " + log_normal(scale, 3.0) + "}",
+                    trial.direction});
   }
   return list;
 }

@@ -40,7 +40,7 @@ std::vector<Proposal> propose(const ProposalContext& context) {
   const double scale = 0.1 * context.young_modulus / context.size();
   std::vector<Proposal> list;
   const auto add = [&](const std::string& head) {
-    list.push_back({head + normal(0.0, scale) + "}", "stiffness", head + log_normal(scale, 4.0) + "}"});
+    list.push_back({head + normal(0.0, scale) + "}", "stiffness", head + log_normal(scale, 4.0) + "}", head});
   };
   add("foundation: {stiffness: ");
   for (const auto& [name, region] : context.regions) {

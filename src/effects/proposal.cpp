@@ -36,6 +36,13 @@ bool ProposalContext::observes(ObservationSettings::Kind kind) const {
                      [kind](const ObservationSettings& entry) { return entry.kind == kind; });
 }
 
+bool Proposal::is_other_kind_of(const Proposal& other) const {
+  if (kind.empty() || kind == other.kind) return false;
+  std::string text = refine;
+  text.replace(text.find(kind), kind.size(), other.kind);
+  return text == other.refine;
+}
+
 std::string yaml(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.6g", value);

@@ -25,6 +25,7 @@ std::vector<Ranked> rank(const Scorer& scorer, const std::vector<Candidate>& can
 struct Addition {
   const Candidate* way = nullptr;
   Eigen::VectorXd amplitude;
+  std::map<std::string, double> scanned = {};  ///< where a refit starts with what is neither amplitude nor the base's
 };
 
 /// Two effects at once.
@@ -40,6 +41,7 @@ std::vector<RankedPair> rank_pairs(const Scorer& scorer, const std::vector<Candi
 
 /// A fit of the base model with one or two proposals more.
 struct Refit {
+  const Candidate* way = nullptr;  ///< of the first effect
   std::vector<std::string> effects;
   std::vector<std::string> entries;                  ///< for the model file: estimated parameters with their fit as prior
   std::map<std::string, double> parameters;          ///< of the whole model, by name

@@ -41,6 +41,10 @@ struct Proposal {
   std::string yaml;       ///< the amplitude estimated about its absent value, {mean: ABSENT, std: SCALE}; the rest numbers
   std::string amplitude;  ///< parameter that removes the effect at its absent value
   std::string refine;     ///< the same with amplitude and scanned numbers estimated: where a refit starts
+  std::string kind = {};  ///< direction or region, that no refit leaves; empty where there is but one
+
+  /// The same but for the kind.
+  bool is_other_kind_of(const Proposal& other) const;
 };
 
 /// The ways in which an effect might be missing; none where it makes no sense or is there already.
