@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "tissue_stiffness/nodes/message_conversions.hpp"
+#include "tissue_stiffness/nodes/node_keys.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
@@ -22,8 +23,11 @@ std::string shown(const Estimate& estimate) {
 }
 
 NodeSettings read_settings(const ros::NodeHandle& private_node) {
-  return read_node_settings(private_node, {"model_frame", "load_timeout", "transform_timeout", "queue_size",
-                                           "diagnosis_period", "diagnosis_window"});
+  return read_node_settings(private_node, names_of(node_keys("estimator_node")));
+}
+
+const KeySpec& key(const std::string& name) {
+  return find_key(node_keys("estimator_node"), name);
 }
 
 }  // namespace
@@ -33,15 +37,15 @@ EstimatorNode::EstimatorNode(ros::NodeHandle node, const ros::NodeHandle& privat
 
 EstimatorNode::EstimatorNode(ros::NodeHandle node, const NodeSettings& settings)
     : settings_(read_model(settings.model, settings.directory)),
-      queue_size_(static_cast<std::uint32_t>(settings.own.number_or("queue_size", 100, 1, 1e5, "frames"))),
+      queue_size_(static_cast<std::uint32_t>(read_number(settings.own, key("queue_size")))),
       diagnostics_(node, "estimator"),
-      poses_(settings.own.text_or("model_frame", "model"), settings.own.number_or("transform_timeout", 0.1, 0, 60, "s")),
-      queue_(std::chrono::duration<double>(settings.own.number_or("load_timeout", 0.1, 0, 60, "s")), queue_size_),
+      poses_(read_text(settings.own, key("model_frame")), read_number(settings.own, key("transform_timeout"))),
+      queue_(std::chrono::duration<double>(read_number(settings.own, key("load_timeout"))), queue_size_),
       inputs_(node, settings_, poses_, queue_, diagnostics_),
       outputs_(node, poses_.model_frame()),
       running_(settings_) {
-  const ModelCheck::Options check{settings.own.number_or("diagnosis_period", 10, 0, 1e6, "s"),
-                                  settings.own.number_or("diagnosis_window", 20, 1, 1e5, "s")};
+  const ModelCheck::Options check{read_number(settings.own, key("diagnosis_period")),
+                                  read_number(settings.own, key("diagnosis_window"))};
   services_ = std::make_unique<ModelServices>(node, poses_.model_frame(), check, [this](const ModelSettings& changed) {
     {
       const std::lock_guard<std::mutex> lock(changes_mutex_);

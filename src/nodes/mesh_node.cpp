@@ -5,6 +5,7 @@
 #include "tissue_stiffness/meshing/build_mesh.hpp"
 #include "tissue_stiffness/meshing/mesh_io.hpp"
 #include "tissue_stiffness/nodes/message_conversions.hpp"
+#include "tissue_stiffness/nodes/node_keys.hpp"
 #include "tissue_stiffness/nodes/sensor_conversions.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
@@ -15,15 +16,19 @@ std::string counted(const TetMesh& mesh) {
   return std::to_string(mesh.node_count()) + " nodes, " + std::to_string(mesh.tet_count()) + " tetrahedra";
 }
 
+const KeySpec& key(const std::string& name) {
+  return find_key(node_keys("mesh_node"), name);
+}
+
 }  // namespace
 
 MeshNode::MeshNode(ros::NodeHandle node, const ros::NodeHandle& private_node)
-    : MeshNode(std::move(node), read_node_settings(private_node, {"model_frame", "transform_timeout"})) {}
+    : MeshNode(std::move(node), read_node_settings(private_node, names_of(node_keys("mesh_node")))) {}
 
 MeshNode::MeshNode(ros::NodeHandle node, const NodeSettings& settings)
     : node_(std::move(node)),
       settings_(read_model(settings.model, settings.directory)),
-      poses_(settings.own.text_or("model_frame", "model"), settings.own.number_or("transform_timeout", 1.0, 0, 60, "s")) {
+      poses_(read_text(settings.own, key("model_frame")), read_number(settings.own, key("transform_timeout"))) {
   camera_info_topic_ = node_.resolveName("camera_info");
   for (const ObservationSettings& observation : settings_.observations) {
     if (observation.kind != ObservationSettings::Kind::contour) continue;

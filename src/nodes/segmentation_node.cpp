@@ -4,6 +4,7 @@
 #include <ros/ros.h>
 
 #include "tissue_stiffness/nodes/message_conversions.hpp"
+#include "tissue_stiffness/nodes/node_keys.hpp"
 #include "tissue_stiffness/nodes/sensor_conversions.hpp"
 #include "tissue_stiffness/segmentation/overlay.hpp"
 #include "tissue_stiffness/types/error.hpp"
@@ -12,6 +13,8 @@ namespace tissue_stiffness {
 namespace {
 
 using diagnostic_msgs::DiagnosticStatus;
+
+constexpr std::size_t kMostWaiting = 30;  // images for the model's outline: an estimator that is behind, or skips frames
 
 SegmentationSettings read_segmentation(const Value& map) {
   SegmentationSettings out;
@@ -44,9 +47,10 @@ std::string size_of(std::uint32_t width, std::uint32_t height) {
 
 SegmentationNode::SegmentationNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
     : node_(node), transport_(node_), diagnostics_(node_, "segmentation") {
-  const NodeSettings settings = read_node_settings(private_node, {"segmentation", "contour_number", "queue_size"});
-  queue_size_ = static_cast<std::uint32_t>(settings.own.number_or("queue_size", 100, 1, 1e4, "images"));
-  const int number = static_cast<int>(settings.own.number_or("contour_number", 1, 1, 100, ""));
+  const std::vector<KeySpec>& keys = node_keys("segmentation_node");
+  const NodeSettings settings = read_node_settings(private_node, names_of(keys));
+  queue_size_ = static_cast<std::uint32_t>(read_number(settings.own, find_key(keys, "queue_size")));
+  const int number = static_cast<int>(read_number(settings.own, find_key(keys, "contour_number")));
   image_topic_ = node_.resolveName("image");
   camera_info_topic_ = node_.resolveName("camera_info");
   if (settings.own.has("segmentation")) {
@@ -66,7 +70,7 @@ SegmentationNode::SegmentationNode(const ros::NodeHandle& node, const ros::NodeH
   const auto on_viewer = [this](const image_transport::SingleSubscriberPublisher&) { connect(); };
   contour_publisher_ = node_.advertise<ContourMessage>("contour", queue_size_, on_listener, on_listener);
   overlay_publisher_ = transport_.advertise("overlay", 10, on_viewer, on_viewer);
-  predicted_subscriber_ = node_.subscribe("predicted_contour", 1, &SegmentationNode::on_predicted, this);
+  predicted_subscriber_ = node_.subscribe("predicted_contour", queue_size_, &SegmentationNode::on_predicted, this);
 }
 
 void SegmentationNode::connect() {
@@ -93,7 +97,11 @@ void SegmentationNode::on_image(const sensor_msgs::ImageConstPtr& message) {
     }
     const Segmentation found = segment(message, image);
     if (found.found()) contour_publisher_.publish(to_message(found.contour, message->header));
-    if (overlay_publisher_.getNumSubscribers() > 0) publish_overlay(*message, image, found.contour);
+    if (overlay_publisher_.getNumSubscribers() == 0) return waiting_.clear();
+    waiting_.push_back({message, image, found.contour});
+    const bool awaited = predicted_subscriber_.getNumPublishers() > 0 && found.found();
+    const std::size_t most = awaited ? kMostWaiting : 0;
+    while (waiting_.size() > most) publish_overlay(nullptr);
   } catch (const InputError& error) {
     diagnostics_.bad_message(error.what());
   }
@@ -101,7 +109,10 @@ void SegmentationNode::on_image(const sensor_msgs::ImageConstPtr& message) {
 
 Segmentation SegmentationNode::segment(const sensor_msgs::ImageConstPtr& message, const cv::Mat& image) {
   const ros::Time stamp = message->header.stamp;
-  if (stamp < last_) segmenter_->reset();  // a recording that starts again
+  if (stamp < last_) {  // a recording that starts again
+    segmenter_->reset();
+    waiting_.clear();
+  }
   last_ = stamp;
   const ros::WallTime before = ros::WallTime::now();
   Segmentation found = segmenter_->segment(image, stamp.toSec());
@@ -117,17 +128,24 @@ Segmentation SegmentationNode::segment(const sensor_msgs::ImageConstPtr& message
   return found;
 }
 
-void SegmentationNode::publish_overlay(const sensor_msgs::Image& message, const cv::Mat& image,
-                                       const Contour& measured) const {
-  Eigen::Matrix2Xd predicted;
-  if (predicted_ && predicted_->u.size() == predicted_->v.size()) {
-    predicted.resize(2, static_cast<Eigen::Index>(predicted_->u.size()));
-    for (Eigen::Index i = 0; i < predicted.cols(); ++i) {
-      predicted.col(i) << predicted_->u[static_cast<std::size_t>(i)], predicted_->v[static_cast<std::size_t>(i)];
+void SegmentationNode::on_predicted(const ContourConstPtr& message) {
+  const ros::Time stamp = message->header.stamp;
+  while (!waiting_.empty() && waiting_.front().message->header.stamp < stamp) publish_overlay(nullptr);
+  if (!waiting_.empty() && waiting_.front().message->header.stamp == stamp) publish_overlay(message);
+}
+
+void SegmentationNode::publish_overlay(const ContourConstPtr& predicted) {
+  const Seen seen = std::move(waiting_.front());
+  waiting_.pop_front();
+  Eigen::Matrix2Xd outline;
+  if (predicted && predicted->u.size() == predicted->v.size()) {
+    outline.resize(2, static_cast<Eigen::Index>(predicted->u.size()));
+    for (Eigen::Index i = 0; i < outline.cols(); ++i) {
+      outline.col(i) << predicted->u[static_cast<std::size_t>(i)], predicted->v[static_cast<std::size_t>(i)];
     }
   }
-  const cv::Mat canvas = draw_overlay(image, measured, predicted);
-  overlay_publisher_.publish(cv_bridge::CvImage(message.header, "bgr8", canvas).toImageMsg());
+  const cv::Mat canvas = draw_overlay(seen.image, seen.measured, outline);
+  overlay_publisher_.publish(cv_bridge::CvImage(seen.message->header, "bgr8", canvas).toImageMsg());
 }
 
 }  // namespace tissue_stiffness

@@ -11,18 +11,60 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr double kRedSigmas = 3.0;
+constexpr int kRings = 3;  // of facets around a measured node, over which its misfit is interpolated
+constexpr double kAmbient = 0.65;
 
-std_msgs::ColorRGBA colour(double sigmas) {
+/// `light`: 0 in the shade to 1 in the light.
+std_msgs::ColorRGBA colour(double sigmas, double light) {
+  const float shade = static_cast<float>(kAmbient + (1.0 - kAmbient) * light);
   std_msgs::ColorRGBA out;
   out.a = 1.0F;
   if (!std::isfinite(sigmas)) {
-    out.r = out.g = out.b = 0.6F;
+    out.r = out.g = out.b = 0.7F * shade;
     return out;
   }
   const double heat = std::min(std::abs(sigmas) / kRedSigmas, 1.0);
-  out.r = static_cast<float>(std::min(2.0 * heat, 1.0));
-  out.g = static_cast<float>(std::min(2.0 - 2.0 * heat, 1.0));
-  out.b = 0.1F;
+  out.r = shade * static_cast<float>(std::min(2.0 * heat, 1.0));
+  out.g = shade * static_cast<float>(std::min(2.0 - 2.0 * heat, 1.0));
+  out.b = shade * 0.1F;
+  return out;
+}
+
+/// Nodes without a value get the mean of those with one in their facets, ring by ring.
+Eigen::VectorXd interpolated(Eigen::VectorXd values, const TetMesh& mesh) {
+  values.conservativeResizeLike(Eigen::VectorXd::Constant(mesh.nodes.cols(), std::numeric_limits<double>::quiet_NaN()));
+  for (int ring = 0; ring < kRings; ++ring) {
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(values.size()), count = sum;
+    for (Eigen::Index facet = 0; facet < mesh.facets.cols(); ++facet) {
+      for (const int from : mesh.facets.col(facet)) {
+        if (!std::isfinite(values[from])) continue;
+        for (const int to : mesh.facets.col(facet)) {
+          sum[to] += std::abs(values[from]);
+          count[to] += 1.0;
+        }
+      }
+    }
+    for (Eigen::Index i = 0; i < values.size(); ++i) {
+      if (!std::isfinite(values[i]) && count[i] > 0.0) values[i] = sum[i] / count[i];
+    }
+  }
+  return values;
+}
+
+/// How much each node of the surface is turned to a light above, 0 to 1: rviz does not shade what has colours of its own.
+Eigen::VectorXd lights(const TetMesh& mesh, const Eigen::Matrix3Xd& positions) {
+  static const Eigen::Vector3d towards = Eigen::Vector3d(0.35, -0.45, 0.8).normalized();
+  Eigen::Matrix3Xd normals = Eigen::Matrix3Xd::Zero(3, positions.cols());
+  for (Eigen::Index facet = 0; facet < mesh.facets.cols(); ++facet) {
+    const auto corner = [&](int i) { return positions.col(mesh.facets(i, facet)); };
+    const Eigen::Vector3d normal = (corner(1) - corner(0)).cross(corner(2) - corner(0));
+    for (const int node : mesh.facets.col(facet)) normals.col(node) += normal;
+  }
+  Eigen::VectorXd out(positions.cols());
+  for (Eigen::Index i = 0; i < out.size(); ++i) {
+    const double length = normals.col(i).norm();
+    out[i] = length > 0.0 ? std::max(0.0, normals.col(i).dot(towards) / length) : 0.0;
+  }
   return out;
 }
 
@@ -48,6 +90,8 @@ visualization_msgs::Marker surface_marker(const TetMesh& mesh, const Eigen::Matr
   marker.pose.orientation.w = 1.0;
   marker.scale.x = marker.scale.y = marker.scale.z = 1.0;
   marker.color.a = 1.0F;
+  const Eigen::Matrix3Xd positions = mesh.nodes + displacement;
+  const Eigen::VectorXd light = lights(mesh, positions), sigmas = interpolated(misfit.node_sigmas, mesh);
   const auto parts = triangles(mesh.facets.rows());
   const std::size_t corners = 3 * parts.size() * static_cast<std::size_t>(mesh.facet_count());
   marker.points.reserve(corners);
@@ -56,13 +100,12 @@ visualization_msgs::Marker surface_marker(const TetMesh& mesh, const Eigen::Matr
     for (const auto& part : parts) {
       for (const int corner : part) {
         const int node = mesh.facets(corner, facet);
-        const Eigen::Vector3d position = mesh.nodes.col(node) + displacement.col(node);
         geometry_msgs::Point point;
-        point.x = position.x();
-        point.y = position.y();
-        point.z = position.z();
+        point.x = positions(0, node);
+        point.y = positions(1, node);
+        point.z = positions(2, node);
         marker.points.push_back(point);
-        marker.colors.push_back(colour(at(misfit.node_sigmas, node)));
+        marker.colors.push_back(colour(sigmas[node], light[node]));
       }
     }
   }

@@ -16,6 +16,13 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+/// Of parameters named effect.parameter.
+std::set<std::string> effects_of(const std::vector<std::string>& parameters) {
+  std::set<std::string> out;
+  for (const std::string& name : parameters) out.insert(name.substr(0, name.find('.')));
+  return out;
+}
+
 std::string details(const MissingEffectMessage& effect) {
   std::string text = effect.entry;
   for (std::size_t i = 0; i < effect.parameter_names.size() && i < effect.parameter_values.size(); ++i) {
@@ -48,6 +55,7 @@ EffectRow row(const MissingEffectMessage& candidate, bool suspect) {
 void PanelState::take(const StiffnessEstimate& message) {
   const std::size_t count = std::min({message.names.size(), message.units.size(), message.mean.size(), message.std.size(),
                                       message.lower95.size(), message.upper95.size()});
+  const std::set<std::string> before = estimated_ ? effects_of(estimate_.names) : std::set<std::string>{};
   estimate_ = message;
   estimated_ = count > 0;
   if (!estimated_) return;
@@ -57,6 +65,18 @@ void PanelState::take(const StiffnessEstimate& message) {
   choose_unit(message.names[shown_], message.mean[shown_], message.units[shown_]);
   modulus_.add({message.header.stamp.toSec(), scale_ * message.mean[shown_], scale_ * message.lower95[shown_],
                 scale_ * message.upper95[shown_]});
+  if (!before.empty()) mark_changes(before, effects_of(message.names));
+}
+
+// Whoever changed the running model, its parameters tell.
+void PanelState::mark_changes(const std::set<std::string>& before, const std::set<std::string>& now) {
+  std::string change;
+  for (const std::string& effect : now) change += before.count(effect) == 0 ? " + " + effect_title(effect) : "";
+  for (const std::string& effect : before) change += now.count(effect) == 0 ? " - " + effect_title(effect) : "";
+  if (change.empty()) return;
+  modulus_.mark(change.substr(1));
+  misfit_curve_.mark(change.substr(1));
+  model_changed_ = true;
 }
 
 // One curve, one unit: it changes only when the numbers would read badly.
@@ -85,11 +105,6 @@ void PanelState::take(const DiagnosisMessage& message) {
 
 void PanelState::set_added(const std::vector<std::string>& added) {
   added_ = added;
-}
-
-void PanelState::mark(const std::string& text) {
-  modulus_.mark(text);
-  misfit_curve_.mark(text);
 }
 
 std::string PanelState::headline() const {

@@ -167,6 +167,10 @@ void StiffnessPanel::connect_to(const QString& node_namespace) {
         effects_changed_ = true;
       })};
   status_->clear();
+  ask_what_was_added();
+}
+
+void StiffnessPanel::ask_what_was_added() {
   calls_->list_effects(*node_, in_gui([this](const ServiceCalls::Answer& answer) {
     if (answer.added_known) state_.set_added(answer.added);
     effects_changed_ = true;
@@ -175,6 +179,7 @@ void StiffnessPanel::connect_to(const QString& node_namespace) {
 
 void StiffnessPanel::take_messages() {
   queue_.callAvailable(ros::WallDuration(0));
+  if (state_.model_changed() && !waiting_) ask_what_was_added();
   if (estimate_changed_) show_estimate();
   if (effects_changed_) show_effects();
 }
@@ -219,24 +224,24 @@ std::string StiffnessPanel::chosen(bool added) const {
 
 void StiffnessPanel::on_diagnose() {
   wait_for("looking for what the model misses ...");
-  calls_->diagnose(*node_, when_answered(""));
+  calls_->diagnose(*node_, when_answered());
 }
 
 void StiffnessPanel::on_add() {
   const std::string effect = chosen(false);
   wait_for("adding " + text(effect) + " ...");
-  calls_->add_effect(*node_, effect, when_answered("+ " + text(effect)));
+  calls_->add_effect(*node_, effect, when_answered());
 }
 
 void StiffnessPanel::on_remove() {
   const std::string effect = chosen(true);
   wait_for("removing " + text(effect) + " ...");
-  calls_->remove_effect(*node_, effect, when_answered("- " + text(effect)));
+  calls_->remove_effect(*node_, effect, when_answered());
 }
 
 void StiffnessPanel::on_reset() {
   wait_for("resetting ...");
-  calls_->reset(*node_, when_answered(""));
+  calls_->reset(*node_, when_answered());
 }
 
 void StiffnessPanel::wait_for(const QString& what) {
@@ -254,17 +259,13 @@ ServiceCalls::Done StiffnessPanel::in_gui(ServiceCalls::Done done) {
   };
 }
 
-ServiceCalls::Done StiffnessPanel::when_answered(const QString& mark) {
-  return in_gui([this, mark](const ServiceCalls::Answer& answer) { answered(answer, mark); });
-}
-
-void StiffnessPanel::answered(const ServiceCalls::Answer& answer, const QString& mark) {
-  waiting_ = false;
-  if (answer.added_known) state_.set_added(answer.added);
-  if (answer.success && !mark.isEmpty()) state_.mark(mark.toStdString());
-  status_->setText(text(answer.message));
-  estimate_changed_ = true;
-  show_effects();
+ServiceCalls::Done StiffnessPanel::when_answered() {
+  return in_gui([this](const ServiceCalls::Answer& answer) {
+    waiting_ = false;
+    if (answer.added_known) state_.set_added(answer.added);
+    status_->setText(text(answer.message));
+    show_effects();
+  });
 }
 
 void StiffnessPanel::load(const rviz::Config& config) {

@@ -1,18 +1,15 @@
 #include "tissue_stiffness/settings/model_settings.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <map>
 
+#include "tissue_stiffness/settings/key_spec.hpp"
 #include "tissue_stiffness/settings/read_sections.hpp"
 #include "tissue_stiffness/settings/suggestion.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double positive = std::numeric_limits<double>::min();
 
 /// `- name: {...}`, or `- name` for an effect without keys.
 EffectSettings read_effect(const Value& entry) {
@@ -49,8 +46,8 @@ std::vector<EffectSettings> read_effects(const Value& list) {
 
 TimeSettings read_time(const Value& map) {
   TimeSettings time;
-  time.start = map.number_or("start", 0.0, -infinity, infinity, "s");
-  time.step = map.number_or("step", 0.0, positive, infinity, "s");
+  time.start = read_number(map, find_key(model_keys(), "time.start"));
+  time.step = read_number(map, find_key(model_keys(), "time.step"));
   return time;
 }
 
@@ -95,10 +92,8 @@ ModelSettings read_model(const Value& root, const std::string& directory) {
   model.observations = read_observations(root.at("observations"));
   if (root.has("time")) model.time = read_time(root.at("time"));
   if (root.has("initial")) model.initial = read_initial(root.at("initial"));
-  if (root.has("estimator")) {
-    const bool paper = root.at("estimator").as_choice({"unscented", "paper"}) == "paper";
-    model.estimator = paper ? EstimatorKind::paper : EstimatorKind::unscented;
-  }
+  const bool paper = read_choice(root, find_key(model_keys(), "estimator")) == "paper";
+  model.estimator = paper ? EstimatorKind::paper : EstimatorKind::unscented;
   root.require_all_read();
   check_regions(model, root.at("observations"));
   return model;

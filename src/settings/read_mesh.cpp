@@ -1,13 +1,17 @@
 #include <limits>
 
+#include "tissue_stiffness/settings/key_spec.hpp"
 #include "tissue_stiffness/settings/read_sections.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double positive = std::numeric_limits<double>::min();
+
+const KeySpec& key(const std::string& path) {
+  return find_key(model_keys(), path);
+}
 
 std::string resolved(const std::string& file, const std::string& directory) {
   if (file.front() == '/' || directory.empty()) return file;
@@ -22,16 +26,16 @@ Eigen::Vector3d read_direction(const Value& value) {
 
 void read_revolve(const Value& map, MeshSettings& mesh) {
   mesh.source = MeshSettings::Source::revolve;
-  map.at("contour").as_choice({"first"});
+  read_choice(map, key("mesh.revolve.contour"));
   mesh.axis = read_direction(map.at("axis"));
-  mesh.max_edge_length = map.number_or("max_edge_length", 0.0, positive, infinity, "m");
+  mesh.max_edge_length = read_number(map, key("mesh.revolve.max_edge_length"));
 }
 
 void read_extrude(const Value& map, MeshSettings& mesh) {
   mesh.source = MeshSettings::Source::extrude;
-  map.at("contour").as_choice({"first"});
-  mesh.depth = map.at("depth").as_number(positive, infinity, "m");
-  mesh.max_edge_length = map.number_or("max_edge_length", 0.0, positive, infinity, "m");
+  read_choice(map, key("mesh.extrude.contour"));
+  mesh.depth = read_number(map, key("mesh.extrude.depth"));
+  mesh.max_edge_length = read_number(map, key("mesh.extrude.max_edge_length"));
 }
 
 Eigen::Vector3d read_radii(const Value& value) {
@@ -61,7 +65,7 @@ RegionSettings read_region(const std::string& name, const Value& map) {
   if (map.has("box")) return {name, read_box(map.at("box"))};
   if (map.has("sphere")) {
     const Value& sphere = map.at("sphere");
-    return {name, SphereShape{sphere.at("center").as_vector3("m"), sphere.at("radius").as_number(positive, infinity, "m")}};
+    return {name, SphereShape{sphere.at("center").as_vector3("m"), read_number(sphere, key("regions.*.sphere.radius"))}};
   }
   if (map.has("ellipsoid")) {
     const Value& ellipsoid = map.at("ellipsoid");
@@ -87,11 +91,11 @@ MeshSettings read_mesh(const Value& map, const std::string& directory) {
     read_extrude(map.at("extrude"), mesh);
   } else {
     mesh.file = resolved(map.at("file").as_text(), directory);
-    mesh.scale = map.number_or("scale", 1.0, positive, infinity, "");
-    mesh.max_edge_length = map.number_or("max_edge_length", 0.0, positive, infinity, "m");
+    mesh.scale = read_number(map, key("mesh.scale"));
+    mesh.max_edge_length = read_number(map, key("mesh.max_edge_length"));
   }
-  if (map.has("order")) mesh.order = map.at("order").as_integer(1, 2);
-  if (map.has("discretisation_error")) mesh.discretisation_error = map.at("discretisation_error").as_boolean();
+  mesh.order = read_integer(map, key("mesh.order"));
+  mesh.discretisation_error = read_boolean(map, key("mesh.discretisation_error"));
   return mesh;
 }
 

@@ -1,5 +1,6 @@
 #include <limits>
 
+#include "tissue_stiffness/settings/key_spec.hpp"
 #include "tissue_stiffness/settings/read_sections.hpp"
 #include "tissue_stiffness/settings/suggestion.hpp"
 #include "tissue_stiffness/types/error.hpp"
@@ -9,7 +10,10 @@ namespace {
 
 using Kind = ObservationSettings::Kind;
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double positive = std::numeric_limits<double>::min();
+
+const KeySpec& key(const std::string& path) {
+  return find_key(model_keys(), path);
+}
 
 Eigen::Matrix3Xd read_rest(const Value& list) {
   const std::vector<Value>& rows = list.items();
@@ -27,21 +31,19 @@ Eigen::Vector2d read_pixel(const Value& list) {
 
 SegmentationSettings read_segmentation(const Value& map) {
   SegmentationSettings segmentation;
-  const bool cavity = map.at("kind").as_choice({"silhouette", "cavity"}) == "cavity";
+  const bool cavity = read_choice(map, key("observations[].contour.segmentation.kind")) == "cavity";
   segmentation.kind = cavity ? SegmentationSettings::Kind::cavity : SegmentationSettings::Kind::silhouette;
   if (map.has("seed")) segmentation.seed = read_pixel(map.at("seed"));
   return segmentation;
 }
 
 void read_contour(const Value& map, ObservationSettings& observation) {
-  observation.topic = map.at("image").as_text();
-  observation.camera_info = map.at("camera_info").as_text();
+  observation.topic = read_text(map, key("observations[].contour.image"));
+  observation.camera_info = read_text(map, key("observations[].contour.camera_info"));
   if (map.has("segmentation")) observation.segmentation = read_segmentation(map.at("segmentation"));
-  if (map.has("projection")) {
-    const bool slice = map.at("projection").as_choice({"silhouette", "slice"}) == "slice";
-    observation.projection = slice ? ObservationSettings::Projection::slice : ObservationSettings::Projection::silhouette;
-  }
-  observation.region = map.text_or("region", "");
+  const bool slice = read_choice(map, key("observations[].contour.projection")) == "slice";
+  observation.projection = slice ? ObservationSettings::Projection::slice : ObservationSettings::Projection::silhouette;
+  observation.region = read_text(map, key("observations[].contour.region"));
 }
 
 ObservationSettings read_observation(const Value& entry) {
@@ -63,10 +65,10 @@ ObservationSettings read_observation(const Value& entry) {
   if (observation.kind == Kind::contour) {
     read_contour(map, observation);
   } else {
-    observation.topic = map.at("topic").as_text();
+    observation.topic = read_text(map, key("observations[]." + keys.front() + ".topic"));
   }
   if (observation.kind == Kind::markers) observation.rest = read_rest(map.at("rest"));
-  observation.noise = map.at("noise").as_number(positive, infinity, "m");
+  observation.noise = read_number(map, key("observations[]." + keys.front() + ".noise"));
   return observation;
 }
 

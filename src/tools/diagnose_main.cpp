@@ -8,6 +8,7 @@
 #include "tissue_stiffness/report/write_diagnosis.hpp"
 #include "tissue_stiffness/settings/extend_model.hpp"
 #include "tissue_stiffness/tools/print_diagnosis.hpp"
+#include "tissue_stiffness/tools/progress.hpp"
 #include "tissue_stiffness/tools/recording_reader.hpp"
 #include "tissue_stiffness/tools/run_tool.hpp"
 #include "tissue_stiffness/tools/versions.hpp"
@@ -53,12 +54,12 @@ int main(int argc, char** argv) {
   app.add_flag("--auto", options.automatic, "keep adding the best effect while the held-out error proves it");
   app.add_flag("--quiet", quiet, "no progress and no table");
   app.add_flag("--json", json, "print diagnosis.json instead of the table");
+  app.footer("Example: diagnose model.yaml recording.bag --output out --auto");
   return run_tool(app, argc, argv, [&] {
     const ModelSettings settings = load_model(texts.model);
     RecordingReader reader(texts.recording, settings);
-    const auto say = [&](const std::string& what) {
-      if (!quiet && !json) std::cerr << "diagnose: " << what << "\n";
-    };
+    StepProgress progress(std::cerr, Progress::style_of_stderr(quiet || json), "diagnose");
+    const auto say = [&](const std::string& what) { progress.show(what); };
     say("read the recording");
     const Recording recording = read_recording(reader, settings, texts.recording);
     options.progress = say;
@@ -69,10 +70,11 @@ int main(int argc, char** argv) {
     texts.versions = versions();
     say("run the models once more for the report");
     write_diagnosis(diagnosis, texts, show(settings, reader, recording, diagnosis), output);
+    progress.finish();
     if (json) {
       std::cout << diagnosis_json(diagnosis);
     } else if (!quiet) {
-      print_diagnosis(diagnosis, std::cout);
+      print_diagnosis(diagnosis, Paint::for_stdout(), std::cout);
       std::cout << "written       " << output << "/{diagnosis.json,model_next.yaml,report.html}\n";
     }
   });

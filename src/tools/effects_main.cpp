@@ -2,10 +2,17 @@
 #include "tissue_stiffness/tools/run_tool.hpp"
 
 int main(int argc, char** argv) {
+  using namespace tissue_stiffness;
   CLI::App app("Prints the library of effects: name, formula, parameters with unit and bounds, source.", "effects");
-  bool markdown = false;
+  bool markdown = false, json = false, quiet = false;
   app.add_flag("--markdown", markdown, "as a page of the documentation");
-  return tissue_stiffness::run_tool(app, argc, argv, [&] {
-    markdown ? tissue_stiffness::print_effects_markdown(std::cout) : tissue_stiffness::print_effects(std::cout);
+  app.add_flag("--json", json, "as JSON");
+  app.add_flag("--quiet", quiet, "the names alone");
+  app.footer("Example: effects --quiet");
+  return run_tool(app, argc, argv, [&] {
+    if (json) return print_effects_json(std::cout);
+    if (markdown) return print_effects_markdown(std::cout);
+    if (quiet) return print_effect_names(std::cout);
+    print_effects(std::cout);
   });
 }

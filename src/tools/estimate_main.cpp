@@ -27,6 +27,7 @@ int main(int argc, char** argv) {
   app.add_option("--frames", frames, "stop after so many frames (default: all)")->check(CLI::PositiveNumber);
   app.add_flag("--quiet", quiet, "no progress and no table");
   app.add_flag("--json", json, "print results.json instead of the table");
+  app.footer("Example: estimate model.yaml recording.bag --output out");
   return run_tool(app, argc, argv, [&] {
     Progress progress(std::cerr, Progress::style_of_stderr(quiet || json), "estimate");
     EstimationRun run = estimate_recording(model, recording, frames,
@@ -37,7 +38,7 @@ int main(int argc, char** argv) {
     if (json) {
       std::cout << results_json(run.results) << "\n";
     } else if (!quiet) {
-      print_summary(run, std::cout);
+      print_summary(run, Paint::for_stdout(), std::cout);
       std::cout << "written       " << output << "/{results.json,estimates.csv,report.html}\n";
     }
   });

@@ -20,19 +20,24 @@ std::string line(const char* pattern, const std::string& name, double a, double 
   return out;
 }
 
+std::string painted(const std::string& verdict, const Paint& paint) {
+  if (verdict == "adequate") return paint.good(verdict);
+  return verdict == "missing" ? paint.warning(verdict) : paint.bad(verdict);
+}
+
 }  // namespace
 
-void print_diagnosis(const Diagnosis& d, std::ostream& out) {
-  out << diagnosis_sentence(d) << "\nwhere         " << d.where << "\nwhen          " << d.when << "\n";
+void print_diagnosis(const Diagnosis& d, const Paint& paint, std::ostream& out) {
+  out << paint.bold(diagnosis_sentence(d)) << "\nwhere         " << d.where << "\nwhen          " << d.when << "\n";
   out << line("error         %s%.3f mm rms: noise %.3f, beyond noise %.3f, of the mesh %.3f\n", "", 1e3 * d.metres.total,
               1e3 * d.metres.noise, 1e3 * d.metres.structured, 1e3 * d.metres.numerical);
-  out << "candidate                 explains   held-out [mm]   log evidence          p\n";
+  out << paint.bold("candidate                 explains   held-out [mm]   log evidence          p") << "\n";
   for (std::size_t i = 0; i < d.candidates.size() && i < kShown; ++i) {
     const MissingEffect& c = d.candidates[i];
     out << line("%-24s %8.1f %%  %14.3f  %13.1f  %9.2g\n", c.effect, 100.0 * c.explained, 1e3 * c.held_out_rms_after,
                 c.log_bayes_factor, c.p_value);
   }
-  out << "model                     held-out [mm]   fitted [mm]   noise [mm]\n";
+  out << paint.bold("model                     held-out [mm]   fitted [mm]   noise [mm]") << "\n";
   for (const DiagnosisStep& s : d.steps) {
     const std::string name = s.effects.empty() ? "as given" : "+ " + s.effects.back();
     out << line("%-24s %14.3f  %12.3f  %11.3f%.0s\n", name, 1e3 * s.held_out_rms, 1e3 * s.train_rms, 1e3 * s.noise_floor,
@@ -42,7 +47,7 @@ void print_diagnosis(const Diagnosis& d, std::ostream& out) {
         out << "  " << parameter << " = " << value / 1e3 << " kPa\n";
     }
   }
-  out << "final         " << d.final_verdict << "; " << std::lround(d.seconds) << " s\n";
+  out << "final         " << painted(d.final_verdict, paint) << "; " << std::lround(d.seconds) << " s\n";
 }
 
 }  // namespace tissue_stiffness

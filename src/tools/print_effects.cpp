@@ -3,6 +3,7 @@
 #include <cctype>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 
@@ -70,6 +71,39 @@ void print_effects_markdown(std::ostream& out) {
     if (!effect.keys.empty()) out << "\n| key | takes |\n|---|---|\n";
     for (const auto& [key, meaning] : effect.keys) out << "| `" << key << "` | " << cell(meaning) << " |\n";
   }
+}
+
+void print_effect_names(std::ostream& out) {
+  for (const EffectSpec& effect : effect_specs()) out << effect.name << "\n";
+}
+
+void print_effects_json(std::ostream& out) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  const auto finite = [](double value) {
+    const bool none = !std::isfinite(value) || std::abs(value) == std::numeric_limits<double>::max();
+    return none ? nlohmann::ordered_json() : nlohmann::ordered_json(value);
+  };
+  for (const EffectSpec& effect : effect_specs()) {
+    nlohmann::ordered_json entry{{"name", effect.name},
+                                 {"summary", effect.summary},
+                                 {"formula", effect.formula},
+                                 {"source", effect.source},
+                                 {"parameters", nlohmann::ordered_json::array()},
+                                 {"keys", nlohmann::ordered_json::object()}};
+    for (const ParameterSpec& spec : effect.parameters) {
+      const bool required = spec.presence == ParameterSpec::Default::required;
+      entry["parameters"].push_back({{"name", spec.name},
+                                     {"symbol", spec.symbol},
+                                     {"unit", spec.unit},
+                                     {"components", spec.components},
+                                     {"lower", finite(spec.lower)},
+                                     {"upper", finite(spec.upper)},
+                                     {"default", required ? nlohmann::ordered_json() : finite(spec.value)}});
+    }
+    for (const auto& [key, meaning] : effect.keys) entry["keys"][key] = meaning;
+    list.push_back(entry);
+  }
+  out << list.dump(2) << "\n";
 }
 
 }  // namespace tissue_stiffness

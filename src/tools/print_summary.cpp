@@ -23,8 +23,18 @@ void print_line(std::ostream& out, const char* format, Arguments... arguments) {
   out << line << "\n";
 }
 
-void print_parameters(const Results& results, std::ostream& out) {
-  print_line(out, "%-32s %12s  %-28s %-5s %s", "parameter", "estimate", "95 % interval", "unit", "identifiable");
+std::string painted(EstimateState state, const Paint& paint) {
+  const std::string name = to_string(state);
+  if (state == EstimateState::converged) return paint.good(name);
+  if (state == EstimateState::model_invalid) return paint.bad(name);
+  return paint.warning(name);
+}
+
+void print_parameters(const Results& results, const Paint& paint, std::ostream& out) {
+  char head[128];
+  std::snprintf(head, sizeof head, "%-32s %12s  %-28s %-5s %s", "parameter", "estimate", "95 % interval", "unit",
+                "identifiable");
+  out << paint.bold(head) << "\n";
   for (const ParameterEstimate& p : results.parameters) {
     const ShownUnit unit = shown_unit(p.mean, p.unit);
     const double spread = unit.scale * p.std;
@@ -36,8 +46,10 @@ void print_parameters(const Results& results, std::ostream& out) {
   }
 }
 
-void print_stages(const EstimationRun& run, std::ostream& out) {
-  print_line(out, "%-12s %12s %12s %12s", "stage", "median [ms]", "p99 [ms]", "total [s]");
+void print_stages(const EstimationRun& run, const Paint& paint, std::ostream& out) {
+  char head[128];
+  std::snprintf(head, sizeof head, "%-12s %12s %12s %12s", "stage", "median [ms]", "p99 [ms]", "total [s]");
+  out << paint.bold(head) << "\n";
   for (const char* stage : {"segment", "predict", "observe", "update", "revisit", "mesh error"}) {
     const auto samples = run.stage_samples.find(stage);
     if (samples == run.stage_samples.end()) continue;
@@ -50,17 +62,17 @@ void print_stages(const EstimationRun& run, std::ostream& out) {
 
 }  // namespace
 
-void print_summary(const EstimationRun& run, std::ostream& out) {
+void print_summary(const EstimationRun& run, const Paint& paint, std::ostream& out) {
   const Results& results = run.results;
-  print_parameters(results, out);
-  print_line(out, "state         %s", to_string(results.state).c_str());
+  print_parameters(results, paint, out);
+  out << "state         " << painted(results.state, paint) << "\n";
   print_line(out, "frames        %d used, %d skipped, %d late messages; %.3g frames/s", results.used(), results.skipped(),
              run.late, static_cast<double>(results.frames.size()) / run.seconds);
   print_line(out, "rms error     %s mm, %.3g of the noise; %.3g %% of the motion",
              short_number(1e3 * results.rms_error, 4).c_str(), results.rms_error / results.noise_rms,
              100.0 * results.relative_error);
   print_line(out, "NIS           %.3g a degree of freedom, p = %.2g", results.nis_mean_per_dof, results.nis_p_value);
-  print_stages(run, out);
+  print_stages(run, paint, out);
 }
 
 }  // namespace tissue_stiffness

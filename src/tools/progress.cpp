@@ -53,4 +53,21 @@ void Progress::finish() {
   drawn_ = false;
 }
 
+StepProgress::StepProgress(std::ostream& out, Progress::Style style, std::string what)
+    : out_(out), style_(style), what_(std::move(what)), start_(std::chrono::steady_clock::now()) {}
+
+void StepProgress::show(const std::string& step) {
+  if (style_ == Progress::Style::quiet) return;
+  const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  char head[64];
+  std::snprintf(head, sizeof head, "%s [step %d, %.1f s] ", what_.c_str(), ++steps_, elapsed);
+  const bool bar = style_ == Progress::Style::bar;
+  out_ << (bar ? "\r" : "") << head << step << (bar ? "\033[K" : "\n") << std::flush;
+}
+
+void StepProgress::finish() {
+  if (style_ == Progress::Style::bar && steps_ > 0) out_ << std::endl;
+  steps_ = 0;
+}
+
 }  // namespace tissue_stiffness

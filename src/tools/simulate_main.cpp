@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "tissue_stiffness/tools/progress.hpp"
@@ -9,18 +10,29 @@ int main(int argc, char** argv) {
   using namespace tissue_stiffness;
   CLI::App app("Makes a recording of a body whose properties are known: a model file with `simulation`.", "simulate");
   std::string file, output, truth;
-  bool quiet = false;
+  bool quiet = false, json = false;
   app.add_option("SCENE", file, "scene file (YAML)")->required();
   app.add_option("--output", output, "rosbag to write")->required();
   app.add_option("--truth", truth, "file for the scene's numbers (YAML)");
   app.add_flag("--quiet", quiet, "no progress and no summary");
+  app.add_flag("--json", json, "print the summary as JSON");
+  app.footer("Example: simulate scene.yaml --output recording.bag --truth truth.yaml");
   return run_tool(app, argc, argv, [&] {
     const Scene scene = load_scene(file);
-    Progress progress(std::cerr, Progress::style_of_stderr(quiet), "simulate");
+    Progress progress(std::cerr, Progress::style_of_stderr(quiet || json), "simulate");
     const SimulationSummary summary =
         simulate_scene(scene, output, [&](std::size_t done, std::size_t total) { progress.show(done, total); });
     progress.finish();
     if (!truth.empty()) write_truth(scene, summary, truth);
+    if (json) {
+      const nlohmann::json shown{{"recording", output},
+                                 {"frames", summary.frames},
+                                 {"nodes", summary.nodes},
+                                 {"motion_rms", summary.motion_rms},
+                                 {"motion_max", summary.motion_max}};
+      std::cout << shown.dump(2) << "\n";
+      return;
+    }
     if (quiet) return;
     std::printf("%s: %d frames, %d nodes, motion %.3g mm rms, %.3g mm at most\n", output.c_str(), summary.frames,
                 summary.nodes, 1e3 * summary.motion_rms, 1e3 * summary.motion_max);

@@ -86,6 +86,31 @@ class SegmentationTest(unittest.TestCase):
         green = (pixels[:, :, 1] - pixels[:, :, 0]) > 60
         self.assertGreater(green.sum(), 0.5 * 2 * np.pi * RADIUS)
 
+    def test_draws_the_models_outline_of_the_same_stamp(self):
+        predicted = rospy.Publisher('predicted_contour', Contour, queue_size=10)
+        self.addCleanup(self.pause, 0.5)
+        self.addCleanup(predicted.unregister)
+        while not predicted.get_num_connections():
+            self.pause(0.05)
+        for stamp in (150.0, 150.5, 151.0):
+            self.publish(stamp, (160.0, 120.0))
+            self.assertIsNotNone(self.wait(self.contours, stamp))
+        self.pause(0.3)
+        self.assertEqual(list(self.overlays), [], 'an overlay did not wait for the model')
+        line = np.arange(20.0, 220.0)
+        outline = Contour(width=WIDTH, height=HEIGHT, u=line, v=np.full_like(line, 20.0))
+        outline.header.stamp = rospy.Time.from_sec(150.5)
+        predicted.publish(outline)
+        self.assertIsNotNone(self.wait(self.overlays, 150.5))
+        self.assertNotIn(151.0, self.overlays)
+        self.assertEqual(self.magenta(self.overlays[150.0]), 0, 'the outline of another image')
+        self.assertGreater(self.magenta(self.overlays[150.5]), 100)
+
+    @staticmethod
+    def magenta(overlay):
+        blue, green, red = np.frombuffer(overlay.data, np.uint8).reshape(-1, 3).astype(int).T
+        return ((blue - green > 60) & (red - green > 60)).sum()
+
     def test_survives_what_it_cannot_use(self):
         self.publish(200.0, None)  # nothing to be found
         self.images.publish(image(disc(None, 1), 200.1, 'holiday'))

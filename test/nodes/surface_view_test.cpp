@@ -57,20 +57,35 @@ TEST(SurfaceMarker, ShowsAQuadraticFacetAsFourTrianglesTurnedOutwards) {
   EXPECT_NEAR(area, 1.5 + std::sqrt(3.0) / 2.0, 1e-12);
 }
 
-TEST(SurfaceMarker, ColoursByMisfit) {
+TEST(SurfaceMarker, ColoursByMisfitAndInterpolatesBetweenMeasuredNodes) {
   const TetMesh mesh = quadratic_tetrahedron();
   const auto marker = surface_marker(mesh, Eigen::Matrix3Xd::Zero(3, 10), misfit(), std_msgs::Header());
   for (std::size_t i = 0; i < marker.points.size(); ++i) {
     const auto& p = marker.points[i];
     const auto& c = marker.colors[i];
     if (p.y == 1.0) {
-      EXPECT_TRUE(c.r == 1.0F && c.g == 0.0F) << "6 sigma is red";
+      EXPECT_TRUE(c.r > 0.6F && c.g == 0.0F) << "6 sigma is red";
     } else if (p.x == 1.0) {
-      EXPECT_TRUE(c.r == 0.0F && c.g == 1.0F) << "0 sigma is green";
-    } else {
-      EXPECT_TRUE(c.r == c.g && c.g == c.b) << "not measured is grey";
+      EXPECT_TRUE(c.r == 0.0F && c.g > 0.6F) << "0 sigma is green";
+    } else if (p.x == 0.5 && p.y == 0.5) {
+      EXPECT_TRUE(c.r > 0.6F && c.g == 0.0F) << "the mean of 6 and 0 sigma is red";
     }
   }
+}
+
+TEST(SurfaceMarker, IsGreyWhereNothingWasMeasuredAndBrighterTowardsTheLight) {
+  const TetMesh mesh = quadratic_tetrahedron();
+  Misfit nothing = misfit();
+  nothing.node_sigmas.setConstant(std::nan(""));
+  const auto marker = surface_marker(mesh, Eigen::Matrix3Xd::Zero(3, 10), nothing, std_msgs::Header());
+  float top = 0.0F, bottom = 0.0F;
+  for (std::size_t i = 0; i < marker.points.size(); ++i) {
+    const auto& c = marker.colors[i];
+    EXPECT_TRUE(c.r == c.g && c.g == c.b && c.r > 0.3F);
+    if (marker.points[i].x == 0.5 && marker.points[i].y == 0.0 && marker.points[i].z == 0.5) top = c.r;
+    if (marker.points[i].x == 0.5 && marker.points[i].y == 0.5 && marker.points[i].z == 0.0) bottom = c.r;
+  }
+  EXPECT_GT(top, bottom);
 }
 
 TEST(SurfaceCloud, HoldsPositionDisplacementAndMisfitOfEachSurfaceNode) {

@@ -11,6 +11,7 @@
 #include <rviz/yaml_config_reader.h>
 
 #include <QApplication>
+#include <QDockWidget>
 #include <QElapsedTimer>
 #include <QLabel>
 #include <QLineEdit>
@@ -33,7 +34,7 @@ class PanelInRviz : public ::testing::Test {
   static void SetUpTestSuite() {
     frame_ = std::make_unique<rviz::VisualizationFrame>();
     frame_->setSplashPath("");
-    frame_->initialize(QString(TISSUE_STIFFNESS_SOURCE_DIR) + "/rviz/tissue_stiffness.rviz");
+    frame_->initialize(QString(TISSUE_STIFFNESS_SOURCE_DIR) + "/rviz/points.rviz");
     frame_->show();
     panel_ = frame_->findChild<rviz::Panel*>("tissue_stiffness_panel");
   }
@@ -93,8 +94,8 @@ TEST_F(PanelInRviz, T1_ShowsTheEstimateOfTheRun) {
   EXPECT_FALSE(part<QPushButton>("remove")->isEnabled());
 }
 
-TEST_F(PanelInRviz, T2_NoDisplayOfTheConfigIsInError) {
-  rviz::DisplayGroup* displays = frame_->getManager()->getRootDisplayGroup();
+void expect_no_errors(rviz::VisualizationFrame& frame) {
+  rviz::DisplayGroup* displays = frame.getManager()->getRootDisplayGroup();
   ASSERT_GE(displays->numDisplays(), 4);
   for (int i = 0; i < displays->numDisplays(); ++i) {
     rviz::Display* display = displays->getDisplayAt(i);
@@ -102,6 +103,10 @@ TEST_F(PanelInRviz, T2_NoDisplayOfTheConfigIsInError) {
     if (!display->isEnabled() || status == nullptr) continue;
     EXPECT_NE(status->getLevel(), rviz::StatusProperty::Error) << display->getNameStd();
   }
+}
+
+TEST_F(PanelInRviz, T2_NoDisplayOfTheConfigIsInError) {
+  expect_no_errors(*frame_);
 }
 
 TEST_F(PanelInRviz, T3_DiagnoseNamesTheHiddenEffectAndNeverBlocksTheWindow) {
@@ -182,7 +187,19 @@ TEST_F(PanelInRviz, T7_TheNamespaceIsUsedAndSaved) {
   EXPECT_TRUE(wait_for([] { return label("headline") != "-"; })) << "the latched estimate did not come";
 }
 
-TEST_F(PanelInRviz, T8_ClosesDuringADiagnosis) {
+TEST_F(PanelInRviz, T8_TheConfigWithImagesHasThePanelAndBothOutlines) {
+  frame_->loadDisplayConfig(QString(TISSUE_STIFFNESS_SOURCE_DIR) + "/rviz/tissue_stiffness.rviz");
+  panel_ = frame_->findChild<rviz::Panel*>("tissue_stiffness_panel");
+  ASSERT_NE(panel_, nullptr);
+  ASSERT_TRUE(wait_for([] { return label("headline") != "-"; })) << "the latched estimate did not come";
+  expect_no_errors(*frame_);
+  const auto docks = frame_->findChildren<QDockWidget*>();
+  EXPECT_TRUE(std::any_of(docks.begin(), docks.end(), [](const QDockWidget* dock) {
+    return dock->windowTitle().startsWith("Outlines") && dock->isVisible();
+  })) << "the image is not shown";
+}
+
+TEST_F(PanelInRviz, T9_ClosesDuringADiagnosis) {
   press("diagnose");
   QTest::qWait(100);
   QElapsedTimer closing;

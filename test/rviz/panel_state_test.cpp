@@ -145,7 +145,7 @@ TEST(PanelState, ADiagnosisOfAnotherModelIsNotShown) {
   EXPECT_EQ(state.rows().size(), 2U);
 }
 
-TEST(PanelState, KeepsTheMisfitInMillimetresAndMarksWhatHappened) {
+TEST(PanelState, KeepsTheMisfitInMillimetres) {
   PanelState state;
   MisfitMessage message;
   message.header.stamp = ros::Time(2.0);
@@ -153,10 +153,22 @@ TEST(PanelState, KeepsTheMisfitInMillimetresAndMarksWhatHappened) {
   message.rms_sigma = 1.02;
   state.take(message);
   EXPECT_EQ(state.misfit(), "misfit 0.210 mm, 1.02 sigma");
-  state.mark("+ gravity");
-  ASSERT_EQ(state.misfit_curve().events().size(), 1U);
-  EXPECT_EQ(state.misfit_curve().events()[0].time, 2.0);
   EXPECT_NEAR(state.misfit_curve().points()[0].value, 0.21, 1e-12);
+}
+
+TEST(PanelState, MarksWhereEffectsCameAndWent) {
+  PanelState state;
+  state.take(estimate(1.0, 18e3, 100.0));
+  EXPECT_FALSE(state.model_changed());
+  StiffnessEstimate changed = estimate(1.0, 12e3, 100.0);
+  changed.names[0] = "mass_damping.alpha";
+  state.take(changed);
+  EXPECT_TRUE(state.model_changed());
+  EXPECT_FALSE(state.model_changed()) << "told once";
+  ASSERT_EQ(state.modulus_curve().events().size(), 1U);
+  EXPECT_EQ(state.modulus_curve().events()[0].text, "+ mass damping - viscous damping");
+  EXPECT_EQ(state.modulus_curve().events()[0].time, 1.0);
+  ASSERT_EQ(state.modulus_curve().points().size(), 2U) << "a step";
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <image_transport/image_transport.h>
 #include <ros/node_handle.h>
 
+#include <deque>
 #include <memory>
 
 #include "tissue_stiffness/nodes/diagnostics.hpp"
@@ -13,8 +14,9 @@
 namespace tissue_stiffness {
 
 /// Finds the tissue's outline in `image` and publishes it on `contour` with the image's header; on `overlay` the image with
-/// that outline and, when it comes on `predicted_contour`, the model's. Works only while somebody listens, so that the
-/// first image of a recording that waits for subscribers is not lost on nobody.
+/// that outline and the model's, when an estimator publishes one of that stamp on `predicted_contour`; it waits for it
+/// then. Works only while somebody listens, so that the first image of a recording that waits for subscribers is not lost
+/// on nobody.
 ///
 /// Private parameters: `segmentation: {kind, seed}`, or `model` (a file or the model's keys), of which contour number
 /// `contour_number` (1) counts. With a model the image topic is the model's, unless `image` is remapped. `queue_size`
@@ -28,9 +30,16 @@ class SegmentationNode {
   void connect();
   void on_image(const sensor_msgs::ImageConstPtr& message);
   void on_camera_info(const sensor_msgs::CameraInfoConstPtr& message);
-  void on_predicted(const ContourConstPtr& message) { predicted_ = message; }
+  void on_predicted(const ContourConstPtr& message);
   Segmentation segment(const sensor_msgs::ImageConstPtr& message, const cv::Mat& image);
-  void publish_overlay(const sensor_msgs::Image& message, const cv::Mat& image, const Contour& measured) const;
+  /// An image whose overlay waits for the model's outline.
+  struct Seen {
+    sensor_msgs::ImageConstPtr message;
+    cv::Mat image;
+    Contour measured;
+  };
+  /// The overlay of the image that has waited longest.
+  void publish_overlay(const ContourConstPtr& predicted);
 
   ros::NodeHandle node_;
   image_transport::ImageTransport transport_;
@@ -40,7 +49,7 @@ class SegmentationNode {
   std::uint32_t queue_size_ = 100;
   ros::Time last_;
   sensor_msgs::CameraInfoConstPtr camera_info_;
-  ContourConstPtr predicted_;
+  std::deque<Seen> waiting_;
   ros::Publisher contour_publisher_;
   image_transport::Publisher overlay_publisher_;
   image_transport::Subscriber image_subscriber_;

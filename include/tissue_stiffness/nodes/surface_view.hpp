@@ -13,8 +13,8 @@ namespace tissue_stiffness {
 
 // The tracked surface for rviz: rest mesh plus displacement [m], in the frame and at the stamp of `header`.
 
-/// TRIANGLE_LIST coloured by misfit: green at 0 sigma over yellow to red at 3 sigma and beyond, grey where nothing was
-/// measured. A 10-node facet is shown as four triangles.
+/// TRIANGLE_LIST coloured by misfit: green at 0 sigma over yellow to red at 3 sigma and beyond, interpolated between
+/// measured nodes, grey far from any; shaded by a light from above. A 10-node facet is shown as four triangles.
 visualization_msgs::Marker surface_marker(const TetMesh& mesh, const Eigen::Matrix3Xd& displacement, const Misfit& misfit,
                                           const std_msgs::Header& header);
 

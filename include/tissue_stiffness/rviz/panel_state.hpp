@@ -1,7 +1,9 @@
 #pragma once
 
 #include <limits>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tissue_stiffness/nodes/messages.hpp"
@@ -34,8 +36,8 @@ class PanelState {
   void take(const DiagnosisMessage& message);
   /// What the running model was given with add_effect, as list_effects says.
   void set_added(const std::vector<std::string>& added);
-  /// Marks both curves, as when an effect was added.
-  void mark(const std::string& text);
+  /// True once after the running model's effects changed: who was added is to be asked then.
+  bool model_changed() { return std::exchange(model_changed_, false); }
   void clear() { *this = PanelState(); }
 
   /// "12.02 kPa", of Young's modulus, or of the first parameter when none is estimated; "-" before the first frame.
@@ -63,10 +65,11 @@ class PanelState {
   double noise_floor() const;
 
  private:
+  void mark_changes(const std::set<std::string>& before, const std::set<std::string>& now);
   void choose_unit(const std::string& name, double mean, const std::string& unit);
   bool stale() const { return diagnosed_ && diagnosis_.added != added_; }
 
-  bool estimated_ = false, compared_ = false, diagnosed_ = false;
+  bool estimated_ = false, compared_ = false, diagnosed_ = false, model_changed_ = false;
   StiffnessEstimate estimate_;
   MisfitMessage last_misfit_;
   DiagnosisMessage diagnosis_;

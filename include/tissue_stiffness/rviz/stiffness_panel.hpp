@@ -38,6 +38,7 @@ class StiffnessPanel : public rviz::Panel {
   void build_header();
   void build_buttons();
   void connect_to(const QString& node_namespace);
+  void ask_what_was_added();
   void take_messages();
   void show_estimate();
   void show_effects();
@@ -51,9 +52,8 @@ class StiffnessPanel : public rviz::Panel {
   void wait_for(const QString& text);
   /// Runs `done` in the GUI's thread, unless the panel speaks with another estimator by then.
   ServiceCalls::Done in_gui(ServiceCalls::Done done);
-  /// Ends the waiting; `mark` is put on the curves when the answer is a success.
-  ServiceCalls::Done when_answered(const QString& mark);
-  void answered(const ServiceCalls::Answer& answer, const QString& mark);
+  /// Ends the waiting.
+  ServiceCalls::Done when_answered();
 
   ros::CallbackQueue queue_;
   std::unique_ptr<ros::NodeHandle> node_;

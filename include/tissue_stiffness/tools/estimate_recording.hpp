@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tissue_stiffness/report/results.hpp"
+#include "tissue_stiffness/tools/paint.hpp"
 #include "tissue_stiffness/types/replay.hpp"
 
 namespace tissue_stiffness {
@@ -30,6 +31,6 @@ EstimationRun estimate_recording(const std::string& model_file, const std::strin
                                  const ProgressCallback& progress);
 
 /// The closing table of `estimate`: parameters with interval and identifiability, error against noise, speed by stage.
-void print_summary(const EstimationRun& run, std::ostream& out);
+void print_summary(const EstimationRun& run, const Paint& paint, std::ostream& out);
 
 }  // namespace tissue_stiffness

@@ -2,11 +2,12 @@
 
 #include <iosfwd>
 
+#include "tissue_stiffness/tools/paint.hpp"
 #include "tissue_stiffness/types/diagnosis.hpp"
 
 namespace tissue_stiffness {
 
 /// The closing table of `diagnose`.
-void print_diagnosis(const Diagnosis& diagnosis, std::ostream& out);
+void print_diagnosis(const Diagnosis& diagnosis, const Paint& paint, std::ostream& out);
 
 }  // namespace tissue_stiffness

@@ -32,4 +32,22 @@ class Progress {
   bool drawn_ = false;
 };
 
+/// Progress of work whose steps have names and no known number: which one, and for how long by now. One line that changes
+/// on a terminal, a line a step elsewhere.
+class StepProgress {
+ public:
+  StepProgress(std::ostream& out, Progress::Style style, std::string what);
+
+  void show(const std::string& step);
+  /// Ends the line.
+  void finish();
+
+ private:
+  std::ostream& out_;
+  Progress::Style style_;
+  std::string what_;
+  std::chrono::steady_clock::time_point start_;
+  int steps_ = 0;
+};
+
 }  // namespace tissue_stiffness

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+namespace tissue_stiffness {
+
+/// Colours for a terminal; plain text for a file or a pipe, a terminal that cannot, and who sets NO_COLOR (no-color.org).
+class Paint {
+ public:
+  explicit Paint(bool on) : on_(on) {}
+  /// For standard output as it is.
+  static Paint for_stdout();
+
+  std::string bold(const std::string& text) const { return in("1", text); }
+  std::string good(const std::string& text) const { return in("32", text); }
+  std::string warning(const std::string& text) const { return in("33", text); }
+  std::string bad(const std::string& text) const { return in("31", text); }
+
+ private:
+  std::string in(const char* code, const std::string& text) const;
+  bool on_;
+};
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,99 @@
+#include "tissue_stiffness/nodes/node_keys.hpp"
+
+#include <map>
+#include <stdexcept>
+
+namespace tissue_stiffness {
+namespace {
+
+using Kind = KeySpec::Kind;
+
+KeySpec number(const std::string& name, const std::string& unit, double lower, double upper, double value,
+               const std::string& meaning) {
+  return {name, Kind::number, unit, lower, upper, {}, false, value, "", meaning};
+}
+
+KeySpec frame() {
+  return {"model_frame", Kind::text, "", 0, 0, {}, false, 0, "model", "tf frame that the model lives in"};
+}
+
+KeySpec patience(double seconds) {
+  return number("transform_timeout", "s", 0, 60, seconds, "how long to wait for a sensor's pose on tf, in wall time");
+}
+
+const std::vector<std::pair<std::string, std::vector<KeySpec>>>& all_keys() {
+  static const std::vector<std::pair<std::string, std::vector<KeySpec>>> keys{
+      {"segmentation_node",
+       {{"segmentation",
+         Kind::map,
+         "",
+         0,
+         0,
+         {},
+         false,
+         0,
+         "",
+         "`{kind, seed}` as in a model file's contour, for a node without a model"},
+        number("contour_number", "", 1, 100, 1, "which of the model's contours"),
+        number("queue_size", "images", 1, 1e4, 100, "that may wait before the oldest is dropped")}},
+      {"mesh_node", {frame(), patience(1.0)}},
+      {"estimator_node",
+       {frame(), patience(0.1),
+        number("load_timeout", "s", 0, 60, 0.1, "how long a frame waits for the loads up to its stamp, in wall time"),
+        number("queue_size", "frames", 1, 1e5, 100, "that may wait before the oldest is dropped"),
+        number("diagnosis_period", "s", 0, 1e6, 10,
+               "wall time between checks of what the model misses; 0: on request only"),
+        number("diagnosis_window", "s", 1, 1e5, 20, "how much of the run a check sees")}}};
+  return keys;
+}
+
+}  // namespace
+
+const std::vector<KeySpec>& common_node_keys() {
+  static const std::vector<KeySpec> keys{
+      {"model",
+       Kind::text,
+       "",
+       0,
+       0,
+       {},
+       false,
+       0,
+       "",
+       "the model file; without it the private parameters are the model's keys themselves"},
+      {"directory",
+       Kind::text,
+       "",
+       0,
+       0,
+       {},
+       false,
+       0,
+       "",
+       "where relative files are looked up when there is no `model`; the working directory when absent"}};
+  return keys;
+}
+
+const std::vector<KeySpec>& node_keys(const std::string& node) {
+  for (const auto& [name, keys] : all_keys()) {
+    if (name == node) return keys;
+  }
+  throw std::logic_error("no node " + node);
+}
+
+const std::vector<std::string>& node_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> out;
+    for (const auto& node : all_keys()) out.push_back(node.first);
+    return out;
+  }();
+  return names;
+}
+
+std::vector<std::string> names_of(const std::vector<KeySpec>& keys) {
+  std::vector<std::string> out;
+  for (const KeySpec& key : keys) out.push_back(key.path);
+  return out;
+}
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,13 @@
+#include "tissue_stiffness/tools/print_keys.hpp"
+#include "tissue_stiffness/tools/run_tool.hpp"
+
+int main(int argc, char** argv) {
+  CLI::App app("Prints the keys of a model file and the nodes' parameters: unit, allowed values, default, meaning.",
+               "parameters");
+  bool markdown = false;
+  app.add_flag("--markdown", markdown, "as a page of the documentation");
+  app.footer("Example: parameters --markdown > doc/parameters.md");
+  return tissue_stiffness::run_tool(app, argc, argv, [&] {
+    markdown ? tissue_stiffness::print_keys_markdown(std::cout) : tissue_stiffness::print_keys(std::cout);
+  });
+}
