@@ -1,51 +1,25 @@
 #include "tissue_stiffness/estimation/ensemble.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
-#include <exception>
+#include "tissue_stiffness/forward/for_each_index.hpp"
 
 namespace tissue_stiffness {
-namespace {
-
-// Runs act(i) for i < count in parallel; the error of the lowest i is thrown, whatever the threads did.
-template <typename Act>
-void for_each_index(std::size_t count, const Act& act) {
-  std::vector<std::exception_ptr> errors(count);
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-    try {
-      act(i);
-    } catch (...) {
-      errors[i] = std::current_exception();
-    }
-  });
-  for (const std::exception_ptr& error : errors) {
-    if (error) std::rethrow_exception(error);
-  }
-}
-
-}  // namespace
 
 void Ensemble::restart(const Eigen::MatrixXd& sigma_points, double start) {
-  trajectories_.clear();
-  trajectories_.resize(static_cast<std::size_t>(sigma_points.cols()));
-  theta_.resize(trajectories_.size());
-  for_each_index(trajectories_.size(), [&](std::size_t i) {
-    theta_[i] = model_.theta(sigma_points.col(static_cast<Eigen::Index>(i)));
-    trajectories_[i] = forward_.start(theta_[i], start);
-  });
+  theta_.clear();
+  for (Eigen::Index i = 0; i < sigma_points.cols(); ++i) theta_.push_back(model_.theta(sigma_points.col(i)));
+  runs_ = forward_.start_all(theta_, start);
   displacements_ = Eigen::MatrixXd::Zero(model_.fem().dof_count(), sigma_points.cols());
 }
 
 void Ensemble::advance(double time) {
-  for_each_index(trajectories_.size(), [&](std::size_t i) {
-    trajectories_[i]->advance(time - model_.delay(theta_[i]));
-    displacements_.col(static_cast<Eigen::Index>(i)) = trajectories_[i]->displacement();
-  });
+  std::vector<double> times;
+  for (const Eigen::VectorXd& theta : theta_) times.push_back(time - model_.delay(theta));
+  runs_->advance(times);
+  runs_->displacements(displacements_);
 }
 
 Ensemble::Predicted Ensemble::predict(const Frame& frame) const {
-  std::vector<Prediction> predictions(trajectories_.size());
+  std::vector<Prediction> predictions(theta_.size());
   for_each_index(predictions.size(), [&](std::size_t i) {
     predictions[i] = predict_frame(model_, operators_, frame, theta_[i], displacements_.col(static_cast<Eigen::Index>(i)));
   });

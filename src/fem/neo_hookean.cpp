@@ -1,13 +1,20 @@
 #include "tissue_stiffness/fem/neo_hookean.hpp"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <Eigen/LU>
 #include <cmath>
+#include <memory>
+#include <numeric>
 #include <string>
 
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
 namespace {
+
+constexpr int kElements = 64, kNodes = 512;  // worth a task
 
 template <int N>
 using Nodal = Eigen::Matrix<double, 3, N>;
@@ -50,22 +57,6 @@ Eigen::Matrix3d stress(const Lame& c, const Deformation& d) {
 struct Plain {
   StressScale operator()(int, int, double) const { return {}; }
 };
-
-template <int N, typename Law>
-void force(const Discretisation& fem, const std::vector<int>& list, const Lame& c, const Eigen::VectorXd& u, const Law& law,
-           Eigen::VectorXd& f) {
-  for (const int e : list) {
-    const Nodal<N> local = gather<N>(fem.elements(), e, u);
-    Nodal<N> internal = Nodal<N>::Zero();
-    for (int q = 0; q < fem.points_per_element(); ++q) {
-      const Eigen::Map<const Nodal<N>> g(fem.gradient(e, q).data());
-      const Deformation d = deform<N>(local, g, e);
-      const double scale = law(e, q, energy_density(c, d)).value;
-      if (scale != 0.0) internal.noalias() += (scale * fem.weight(e, q) * stress(c, d)) * g;
-    }
-    for (int a = 0; a < N; ++a) f.segment<3>(3 * fem.elements()(a, e)) -= internal.col(a);
-  }
-}
 
 template <int N, typename Law>
 void stiffness(const Discretisation& fem, const std::vector<int>& list, const Lame& c, const Eigen::VectorXd& u,
@@ -112,9 +103,57 @@ double stored(const Discretisation& fem, const std::vector<int>& list, const Lam
 
 }  // namespace
 
+NeoHookean::NeoHookean(const Discretisation& fem, std::vector<int> elements)
+    : fem_(fem), elements_(std::move(elements)), first_share_(static_cast<std::size_t>(fem.node_count() + 1), 0) {
+  const int n = fem.nodes_per_element();
+  for (const int e : elements_) {
+    for (int a = 0; a < n; ++a) ++first_share_[static_cast<std::size_t>(fem.elements()(a, e) + 1)];
+  }
+  std::partial_sum(first_share_.begin(), first_share_.end(), first_share_.begin());
+  shares_.resize(elements_.size() * static_cast<std::size_t>(n));
+  std::vector<int> next = first_share_;
+  for (std::size_t i = 0; i < elements_.size(); ++i) {
+    for (int a = 0; a < n; ++a) {
+      int& at = next[static_cast<std::size_t>(fem.elements()(a, elements_[i]))];
+      shares_[static_cast<std::size_t>(at++)] = static_cast<int>(i) * n + a;
+    }
+  }
+}
+
+// Elements in parallel, then nodes, each of which sums its shares in the same order whatever the threads do.
+template <int N, typename Law>
+void NeoHookean::force(const Lame& c, const Eigen::VectorXd& u, const Law& law, Eigen::VectorXd& f) const {
+  const std::unique_ptr<double[]> shares(new double[3 * shares_.size()]);
+  const auto count = static_cast<int>(elements_.size());
+  tbb::parallel_for(tbb::blocked_range<int>(0, count, kElements), [&](const tbb::blocked_range<int>& part) {
+    for (int i = part.begin(); i < part.end(); ++i) {
+      const int e = elements_[static_cast<std::size_t>(i)];
+      const Nodal<N> local = gather<N>(fem_.elements(), e, u);
+      Nodal<N> internal = Nodal<N>::Zero();
+      for (int q = 0; q < fem_.points_per_element(); ++q) {
+        const Eigen::Map<const Nodal<N>> g(fem_.gradient(e, q).data());
+        const Deformation d = deform<N>(local, g, e);
+        const double scale = law(e, q, energy_density(c, d)).value;
+        if (scale != 0.0) internal.noalias() += (scale * fem_.weight(e, q) * stress(c, d)) * g;
+      }
+      Eigen::Map<Nodal<N>>(shares.get() + static_cast<std::ptrdiff_t>(3 * N) * i) = internal;
+    }
+  });
+  tbb::parallel_for(tbb::blocked_range<int>(0, fem_.node_count(), kNodes), [&](const tbb::blocked_range<int>& part) {
+    for (int node = part.begin(); node < part.end(); ++node) {
+      Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+      for (int k = first_share_[static_cast<std::size_t>(node)]; k < first_share_[static_cast<std::size_t>(node) + 1];
+           ++k) {
+        sum += Eigen::Map<const Eigen::Vector3d>(shares.get() +
+                                                 3 * static_cast<std::ptrdiff_t>(shares_[static_cast<std::size_t>(k)]));
+      }
+      f.segment<3>(3 * node) -= sum;
+    }
+  });
+}
+
 void NeoHookean::add_force(const Lame& lame, const Eigen::VectorXd& u, Eigen::VectorXd& f) const {
-  fem_.nodes_per_element() == 10 ? force<10>(fem_, elements_, lame, u, Plain(), f)
-                                 : force<4>(fem_, elements_, lame, u, Plain(), f);
+  fem_.nodes_per_element() == 10 ? force<10>(lame, u, Plain(), f) : force<4>(lame, u, Plain(), f);
 }
 
 void NeoHookean::add_stiffness(const Lame& lame, const Eigen::VectorXd& u, SparseMatrix& k) const {
@@ -123,8 +162,7 @@ void NeoHookean::add_stiffness(const Lame& lame, const Eigen::VectorXd& u, Spars
 }
 
 void NeoHookean::add_force(const Lame& lame, const Eigen::VectorXd& u, const PointLaw& scale, Eigen::VectorXd& f) const {
-  fem_.nodes_per_element() == 10 ? force<10>(fem_, elements_, lame, u, scale, f)
-                                 : force<4>(fem_, elements_, lame, u, scale, f);
+  fem_.nodes_per_element() == 10 ? force<10>(lame, u, scale, f) : force<4>(lame, u, scale, f);
 }
 
 void NeoHookean::add_stiffness(const Lame& lame, const Eigen::VectorXd& u, const PointLaw& scale, SparseMatrix& k) const {

@@ -3,6 +3,7 @@
 
 #include <cholmod.h>
 
+#include "tissue_stiffness/fem/single_factor.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 // Trajectories run in parallel, one solver each: threads inside BLAS or CHOLMOD would only get in their way.
@@ -24,6 +25,7 @@ struct SparseSolver::Data {
   cholmod_common common{};
   cholmod_factor* factor = nullptr;
   bool numeric = false;
+  mutable std::unique_ptr<const SingleFactor> single;  ///< made when it is first asked for
 
   Data() {
     quiet_threads();
@@ -63,6 +65,26 @@ cholmod_sparse view(const SparseMatrix& matrix) {
   return v;
 }
 
+// The supernodal factor's arrays, its values in single precision.
+SingleFactor::Layout layout(const cholmod_factor& factor) {
+  const auto count = factor.nsuper;
+  const int* rows = static_cast<const int*>(factor.s);
+  const int* row_start = static_cast<const int*>(factor.pi);
+  const int* value_start = static_cast<const int*>(factor.px);
+  const double* values = static_cast<const double*>(factor.x);
+  const int* permutation = static_cast<const int*>(factor.Perm);
+  const int* first = static_cast<const int*>(factor.super);
+  SingleFactor::Layout l;
+  l.permutation.assign(permutation, permutation + factor.n);
+  l.first.assign(first, first + count + 1);
+  l.rows.assign(rows, rows + row_start[count]);
+  l.row_start.assign(row_start, row_start + count + 1);
+  l.value_start.assign(value_start, value_start + count + 1);
+  l.values.resize(l.value_start.back());
+  for (std::size_t i = 0; i < l.values.size(); ++i) l.values[i] = static_cast<float>(values[i]);
+  return l;
+}
+
 }  // namespace
 
 SparseSolver::SparseSolver() : data_(std::make_unique<Data>()) {}
@@ -75,6 +97,7 @@ void SparseSolver::factorize(const SparseMatrix& matrix) {
   cholmod_sparse a = view(matrix);
   if (data_->factor == nullptr) data_->factor = cholmod_analyze(&a, &data_->common);
   data_->numeric = false;
+  data_->single = nullptr;
   if (data_->factor == nullptr || cholmod_factorize(&a, data_->factor, &data_->common) == 0) {
     throw NumericalError("sparse factorisation failed: out of memory or a pattern that changed");
   }
@@ -104,6 +127,17 @@ Eigen::MatrixXd SparseSolver::solve(const Eigen::MatrixXd& b) const {
   Eigen::MatrixXd result = Eigen::Map<Eigen::MatrixXd>(static_cast<double*>(x->x), b.rows(), b.cols());
   cholmod_free_dense(&x, &data_->common);
   return result;
+}
+
+Eigen::MatrixXd SparseSolver::solve_roughly(const Eigen::MatrixXd& b) const {
+  if (!data_->numeric || data_->factor->is_super == 0) return solve(b);
+  if (data_->single == nullptr) data_->single = std::make_unique<const SingleFactor>(layout(*data_->factor));
+  return data_->single->solve(b);
+}
+
+double SparseSolver::cost() const {
+  constexpr double products = 8.0;  // multiplications of a dense product in the time in which a number comes from memory
+  return data_->common.fl / (products * 2.0 * data_->common.lnz);
 }
 
 double SparseSolver::factor_size() const {

@@ -1,15 +1,17 @@
 #include "tissue_stiffness/forward/full_model.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
 
 #include "tissue_stiffness/fem/central_difference.hpp"
+#include "tissue_stiffness/fem/nodal_rotation.hpp"
+#include "tissue_stiffness/forward/for_each_index.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kTolerance = 1e-5;  // last Newton correction over the body's size
 constexpr double kExplicitSteps =
     250;  // explicit steps that one call of advance() may take before implicit ones are cheaper
 
@@ -17,59 +19,108 @@ double body_size(const TetMesh& mesh) {
   return (mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff()).norm();
 }
 
-class FullTrajectory : public Trajectory {
+DynamicState at_start(const Model& model, const Eigen::VectorXd& theta, double start) {
+  const Eigen::Index n = model.fem().dof_count();
+  DynamicState state;
+  state.time = start;
+  state.displacement = Eigen::VectorXd::Zero(n);
+  state.velocity = model.initial_velocity(theta).replicate(n / 3, 1);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (model.fixed()[static_cast<std::size_t>(i)] != 0) state.velocity[i] = 0.0;
+  }
+  return state;
+}
+
+class FullTrajectories : public Trajectories {
  public:
-  FullTrajectory(const Model& model, const Eigen::VectorXd& theta, double start, const FullModel::Options& options)
+  FullTrajectories(const Model& model, const std::vector<Eigen::VectorXd>& thetas, double start,
+                   const FullModel::Options& options)
       : options_(options),
-        system_(model, theta),
-        newmark_(system_, options.spectral_radius, kTolerance * body_size(model.mesh())) {
-    const Eigen::Index n = model.fem().dof_count();
-    state_.time = start;
-    state_.displacement = Eigen::VectorXd::Zero(n);
-    state_.velocity = model.initial_velocity(theta).replicate(n / 3, 1);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      if (model.fixed()[static_cast<std::size_t>(i)] != 0) state_.velocity[i] = 0.0;
-    }
+        systems_(make_systems(model, thetas)),
+        newmark_(views(systems_), options.spectral_radius, options.tolerance * body_size(model.mesh())) {
+    for (const Eigen::VectorXd& theta : thetas) states_.push_back(at_start(model, theta, start));
   }
 
-  void advance(double time) override {
-    const double span = time - state_.time;
-    if (!(span > 0.0)) return;
-    if (!chosen_) choose(span);
-    explicit_steps_ ? central_->advance(state_, span) : implicit(span);
-    state_.time = time;
+  std::size_t size() const override { return states_.size(); }
+  void advance(const std::vector<double>& times) override {
+    std::vector<double> spans;
+    for (std::size_t i = 0; i < times.size(); ++i) spans.push_back(times[i] - states_[i].time);
+    if (!(*std::min_element(spans.begin(), spans.end()) > 0.0)) return;
+    if (!chosen_) choose(spans);
+    explicit_steps_ ? leap(spans) : implicit(spans);
+    for (std::size_t i = 0; i < times.size(); ++i) states_[i].time = times[i];
   }
-  double time() const override { return state_.time; }
-  Eigen::VectorXd displacement() const override { return state_.displacement; }
-  Eigen::VectorXd velocity() const override { return state_.velocity; }
+  void displacements(Eigen::MatrixXd& out) const override {
+    for (std::size_t i = 0; i < states_.size(); ++i) out.col(static_cast<Eigen::Index>(i)) = states_[i].displacement;
+  }
+  const DynamicState& state(std::size_t i) const { return states_[i]; }
 
  private:
-  // Impacts are filmed so fast that a few explicit steps reach the next frame.
-  void choose(double span) {
-    chosen_ = true;
-    central_ = std::make_unique<CentralDifference>(system_, state_.time);
-    explicit_steps_ = options_.step <= 0.0 && span < kExplicitSteps * central_->largest_step();
-    explicit_steps_ ? central_->initialise(state_) : newmark_.initialise(state_);
+  using Systems = std::vector<std::unique_ptr<const ModelSystem>>;
+  static Systems make_systems(const Model& model, const std::vector<Eigen::VectorXd>& thetas) {
+    Systems systems(thetas.size());
+    for_each_index(thetas.size(), [&](std::size_t i) { systems[i] = std::make_unique<ModelSystem>(model, thetas[i]); });
+    return systems;
+  }
+  static std::vector<const DynamicSystem*> views(const Systems& systems) {
+    std::vector<const DynamicSystem*> list;
+    for (const auto& system : systems) list.push_back(system.get());
+    return list;
   }
 
-  void implicit(double span) {
-    const int steps =
-        options_.step > 0.0 ? static_cast<int>(std::ceil(span / options_.step * (1.0 - 1e-9))) : options_.steps_per_frame;
-    for (int k = 0; k < steps; ++k) newmark_.step(state_, span / steps);
+  // Impacts are filmed so fast that a few explicit steps reach the next frame.
+  void choose(const std::vector<double>& spans) {
+    chosen_ = true;
+    central_.emplace_back(*systems_.front(), states_.front().time);
+    explicit_steps_ = options_.step <= 0.0 && spans.front() < kExplicitSteps * central_.front().largest_step();
+    if (!explicit_steps_) return newmark_.initialise(states_);
+    for (std::size_t i = 1; i < systems_.size(); ++i) central_.emplace_back(*systems_[i], states_[i].time);
+    for (std::size_t i = 0; i < systems_.size(); ++i) central_[i].initialise(states_[i]);
+  }
+
+  void leap(const std::vector<double>& spans) {
+    for_each_index(states_.size(), [&](std::size_t i) { central_[i].advance(states_[i], spans[i]); });
+  }
+
+  void implicit(std::vector<double> spans) {
+    const int count = options_.step > 0.0 ? static_cast<int>(std::ceil(spans.front() / options_.step * (1.0 - 1e-9)))
+                                          : options_.steps_per_frame;
+    for (double& span : spans) span /= count;
+    for (int k = 0; k < count; ++k) newmark_.step(states_, spans);
   }
 
   FullModel::Options options_;
-  ModelSystem system_;
+  Systems systems_;
   Newmark newmark_;
-  std::unique_ptr<CentralDifference> central_;
-  DynamicState state_;
+  std::vector<CentralDifference> central_;
+  std::vector<DynamicState> states_;
   bool chosen_ = false, explicit_steps_ = false;
+};
+
+class FullTrajectory : public Trajectory {
+ public:
+  FullTrajectory(const Model& model, const Eigen::VectorXd& theta, double start, const FullModel::Options& options)
+      : runs_(model, {theta}, start, options) {}
+  void advance(double time) override { runs_.advance({time}); }
+  double time() const override { return runs_.state(0).time; }
+  Eigen::VectorXd displacement() const override { return runs_.state(0).displacement; }
+  Eigen::VectorXd velocity() const override { return runs_.state(0).velocity; }
+
+ private:
+  FullTrajectories runs_;
 };
 
 }  // namespace
 
 std::unique_ptr<Trajectory> FullModel::start(const Eigen::VectorXd& theta, double start) const {
   return std::make_unique<FullTrajectory>(model_, theta, start, options_);
+}
+
+std::unique_ptr<Trajectories> FullModel::start_all(const std::vector<Eigen::VectorXd>& thetas, double start) const {
+  for (const Eigen::VectorXd& theta : thetas) {
+    if (model_.fixed(theta) != model_.fixed(thetas.front())) return ForwardModel::start_all(thetas, start);
+  }
+  return std::make_unique<FullTrajectories>(model_, thetas, start, options_);
 }
 
 std::string FullModel::description() const {
@@ -89,6 +140,7 @@ ModelSystem::ModelSystem(const Model& model, Eigen::VectorXd theta)
       fixed_(model.fixed(theta_)),
       relaxations_(model.relaxations(theta_)) {
   const double alpha = model.mass_damping(theta_), beta = model.stiffness_damping(theta_);
+  mass_.prune(0.0);  // of each pair of nodes' 3 x 3 block, a third
   linear_part_ = stiffness_.coeffs().cwiseAbs().maxCoeff() > 0.0;
   damped_ = alpha > 0.0 || beta > 0.0;
   if (beta > 0.0 || !relaxations_.empty()) reference_ = model.reference_stiffness(theta_);
@@ -111,6 +163,10 @@ SparseMatrix ModelSystem::stiffness(double time, const Eigen::VectorXd& u, const
   SparseMatrix k = stiffness_;
   model_.add_nonlinear_stiffness(theta_, {time, u, v}, k);
   return k;
+}
+
+Eigen::Matrix3Xd ModelSystem::rotations(const Eigen::VectorXd& u) const {
+  return linear_part_ ? Eigen::Matrix3Xd() : nodal_rotations(model_.fem(), u);
 }
 
 double ModelSystem::energy(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const {

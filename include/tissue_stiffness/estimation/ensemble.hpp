@@ -19,8 +19,8 @@ class Ensemble {
 
   /// A fresh trajectory from `start` [s] for each column of `sigma_points` (filter coordinates).
   void restart(const Eigen::MatrixXd& sigma_points, double start);
-  bool started() const { return !trajectories_.empty(); }
-  void clear() { trajectories_.clear(); }
+  bool started() const { return runs_ != nullptr; }
+  void clear() { runs_ = nullptr; }
 
   /// All trajectories to `time`, in parallel. Throws NumericalError when one diverges.
   void advance(double time);
@@ -34,14 +34,15 @@ class Ensemble {
 
   /// Displacements, one column a sigma point, 3n x sigma points [m].
   const Eigen::MatrixXd& displacements() const { return displacements_; }
-  Trajectory& trajectory(std::size_t i) { return *trajectories_[i]; }
+  /// Linear models only, whose runs are separate.
+  Trajectory& trajectory(std::size_t i) { return dynamic_cast<SeparateTrajectories&>(*runs_)[i]; }
 
  private:
   const Model& model_;
   const ForwardModel& forward_;
   const std::vector<std::unique_ptr<ObservationOperator>>& operators_;
   std::vector<Eigen::VectorXd> theta_;  ///< of each sigma point
-  std::vector<std::unique_ptr<Trajectory>> trajectories_;
+  std::unique_ptr<Trajectories> runs_;
   Eigen::MatrixXd displacements_;
 };
 

@@ -31,7 +31,7 @@ using PointLaw = std::function<StressScale(int e, int q, double psi)>;
 /// over the elements listed. All throw NumericalError naming the element that turned inside out.
 class NeoHookean {
  public:
-  NeoHookean(const Discretisation& fem, std::vector<int> elements) : fem_(fem), elements_(std::move(elements)) {}
+  NeoHookean(const Discretisation& fem, std::vector<int> elements);
 
   /// Subtracts the internal force [N] at displacement u (3n) from `force`.
   void add_force(const Lame& lame, const Eigen::VectorXd& u, Eigen::VectorXd& force) const;
@@ -44,8 +44,13 @@ class NeoHookean {
   double energy(const Lame& lame, const Eigen::VectorXd& u) const;
 
  private:
+  template <int N, typename Law>
+  void force(const Lame& lame, const Eigen::VectorXd& u, const Law& law, Eigen::VectorXd& f) const;
+
   const Discretisation& fem_;
   std::vector<int> elements_;
+  /// Where a node's shares of the elements' forces stand, N to an element of the list: the next of `shares_`.
+  std::vector<int> first_share_, shares_;
 };
 
 }  // namespace tissue_stiffness

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <deque>
+#include <memory>
 #include <vector>
 
 #include "tissue_stiffness/fem/relaxation.hpp"
@@ -24,6 +25,8 @@ class DynamicSystem {
   /// Branches whose force the state's history carries, and the stiffness they share (read only when there are any).
   virtual const std::vector<Relaxation>& relaxations() const;
   virtual const SparseMatrix& relaxing_stiffness() const { return mass(); }
+  /// How far the material turned at each node, 3 x 3n, where the stiffness turns with it; nothing where it does not.
+  virtual Eigen::Matrix3Xd rotations(const Eigen::VectorXd&) const { return {}; }
 };
 
 /// Where a dynamic system stands.
@@ -35,43 +38,77 @@ struct DynamicState {
 
 /// Implicit steps of the generalised-alpha family (Chung & Hulbert 1993, eq. 7-19): second order, unconditionally stable.
 /// Spectral radius 1 here means Newmark's average acceleration (beta = 1/4, gamma = 1/2), which keeps the energy of a
-/// linear system. The balance is solved by quasi-Newton iterations (BFGS with a factored Jacobian of an earlier instant:
-/// Matthies & Strang 1979), whose updates are carried from step to step; the factor is renewed when they converge slowly. A
-/// step that still fails is cut in halves.
+/// linear system.
+///
+/// The balance is solved by quasi-Newton iterations (BFGS: Matthies & Strang 1979) around one Jacobian of an earlier
+/// instant, turned with the material. Their updates are carried from step to step; the factor is renewed when the
+/// iterations that its age has cost outweigh a factorisation, or when they diverge. A step that still fails is cut in
+/// halves.
+///
+/// Systems of one size that differ little - a model at several parameters - step side by side: the first one's factor and
+/// updates serve all, and what its iterations found starts those of the others, which go through the factor together.
 class Newmark {
  public:
-  /// `tolerance`: largest last Newton correction [m].
+  /// `tolerance`: largest correction that is left out [m]. Systems must hold the same degrees of freedom.
+  Newmark(std::vector<const DynamicSystem*> systems, double spectral_radius, double tolerance);
   Newmark(const DynamicSystem& system, double spectral_radius, double tolerance);
 
   /// Fills in the acceleration that belongs to displacement and velocity, and a history of rest at this displacement.
+  void initialise(std::vector<DynamicState>& states) const;
   void initialise(DynamicState& state) const;
-  /// Advances by `step` [s]. Throws NumericalError when ten halvings do not help; the state is then unchanged.
+  /// Advances each system by its step [s]; the steps may differ by parts in a hundred. Throws NumericalError when ten
+  /// halvings do not help; the states are then unchanged.
+  void step(std::vector<DynamicState>& states, const std::vector<double>& steps);
   void step(DynamicState& state, double step);
 
   int factorisations() const { return factorisations_; }
   int iterations() const { return iterations_; }
 
  private:
-  bool try_step(DynamicState& state, double step);
-  void accept(DynamicState& state, const Eigen::VectorXd& increment, double step);
-  void cut_step(DynamicState& state, double step, int depth);
-  void factorize(const DynamicState& middle, double step);
-  Eigen::VectorXd residual(const DynamicState& state, const Eigen::VectorXd& increment, double step,
-                           DynamicState& middle) const;
-
-  const DynamicSystem& system_;
-  double alpha_m_ = 0.0, alpha_f_ = 0.0, beta_ = 0.25, gamma_ = 0.5;
-  double tolerance_;
-  Eigen::VectorXd direction(const Eigen::VectorXd& residual) const;
-  void learn(Eigen::VectorXd step, Eigen::VectorXd change);
-
-  SparseSolver solver_;
   struct Update {
     Eigen::VectorXd step, change;  ///< of the unknown and of the residual, with its sign turned
     double inverse_curvature;      ///< 1 / step . change
   };
-  std::deque<Update> updates_;
+  /// One system within a step.
+  struct Column {
+    const DynamicSystem* system;
+    const DynamicState* before = nullptr;
+    double step = 0.0;
+    DynamicState middle;  ///< at the weighted instants
+    Eigen::VectorXd increment, residual, next, direction;
+    std::deque<std::shared_ptr<const Update>> updates;
+    double last = 0.0;  ///< size of the last correction
+    double rate = 1.0;  ///< at which they shrink
+    bool done = false;
+  };
+  enum class Progress { going, done, slow, failed };
+
+  bool try_step(std::vector<DynamicState>& states, const std::vector<double>& steps);
+  void cut_step(std::vector<DynamicState>& states, const std::vector<double>& steps, int depth);
+  /// Iterates over columns of `columns_` until all are done; the number of iterations, 0 when they diverge.
+  int iterate(std::size_t begin, std::size_t end);
+  bool start(std::size_t begin, std::size_t end, const Eigen::VectorXd& head_start);
+  void find_directions(const std::vector<Column*>& active);
+  Progress judge(const std::vector<Column*>& active, int iteration) const;
+  bool move(const std::vector<Column*>& active) const;
+  void factorize(const Column& column);
+  void turn();
+  void note_age(int iterations);
+  Eigen::VectorXd acceleration(const Column& column, const Eigen::VectorXd& increment) const;
+  Eigen::VectorXd residual(Column& column, const Eigen::VectorXd& increment) const;
+  void accept(const Column& column, DynamicState& state) const;
+  static void learn(Column& column);
+
+  double alpha_m_ = 0.0, alpha_f_ = 0.0, beta_ = 0.25, gamma_ = 0.5;
+  double tolerance_;
+  std::vector<Column> columns_;
+  SparseSolver solver_;
+  Eigen::Matrix3Xd factored_rotations_, turn_;  ///< of each node; the second: since the factor was made
   double factored_step_ = 0.0;
+  /// Iterations a step: over the first steps of this factor and of the last one, and what its age has cost beyond them.
+  double young_ = 0.0, young_before_ = 0.0, excess_ = 0.0;
+  int steps_ = 0;       ///< since the factor was renewed
+  double worth_ = 1.0;  ///< grows while renewals do not help
   int factorisations_ = 0, iterations_ = 0;
 };
 

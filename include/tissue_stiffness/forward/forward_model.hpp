@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tissue_stiffness/forward/model.hpp"
@@ -24,12 +25,38 @@ class Trajectory {
   virtual Eigen::VectorXd velocity() const = 0;
 };
 
+/// Free runs side by side, one a set of parameters.
+class Trajectories {
+ public:
+  virtual ~Trajectories() = default;
+  virtual std::size_t size() const = 0;
+  /// Each to its own time [s]; they share what they can. Throws as Trajectory::advance, for the first that diverges.
+  virtual void advance(const std::vector<double>& times) = 0;
+  /// Nodal displacements, a column each, 3n x size [m].
+  virtual void displacements(Eigen::MatrixXd& out) const = 0;
+};
+
+/// Free runs that share nothing but the cores.
+class SeparateTrajectories : public Trajectories {
+ public:
+  explicit SeparateTrajectories(std::vector<std::unique_ptr<Trajectory>> runs) : runs_(std::move(runs)) {}
+  std::size_t size() const override { return runs_.size(); }
+  void advance(const std::vector<double>& times) override;
+  void displacements(Eigen::MatrixXd& out) const override;
+  Trajectory& operator[](std::size_t i) { return *runs_[i]; }
+
+ protected:
+  std::vector<std::unique_ptr<Trajectory>> runs_;
+};
+
 /// Eq. 1 of Yang & Lin (2016): parameters in, trajectory out.
 class ForwardModel {
  public:
   virtual ~ForwardModel() = default;
   /// At rest (or at the initial velocity), undeformed, at `start` [s].
   virtual std::unique_ptr<Trajectory> start(const Eigen::VectorXd& theta, double start) const = 0;
+  /// One run for each theta.
+  virtual std::unique_ptr<Trajectories> start_all(const std::vector<Eigen::VectorXd>& thetas, double start) const;
   /// Runs that start from now on need to tell where these nodes are, no others: what is cheaper may leave those at rest.
   virtual void focus(const std::vector<int>&) {}
   /// What it is, in one line.

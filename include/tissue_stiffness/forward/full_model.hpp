@@ -14,10 +14,13 @@ class FullModel : public ForwardModel {
     double step = 0.0;             ///< [s]; 0: a fraction of the span that advance() is asked for
     int steps_per_frame = 4;       ///< when step is 0
     double spectral_radius = 0.9;  ///< of generalised-alpha at infinite frequency; 1 is Newmark's average acceleration
+    double tolerance = 3e-6;       ///< corrections left out over the body's size: the filter lives on differences of runs
   };
   FullModel(const Model& model, const Options& options) : model_(model), options_(options) {}
 
   std::unique_ptr<Trajectory> start(const Eigen::VectorXd& theta, double start) const override;
+  /// Runs that hold the same nodes step side by side around one factor.
+  std::unique_ptr<Trajectories> start_all(const std::vector<Eigen::VectorXd>& thetas, double start) const override;
   std::string description() const override;
 
  private:
@@ -38,6 +41,7 @@ class ModelSystem : public DynamicSystem {
   const SparseMatrix& relaxing_stiffness() const override { return reference_; }
   Eigen::VectorXd force(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const override;
   SparseMatrix stiffness(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const override;
+  Eigen::Matrix3Xd rotations(const Eigen::VectorXd& u) const override;
   /// Kinetic and stored energy less the work of gravity [J].
   double energy(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const;
 
