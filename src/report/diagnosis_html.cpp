@@ -49,21 +49,37 @@ std::string moduli(const DiagnosisStep& step) {
   return text;
 }
 
+/// A Young's modulus as the answer: the estimator's with its interval where it was asked, else the fit's.
+std::string modulus_answer(const std::string& name, const Diagnosis& d) {
+  std::string text = moduli(d.steps.back()), interval, comma;
+  for (const ParameterEstimate& p : d.estimate.parameters) {
+    if (p.name.find(".young_modulus") == std::string::npos) continue;
+    const ShownUnit unit = shown_unit(p.mean, p.unit);
+    const double half_width = 0.5 * unit.scale * (p.upper95 - p.lower95);
+    if (comma.empty()) text.clear();
+    text += comma + rounded(unit.scale * p.mean, half_width) + " " + unit.name;
+    interval += (comma.empty() ? "95 %: " : comma) + rounded(unit.scale * p.lower95, half_width) + " to " +
+                rounded(unit.scale * p.upper95, half_width) + " " + unit.name;
+    comma = ", ";
+  }
+  if (text.empty()) return "";
+  if (d.final_verdict != "adequate") interval += std::string(interval.empty() ? "" : "; ") + "biased by what is missing";
+  return "<p class=\"answer\"><span class=\"name\">" + escape_html(name) + "</span><b>" + escape_html(text) +
+         "</b> <span class=\"interval\">" + escape_html(interval) + "</span></p>";
+}
+
 std::string answer(const Diagnosis& d) {
   std::string text =
       "<p>" + verdict_badge(d.verdict) + "</p><p class=\"verdict\">" + escape_html(diagnosis_sentence(d)) + "</p>";
   const DiagnosisStep &first = d.steps.front(), &last = d.steps.back();
   if (d.steps.size() > 1) {
-    text += "<p class=\"answer\"><span class=\"name\">Young's modulus, with " + escape_html(effect_list(d.final_effects)) +
-            "</span><b>" + escape_html(moduli(last)) + "</b> <span class=\"interval\">the given model says " +
-            escape_html(moduli(first)) + "</span></p>" +
-            paragraph("With " + effect_list(d.final_effects) + " the held-out error falls from " +
-                      millimetres(first.held_out_rms) + " to " + millimetres(last.held_out_rms) + "; the noise is " +
-                      millimetres(last.noise_floor) + ". Then: " + d.final_verdict + ".");
-  } else if (!moduli(first).empty()) {
-    text += "<p class=\"answer\"><span class=\"name\">Young's modulus of the given model</span><b>" +
-            escape_html(moduli(first)) + "</b> <span class=\"interval\">" +
-            (d.verdict == "adequate" ? "" : "biased by what is missing") + "</span></p>";
+    text += modulus_answer("Young's modulus, with " + effect_list(d.final_effects), d) +
+            paragraph("The given model says " + moduli(first) + ". With " + effect_list(d.final_effects) +
+                      " the held-out error falls from " + millimetres(first.held_out_rms) + " to " +
+                      millimetres(last.held_out_rms) + "; the noise is " + millimetres(last.noise_floor) +
+                      ". Then: " + d.final_verdict + ".");
+  } else {
+    text += modulus_answer("Young's modulus of the given model", d);
   }
   return section("answer", "", text);
 }

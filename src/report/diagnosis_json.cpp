@@ -57,6 +57,12 @@ json residual_json(const ResidualViews& r) {
 }  // namespace
 
 std::string diagnosis_json(const Diagnosis& d) {
+  json final = {{"verdict", d.final_verdict}, {"effects", d.final_effects}};
+  if (!d.estimate.parameters.empty()) final["state"] = to_string(d.estimate.state);
+  for (const ParameterEstimate& p : d.estimate.parameters) {
+    final["parameters"][p.name] = {
+        {"unit", p.unit}, {"mean", number(p.mean)}, {"interval95", {number(p.lower95), number(p.upper95)}}};
+  }
   json candidates = json::array(), steps = json::array();
   for (const MissingEffect& c : d.candidates) candidates.push_back(candidate_json(c));
   for (const DiagnosisStep& s : d.steps) {
@@ -75,7 +81,7 @@ std::string diagnosis_json(const Diagnosis& d) {
                      {"residual", residual_json(d.residual)},
                      {"steps", steps},
                      {"next_experiment", d.next_experiment},
-                     {"final", {{"verdict", d.final_verdict}, {"effects", d.final_effects}}},
+                     {"final", final},
                      {"seconds", number(d.seconds)}};
   return root.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }

@@ -102,7 +102,12 @@ std::string chart_place(const std::string& id) {
 
 std::string player(const Showing& showing) {
   if (showing.replays.empty()) return "";
+  std::set<int> cameras;
+  for (const Picture& p : showing.pictures) cameras.insert(p.source);
   const std::string picture =
+      std::string(cameras.size() > 1
+                      ? "<div class=\"controls\"><label>Images of <select id=\"camera\"></select></label></div>"
+                      : "") +
       "<canvas id=\"picture\"></canvas><p class=\"key\"><i class=\"measured\"></i>measured outline "
       "<i class=\"predicted\"></i>predicted outline</p>";
   const std::string motion =

@@ -4,6 +4,7 @@
 
 #include "tissue_stiffness/diagnosis/diagnose.hpp"
 #include "tissue_stiffness/diagnosis/replay_model.hpp"
+#include "tissue_stiffness/estimation/estimator.hpp"
 #include "tissue_stiffness/report/effect_words.hpp"
 #include "tissue_stiffness/report/write_diagnosis.hpp"
 #include "tissue_stiffness/settings/extend_model.hpp"
@@ -22,6 +23,24 @@ std::string read_text(const std::string& file) {
 
 using namespace tissue_stiffness;
 
+ModelSettings last_model(ModelSettings settings, const Diagnosis& diagnosis) {
+  for (const std::string& entry : diagnosis.entries) add_effect(settings, entry);
+  return settings;
+}
+
+/// What an estimator makes of the last step's model. Nothing for a model that is integrated in full: it would take as long
+/// as the diagnosis.
+Estimate estimate_at_last(const ModelSettings& settings, const TetMesh& mesh, const Recording& recording,
+                          const Diagnosis& diagnosis) {
+  const ModelSettings last = last_model(settings, diagnosis);
+  if (Model(last, mesh).nonlinear()) return {};
+  Estimator estimator(last, mesh);
+  estimator.set_first_stamp(recording.first_stamp);
+  for (const LoadSample& load : recording.loads) estimator.add_load(load);
+  for (const Frame& frame : recording.frames) estimator.step(frame);
+  return estimator.estimate();
+}
+
 /// The given model's free run and, where effects were added, the last one's.
 Showing show(const ModelSettings& settings, const RecordingReader& reader, const Recording& recording,
              const Diagnosis& diagnosis) {
@@ -31,8 +50,7 @@ Showing show(const ModelSettings& settings, const RecordingReader& reader, const
   out.replays.push_back(replay_model(settings, reader.mesh(), recording, diagnosis.steps.front().parameters, stamps));
   out.replays.back().name = "as given";
   if (diagnosis.entries.empty()) return out;
-  ModelSettings extended = settings;
-  for (const std::string& entry : diagnosis.entries) add_effect(extended, entry);
+  const ModelSettings extended = last_model(settings, diagnosis);
   out.replays.push_back(replay_model(extended, reader.mesh(), recording, diagnosis.steps.back().parameters, stamps));
   out.replays.back().name = "with " + effect_list(diagnosis.final_effects);
   return out;
@@ -63,12 +81,13 @@ int main(int argc, char** argv) {
     say("read the recording");
     const Recording recording = read_recording(reader, settings, texts.recording);
     options.progress = say;
-    const Diagnosis diagnosis = diagnose(settings, reader.mesh(), recording, options);
+    Diagnosis diagnosis = diagnose(settings, reader.mesh(), recording, options);
     for (int i = 0; i < argc; ++i) texts.command_line += (i > 0 ? " " : "") + std::string(i > 0 ? argv[i] : "diagnose");
     texts.model_text = read_text(texts.model);
     texts.next_model_text = extend_model(texts.model_text, diagnosis.entries, settings.directory);
     texts.versions = versions();
     say("run the models once more for the report");
+    diagnosis.estimate = estimate_at_last(settings, reader.mesh(), recording, diagnosis);
     write_diagnosis(diagnosis, texts, show(settings, reader, recording, diagnosis), output);
     progress.finish();
     if (json) {

@@ -78,18 +78,18 @@ void print_effect_names(std::ostream& out) {
 }
 
 void print_effects_json(std::ostream& out) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  nlohmann::json list = nlohmann::json::array();
   const auto finite = [](double value) {
     const bool none = !std::isfinite(value) || std::abs(value) == std::numeric_limits<double>::max();
-    return none ? nlohmann::ordered_json() : nlohmann::ordered_json(value);
+    return none ? nlohmann::json() : nlohmann::json(value);
   };
   for (const EffectSpec& effect : effect_specs()) {
-    nlohmann::ordered_json entry{{"name", effect.name},
-                                 {"summary", effect.summary},
-                                 {"formula", effect.formula},
-                                 {"source", effect.source},
-                                 {"parameters", nlohmann::ordered_json::array()},
-                                 {"keys", nlohmann::ordered_json::object()}};
+    nlohmann::json entry{{"name", effect.name},
+                         {"summary", effect.summary},
+                         {"formula", effect.formula},
+                         {"source", effect.source},
+                         {"parameters", nlohmann::json::array()},
+                         {"keys", nlohmann::json::object()}};
     for (const ParameterSpec& spec : effect.parameters) {
       const bool required = spec.presence == ParameterSpec::Default::required;
       entry["parameters"].push_back({{"name", spec.name},
@@ -98,7 +98,7 @@ void print_effects_json(std::ostream& out) {
                                      {"components", spec.components},
                                      {"lower", finite(spec.lower)},
                                      {"upper", finite(spec.upper)},
-                                     {"default", required ? nlohmann::ordered_json() : finite(spec.value)}});
+                                     {"default", required ? nlohmann::json() : finite(spec.value)}});
     }
     for (const auto& [key, meaning] : effect.keys) entry["keys"][key] = meaning;
     list.push_back(entry);

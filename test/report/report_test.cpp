@@ -301,6 +301,8 @@ Diagnosis example_diagnosis() {
   d.final_verdict = "adequate";
   d.final_effects = {"viscous_damping"};
   d.entries = {"viscous_damping: {beta: 1}"};
+  d.estimate.state = EstimateState::converged;
+  d.estimate.parameters = {{"elasticity.young_modulus", "Pa", 12e3, 77.0, 11.85e3, 12.15e3}};
   return d;
 }
 
@@ -314,8 +316,8 @@ TEST(DiagnosisHtml, TellsTheStoryInOrder) {
   const std::string page = diagnosis_html(example_diagnosis(), texts, example_showing());
   std::size_t at = 0;
   for (const std::string fragment :
-       {"an effect is missing", "12.00 kPa", "the given model says 19.00 kPa", "id=\"replay\"", "id=\"fails\"",
-        "quick vibrations", "would remove 91.0 % of the squared error", "0.300 mm to 0.110 mm",
+       {"an effect is missing", "12.00 kPa", "95 %: 11.85 to 12.15 kPa", "The given model says 19.00 kPa", "id=\"replay\"",
+        "id=\"fails\"", "quick vibrations", "would remove 91.0 % of the squared error", "0.300 mm to 0.110 mm",
         "it looks like mass damping", "p &lt; 1e-300", "would remove nothing", "excite two modes", "id=\"staircase\"",
         "<ins>  - &lt;b&gt;</ins>", "diagnose model.yaml x.bag"}) {
     const std::size_t found = page.find(fragment, at);

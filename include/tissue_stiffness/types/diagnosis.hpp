@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "tissue_stiffness/types/estimate.hpp"
+
 namespace tissue_stiffness {
 
 /// One effect of the library, judged as the one that the model misses.
@@ -63,6 +65,7 @@ struct Diagnosis {
   std::vector<std::string> final_effects;
   std::vector<std::string> entries;  ///< of the accepted effects, for the model file
   double seconds = 0.0;
+  Estimate estimate;  ///< what an estimator makes of the last step's model; no parameters: it was not asked
 };
 
 }  // namespace tissue_stiffness

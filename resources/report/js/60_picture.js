@@ -2,13 +2,23 @@
 function startPicture() {
   const canvas = $("picture");
   if (!canvas) return;
-  const source = showing.pictures[0].source;
-  const pictures = showing.pictures.filter((p) => p.source === source).map((p) => {
+  const cameras = new Map();  // by entry of the model file's observations
+  for (const p of showing.pictures) {
     const image = new Image();
     image.onload = () => player.tell();
     image.src = p.jpeg;
-    return { time: p.time, image };
-  });
+    cameras.set(p.source, [...(cameras.get(p.source) || []), { time: p.time, image }]);
+  }
+  const sources = [...cameras.keys()].sort((a, b) => a - b);
+  let source = sources[0];
+  const choice = $("camera");
+  if (choice) {
+    sources.forEach((s, i) => choice.append(element("option", { value: s }, "camera " + (i + 1))));
+    choice.onchange = () => {
+      source = Number(choice.value);
+      player.tell();
+    };
+  }
   const context = canvas.getContext("2d");
   const stroke = (style, width) => {
     context.strokeStyle = style;
@@ -16,6 +26,7 @@ function startPicture() {
     context.stroke();
   };
   const draw = (time) => {
+    const pictures = cameras.get(source);
     const picture = pictures[nearest(pictures.map((p) => p.time), time)], image = picture.image;
     if (!image.complete || !image.naturalWidth) return;
     const outline = player.replay.outlines.find((o) => o.source === source && Math.abs(o.time - picture.time) < 1e-6);

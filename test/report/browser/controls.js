@@ -119,7 +119,7 @@ async function useRest(page) {
 }
 
 const used = new Set(["play", "scrub", "speed", "colour", "span", "model", "measured", "magnify", "glass", "turn", "view",
-  "track", "component", "theme"]);
+  "track", "component", "theme", "camera"]);
 
 // Both outlines are on the picture, and it plays.
 async function checkPicture(page) {
@@ -144,7 +144,15 @@ async function checkPicture(page) {
   const first = await look();
   assert.ok(first.seen[0] > 100 && first.seen[1] > 100, "both outlines are drawn: " + first.seen);
   await scrubTo(page, 0.5);
-  assert.notEqual((await look()).sum, first.sum, "the picture plays");
+  const later = await look();
+  assert.notEqual(later.sum, first.sum, "the picture plays");
+  const cameras = await page.locator("#camera option").all();
+  if (!cameras.length) return;
+  assert.equal(cameras.length, 2);
+  await page.selectOption("#camera", { index: 1 });
+  const other = await look();
+  assert.notEqual(other.sum, later.sum, "the other camera is shown");
+  assert.ok(other.seen[0] > 100 && other.seen[1] > 100, "with both outlines: " + other.seen);
 }
 
 export async function checkControls(page) {

@@ -48,6 +48,14 @@ export async function checkResults(page, folder) {
 export async function checkDiagnosis(page, folder) {
   const file = JSON.parse(readFileSync(folder + "/diagnosis.json", "utf8"));
   assert.deepEqual((await embedded(page)).diagnosis, file, "the page's data are diagnosis.json");
+  const [name] = Object.keys(file.final.parameters).filter((n) => n.endsWith("young_modulus"));
+  const modulus = file.final.parameters[name];
+  const answer = await page.textContent("#answer");
+  const found = answer.match(/([\d.]+) ([GMk]?Pa) ?95 %: ([\d.]+) to ([\d.]+) \2/);
+  assert.ok(found, "the answer has E with its interval: " + answer);
+  assertShown(found[1], inUnit(modulus.mean, found[2], "Pa"), "E");
+  assertShown(found[3], inUnit(modulus.interval95[0], found[2], "Pa"), "lower end");
+  assertShown(found[4], inUnit(modulus.interval95[1], found[2], "Pa"), "upper end");
   const rows = await page.locator("#staircase tbody tr").all();
   assert.equal(rows.length, file.steps.length);
   for (const [i, step] of file.steps.entries()) {
