@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "tissue_stiffness/effects/course.hpp"
+#include "tissue_stiffness/tools/scene_keys.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
@@ -13,10 +14,14 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+const KeySpec& key(const std::string& name) {
+  return scene_key("loads.*.terms[]." + name);
+}
+
 Signal read_ramp(const Value& map) {
-  const double from = map.number_or("from", 0.0, -kInfinity, kInfinity, "");
-  const double to = map.at("to").as_number(-kInfinity, kInfinity, "");
-  const double start = map.at("start").as_number(0.0, kInfinity, "s");
+  const double from = read_number(map, key("ramp.from"));
+  const double to = read_number(map, key("ramp.to"));
+  const double start = read_number(map, key("ramp.start"));
   const double end = map.at("end").as_number(start, kInfinity, "s");
   return [=](double t) {
     if (t >= end) return to;
@@ -25,15 +30,14 @@ Signal read_ramp(const Value& map) {
 }
 
 Signal read_sine(const Value& map) {
-  const double amplitude = map.at("amplitude").as_number(-kInfinity, kInfinity, "");
-  const double frequency = map.at("frequency").as_number(0.0, kInfinity, "Hz");
-  const double phase = map.number_or("phase", 0.0, -kInfinity, kInfinity, "rad");
+  const double amplitude = read_number(map, key("sine.amplitude")), frequency = read_number(map, key("sine.frequency"));
+  const double phase = read_number(map, key("sine.phase"));
   return [=](double t) { return amplitude * std::sin(2.0 * M_PI * frequency * t + phase); };
 }
 
 Signal read_raised_cosine(const Value& map) {
-  const double amplitude = map.at("amplitude").as_number(-kInfinity, kInfinity, "");
-  const double frequency = map.at("frequency").as_number(0.0, kInfinity, "Hz");
+  const double amplitude = read_number(map, key("raised_cosine.amplitude"));
+  const double frequency = read_number(map, key("raised_cosine.frequency"));
   return [=](double t) { return 0.5 * amplitude * (1.0 - std::cos(2.0 * M_PI * frequency * t)); };
 }
 
@@ -54,7 +58,7 @@ Signal read_steps(const Value& map) {
 }
 
 Signal read_csv(const Value& map, const std::string& directory) {
-  std::string file = map.at("file").as_text();
+  std::string file = read_text(map, key("csv.file"));
   if (!file.empty() && file[0] != '/') file = directory + "/" + file;
   const auto course = std::make_shared<const Course>(Course::from_csv(file, 1));
   return [course](double t) { return course->value(t, 0); };

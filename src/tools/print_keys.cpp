@@ -8,6 +8,7 @@
 
 #include "tissue_stiffness/nodes/node_keys.hpp"
 #include "tissue_stiffness/settings/key_spec.hpp"
+#include "tissue_stiffness/tools/scene_keys.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -53,7 +54,7 @@ std::string allowed(const KeySpec& key) {
 
 std::string fallback(const KeySpec& key) {
   if (key.required) return "required";
-  if (key.kind == Kind::number || key.kind == Kind::integer) return shown(key.value);
+  if (key.kind == Kind::number || key.kind == Kind::integer) return std::isnan(key.value) ? "-" : shown(key.value);
   if (key.kind == Kind::boolean) return key.value != 0.0 ? "true" : "false";
   if (key.kind == Kind::choice) return key.choices.front();
   return key.text.empty() ? "-" : key.text;
@@ -79,6 +80,8 @@ void print_lines(const std::vector<KeySpec>& keys, std::ostream& out) {
 void print_keys(std::ostream& out) {
   out << "model file\n";
   print_lines(model_keys(), out);
+  out << "\nscene file, beside the model's keys\n";
+  print_lines(scene_keys(), out);
   out << "\nevery node\n";
   print_lines(common_node_keys(), out);
   for (const std::string& node : node_names()) {
@@ -97,6 +100,10 @@ void print_keys_markdown(std::ostream& out) {
          "map "
          "that holds it is there.\n\n";
   print_table(model_keys(), out);
+  out << "\n## A scene file, for `simulate`\n\nA model file whose numbers are all known, and how it is run and recorded. "
+         "Under "
+         "`sensors` the keys of a cloud, of a\npinhole camera or of a B-mode slice.\n\n";
+  print_table(scene_keys(), out);
   out << "\n## Private parameters of the nodes\n\nEvery node takes\n\n";
   print_table(common_node_keys(), out);
   for (const std::string& node : node_names()) {

@@ -1,15 +1,12 @@
 #include "tissue_stiffness/tools/read_image_scene.hpp"
 
 #include <cmath>
-#include <limits>
 
+#include "tissue_stiffness/tools/scene_keys.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kPositive = std::numeric_limits<double>::min();
 
 void read_size(const Value& map, Camera& camera) {
   camera.width = 640;
@@ -34,7 +31,7 @@ Eigen::Matrix3d frame_of(const Eigen::Vector3d& y, const Eigen::Vector3d& z, con
 
 void read_pinhole(const Value& map, Camera& camera) {
   camera.projection = Camera::Projection::pinhole;
-  camera.fx = camera.fy = map.at("focal_length").as_number(kPositive, kInfinity, "pixel");
+  camera.fx = camera.fy = read_number(map, scene_key("sensors.*.focal_length"));
   camera.cx = 0.5 * (camera.width - 1);
   camera.cy = 0.5 * (camera.height - 1);
   const Eigen::Vector3d position = map.at("position").as_vector3("m");
@@ -47,16 +44,16 @@ void read_pinhole(const Value& map, Camera& camera) {
 void read_sector(const Value& map, ImageScene& image) {
   Camera& camera = image.camera;
   camera.projection = Camera::Projection::slice;
-  camera.fx = camera.fy = map.at("pixels_per_metre").as_number(kPositive, kInfinity, "pixel/m");
+  camera.fx = camera.fy = read_number(map, scene_key("sensors.*.pixels_per_metre"));
   image.apex = {0.5 * (camera.width - 1), 8.0};
   camera.cx = image.apex.x();
   camera.cy = image.apex.y();
   const Eigen::Vector3d axis = map.at("axis").as_vector3(""), lateral = map.at("lateral").as_vector3("");
   camera.model_from_sensor.translation() = map.at("apex").as_vector3("m");
   camera.model_from_sensor.linear() = frame_of(axis, lateral.cross(axis), map);
-  image.sector = map.at("sector").as_number(1.0, 180.0, "degree") * M_PI / 180.0;
-  image.depth = map.at("depth").as_number(kPositive, kInfinity, "m") * camera.fx;
-  image.drop_out = map.number_or("drop_out", 0.0, 0.0, 0.5, "");
+  image.sector = read_number(map, scene_key("sensors.*.sector")) * M_PI / 180.0;
+  image.depth = read_number(map, scene_key("sensors.*.depth")) * camera.fx;
+  image.drop_out = read_number(map, scene_key("sensors.*.drop_out"));
 }
 
 }  // namespace
@@ -70,7 +67,7 @@ ImageScene read_image_scene(const Value& map, const ObservationSettings& observa
     read_pinhole(map, image.camera);
   }
   image.noise = map.number_or("noise", image.noise, 0.0, 100.0, "grey values");
-  image.blur = map.number_or("blur", image.blur, 0.0, 20.0, "pixel");
+  image.blur = read_number(map, scene_key("sensors.*.blur"));
   return image;
 }
 

@@ -6,13 +6,13 @@
 
 #include "tissue_stiffness/nodes/estimator_inputs.hpp"
 #include "tissue_stiffness/tools/read_image_scene.hpp"
+#include "tissue_stiffness/tools/scene_keys.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kPositive = std::numeric_limits<double>::min();
 
 Eigen::VectorXd read_direction(const Value& term, LoadInput::Kind kind) {
   if (kind == LoadInput::Kind::pressure) return Eigen::VectorXd::Ones(1);
@@ -24,8 +24,8 @@ Eigen::VectorXd read_direction(const Value& term, LoadInput::Kind kind) {
 LoadScene read_load(const Value& map, const LoadInput& input, const std::string& directory) {
   LoadScene load;
   load.input = input;
-  load.rate = map.at("rate").as_number(kPositive, 1e5, "Hz");
-  load.noise = map.number_or("noise", 0.0, 0.0, kInfinity, input.kind == LoadInput::Kind::pressure ? "Pa" : "N");
+  load.rate = read_number(map, scene_key("loads.*.rate"));
+  load.noise = read_number(map, scene_key("loads.*.noise"));
   for (const Value& term : map.at("terms").items()) {
     load.terms.push_back({read_direction(term, input.kind), read_signal(term, directory)});
   }
@@ -36,7 +36,8 @@ LoadScene read_load(const Value& map, const LoadInput& input, const std::string&
 SensorScene read_sensor(const Value* map, const ObservationSettings& observation, const std::string& where) {
   SensorScene sensor;
   sensor.noise = observation.noise;
-  if (observation.kind == ObservationSettings::Kind::points) sensor.points = 500;
+  if (observation.kind == ObservationSettings::Kind::points)
+    sensor.points = read_integer(Value::map({}, where), scene_key("sensors.*.count"));
   if (observation.kind == ObservationSettings::Kind::contour) {
     if (map == nullptr) throw InputError(where, "nothing for " + observation.topic, "the camera of that topic");
     sensor.image = read_image_scene(*map, observation);
@@ -44,15 +45,14 @@ SensorScene read_sensor(const Value* map, const ObservationSettings& observation
   }
   if (map == nullptr) return sensor;
   sensor.noise = map->number_or("noise", observation.noise, 0.0, kInfinity, "m");
-  if (observation.kind != ObservationSettings::Kind::points) sensor.memory = map->number_or("memory", 0.0, 0.0, 0.99, "");
-  if (observation.kind == ObservationSettings::Kind::points && map->has("count")) {
-    sensor.points = map->at("count").as_integer(1, 1000000);
-  }
+  const bool points = observation.kind == ObservationSettings::Kind::points;
+  if (!points) sensor.memory = read_number(*map, scene_key("sensors.*.memory"));
+  if (points) sensor.points = read_integer(*map, scene_key("sensors.*.count"));
   if (observation.kind == ObservationSettings::Kind::vertices && map->has("ids")) {
     for (const Value& id : map->at("ids").items())
       sensor.vertices.push_back(id.as_integer(0, std::numeric_limits<int>::max()));
-  } else if (observation.kind == ObservationSettings::Kind::vertices && map->has("every")) {
-    sensor.every = map->at("every").as_integer(1, std::numeric_limits<int>::max());
+  } else if (observation.kind == ObservationSettings::Kind::vertices) {
+    sensor.every = read_integer(*map, scene_key("sensors.*.every"));
   }
   return sensor;
 }
@@ -73,14 +73,12 @@ Scene load_scene(const std::string& file) {
   root.at("simulation").mark_read_deep();
   Scene scene;
   scene.model = read_model(root, directory);
-  scene.duration = simulation.at("duration").as_number(kPositive, kInfinity, "s");
-  scene.rate = simulation.at("rate").as_number(kPositive, 1e6, "Hz");
-  scene.step = simulation.at("step").as_number(kPositive, kInfinity, "s");
-  scene.spectral_radius = simulation.number_or("spectral_radius", 1.0, 0.0, 1.0, "");
-  if (simulation.has("refine")) scene.refine = simulation.at("refine").as_integer(0, 4);
-  if (simulation.has("seed")) {
-    scene.seed = static_cast<std::uint64_t>(simulation.at("seed").as_integer(0, std::numeric_limits<int>::max()));
-  }
+  scene.duration = read_number(simulation, scene_key("duration"));
+  scene.rate = read_number(simulation, scene_key("rate"));
+  scene.step = read_number(simulation, scene_key("step"));
+  scene.spectral_radius = read_number(simulation, scene_key("spectral_radius"));
+  scene.refine = read_integer(simulation, scene_key("refine"));
+  scene.seed = static_cast<std::uint64_t>(read_integer(simulation, scene_key("seed")));
   for (const LoadInput& input : load_topics(scene.model)) {
     scene.loads.push_back(read_load(simulation.at("loads").at(input.topic), input, directory));
   }

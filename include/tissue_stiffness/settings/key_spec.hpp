@@ -16,7 +16,7 @@ struct KeySpec {
   double lower = 0.0, upper = 0.0;   ///< of a number or an integer, both allowed
   std::vector<std::string> choices;  ///< of a choice; the first is the default
   bool required = false;
-  double value = 0.0;   ///< of a number or an integer that is not given, of a boolean 0 or 1
+  double value = 0.0;   ///< of a number or an integer that is not given, of a boolean 0 or 1; NaN: none
   std::string text;     ///< of a text that is not given
   std::string meaning;  ///< for people, as a clause
 

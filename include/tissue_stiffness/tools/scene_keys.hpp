@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tissue_stiffness/settings/key_spec.hpp"
+
+namespace tissue_stiffness {
+
+/// Every key below `simulation` of a scene file; `*` stands for a topic.
+const std::vector<KeySpec>& scene_keys();
+
+/// The one of that path below "simulation.".
+const KeySpec& scene_key(const std::string& path);
+
+}  // namespace tissue_stiffness
