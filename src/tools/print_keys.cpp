@@ -23,10 +23,11 @@ std::string shown(double value) {
 
 std::string range(const KeySpec& key) {
   const bool above_zero = key.lower == std::numeric_limits<double>::min();
-  const bool any_low = std::isinf(key.lower), any_high = std::isinf(key.upper);
+  const bool any_low = std::isinf(key.lower);
+  const bool any_high = std::isinf(key.upper) || key.upper == std::numeric_limits<int>::max();
   if (any_low && any_high) return "any number";
   if (any_high) return (above_zero ? "> 0" : ">= " + shown(key.lower));
-  return shown(key.lower) + " to " + shown(key.upper);
+  return (above_zero ? "> 0, up to " : shown(key.lower) + " to ") + shown(key.upper);
 }
 
 std::string allowed(const KeySpec& key) {
