@@ -42,7 +42,7 @@ const std::map<std::string, std::set<std::string>> kAllowed = [] {
 bool is_ros(const std::string& header) {
   static const std::regex ros(
       "^(ros|rosbag|tf2?|tf2_\\w+|\\w+_msgs|std_srvs|cv_bridge|image_transport|pcl_conversions|XmlRpc\\w*|"
-      "message_filters|diagnostic_updater)(/|\\.h).*|^tissue_stiffness/[A-Z]\\w*\\.h$");
+      "message_filters|diagnostic_updater|pluginlib|rviz)(/|\\.h).*|^tissue_stiffness/[A-Z]\\w*\\.h$");
   return std::regex_match(header, ros);
 }
 
@@ -50,6 +50,8 @@ bool is_ros(const std::string& header) {
 std::string fault(const std::string& layer, const std::string& header) {
   static const std::set<std::string> with_ros{"nodes", "tools", "rviz"};
   if (is_ros(header) && with_ros.count(layer) == 0) return "ROS outside nodes, tools and rviz";
+  static const std::regex qt("^(Qt|Q[A-Z])\\w*(/.*)?$");
+  if (std::regex_match(header, qt) && layer != "rviz") return "Qt outside rviz";
   std::smatch match;
   static const std::regex own("^tissue_stiffness/([a-z_]+)/.*");
   if (!std::regex_match(header, match, own) || match[1] == layer) return "";
@@ -97,6 +99,9 @@ TEST(Layers, EveryFolderIsALayer) {
 TEST(Layers, FaultsAreFound) {
   EXPECT_NE(fault("fem", "ros/ros.h"), "");
   EXPECT_NE(fault("forward", "sensor_msgs/Image.h"), "");
+  EXPECT_NE(fault("report", "rviz/panel.h"), "");
+  EXPECT_NE(fault("nodes", "QWidget"), "");
+  EXPECT_EQ(fault("rviz", "QWidget"), "");
   EXPECT_NE(fault("report", "tissue_stiffness/StiffnessEstimate.h"), "");
   EXPECT_NE(fault("types", "tissue_stiffness/settings/value.hpp"), "");
   EXPECT_NE(fault("filter", "tissue_stiffness/forward/model.hpp"), "");
