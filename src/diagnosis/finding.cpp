@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kRefits = 6;      // candidates that are simulated anew
 constexpr std::ptrdiff_t kWaysOf = 3;   // leading effects that are refitted in two ways
 constexpr double kSameWay = 0.8;        // cosine above which two ways are one
-constexpr std::size_t kKindsOf = 2;      // leading refits whose other kinds are tried
+constexpr std::size_t kKindsOf = 2;     // leading refits whose other kinds are tried
 constexpr std::size_t kOthers = 4;      // and more, when those leave more than noise
 constexpr std::size_t kPairs = 3;       // and pairs
 constexpr double kRemainder = 0.25;     // of the mesh's error that a mesh twice as fine still has, or more
@@ -138,9 +138,10 @@ void Look::refit_all(const std::vector<std::vector<Addition>>& list) {
             options_.progress("refit with " + names);
           }
           try {
-            done[i] = refit(*base_.study, base_.fit, base_.rows, list[i]);
+            done[i] = refit(base_, list[i]);
           } catch (const NumericalError&) {
-            base_.study->recording().checkpoint();  // a study that was ended; else a model that cannot be run explains nothing
+            base_.study->recording()
+                .checkpoint();  // a study that was ended; else a model that cannot be run explains nothing
           }
         }
       },
@@ -149,6 +150,7 @@ void Look::refit_all(const std::vector<std::vector<Addition>>& list) {
     if (refit) refits_.push_back(std::move(*refit));
   }
   sort_refits();
+  for (std::size_t i = 1; i < refits_.size(); ++i) refits_[i].model.reset();
 }
 
 void Look::refit_singles(const std::vector<std::string>& wanted) {
@@ -167,7 +169,8 @@ void Look::refit_others() {
   std::size_t others = 0;
   for (const Ranked& r : ranked_) {
     if (&r - ranked_.data() < kWaysOf && r.promising) add_other_way(r, list);
-    if (r.promising && !r.declared && worth_full_runs(r) && others++ < kOthers) list.push_back({{r.best, r.score.amplitude}});
+    if (r.promising && !r.declared && worth_full_runs(r) && others++ < kOthers)
+      list.push_back({{r.best, r.score.amplitude}});
   }
   refit_all(list);
 }

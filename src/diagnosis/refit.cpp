@@ -131,37 +131,42 @@ double structured(const Study::Rows& rows) {
 
 }  // namespace
 
-Refit refit(const Study& base, const BatchFit& fit, const Study::Rows& base_rows, const std::vector<Addition>& additions) {
-  ModelSettings settings = base.model().settings();
-  for (const Addition& addition : additions) add_effect(settings, addition.way->proposal.refine);
-  Study study(settings, base.model().mesh(), base.recording());
-  study.borrow(base);
+Refit refit(const Fitted& base, const std::vector<Addition>& additions) {
+  const Study& known = *base.study;
+  auto model = std::make_shared<Fitted>();
+  model->settings = known.model().settings();
+  for (const Addition& addition : additions) add_effect(model->settings, addition.way->proposal.refine);
+  model->study = std::make_unique<Study>(model->settings, known.model().mesh(), known.recording());
+  const Study& study = *model->study;
+  model->study->borrow(known);
   std::string reason;
-  std::optional<Start> start = quick_start(study, base, starts(study, base, fit.w, additions), reason);
+  std::optional<Start> start = quick_start(study, known, starts(study, known, base.fit.w, additions), reason);
   if (!start) throw NumericalError(additions.front().way->effect + " cannot be refitted: " + reason);
-  Study::Rows rows = study.quick_rows(start->fit.w);
-  const double gain = base_rows.error.squaredNorm() - rows.error.squaredNorm();
-  const bool only_quick = base.model().nonlinear() && gain < kPromise * structured(base_rows);
+  Study::Rows& rows = model->rows = study.quick_rows(start->fit.w);
+  const double gain = base.rows.error.squaredNorm() - rows.error.squaredNorm();
+  const bool only_quick = known.model().nonlinear() && gain < kPromise * structured(base.rows);
   if (study.model().nonlinear() && !only_quick) {
     start->fit = study.fit(start->fit.w, start->spread, false);
-    rows = study.rows(start->fit.w);
+    rows = study.quick_rows(start->fit.w);  // the last full run was at just this place
   }
+  model->fit = start->fit;
   Refit out;
   out.way = additions.front().way;
   for (const Addition& addition : additions) {
     out.effects.push_back(addition.way->effect);
-    out.entries.push_back(fitted_entry(study, base, start->fit, *addition.way));
+    out.entries.push_back(fitted_entry(study, known, start->fit, *addition.way));
   }
   for (std::size_t i = 0; i < study.model().free_parameters().size(); ++i) {
     const FreeParameter& p = study.model().free_parameters()[i];
     out.parameters[p.name] = p.to_value(start->fit.w[static_cast<Eigen::Index>(i)]);
   }
-  out.train_rms = rms_error(rows, base.recording(), false);
-  out.held_out_rms = rms_error(rows, base.recording(), true);
-  out.train_sigmas = rms_sigmas(rows, base.recording(), false);
-  out.held_out_sigmas = rms_sigmas(rows, base.recording(), true);
+  out.train_rms = rms_error(rows, known.recording(), false);
+  out.held_out_rms = rms_error(rows, known.recording(), true);
+  out.train_sigmas = rms_sigmas(rows, known.recording(), false);
+  out.held_out_sigmas = rms_sigmas(rows, known.recording(), true);
   out.cost = rows.error.squaredNorm();
-  out.added_parameters = static_cast<int>(study.model().free_parameters().size() - base.model().free_parameters().size());
+  out.added_parameters = static_cast<int>(study.model().free_parameters().size() - known.model().free_parameters().size());
+  if (!only_quick) out.model = std::move(model);
   return out;
 }
 

@@ -14,13 +14,15 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr int kScanPoints = 12;
-constexpr int kMostRuns = 8;         // moves of a fit from one full run to the next
-constexpr int kMostCuts = 3;         // of a move that makes it worse
-constexpr double kSettled = 0.2;     // posterior standard deviations: moves that need no further run
-constexpr double kGain = 1e-4;       // relative fall of the cost below which it is over
-constexpr double kNarrower = 4.0;    // posterior standard deviations that the next fit looks across
-constexpr int kNearPoints = 10;      // on either side
-constexpr double kNearStep = 0.045;  // of the prior's standard deviation: 5 % of a modulus known to a factor of 3
+constexpr int kSteps = 8;             // a frame: what longer ones leave of a period's length would be taken for an effect
+constexpr int kMostRuns = 8;          // moves of a fit from one full run to the next
+constexpr int kMostCuts = 3;          // of a move that makes it worse
+constexpr double kSettled = 0.2;      // posterior standard deviations: moves that need no further run
+constexpr double kWorthwhile = 2e-3;  // relative fall of the cost that quick runs have to promise before another full one
+constexpr double kGain = 1e-4;        // and that it has to bring
+constexpr double kNarrower = 4.0;     // posterior standard deviations that the next fit looks across
+constexpr int kNearPoints = 10;       // on either side
+constexpr double kNearStep = 0.045;   // of the prior's standard deviation: 5 % of a modulus known to a factor of 3
 
 }  // namespace
 
@@ -46,7 +48,9 @@ Study::Study(const ModelSettings& settings, const TetMesh& mesh, std::map<std::s
     const auto course = model_.courses().find(sample.topic);
     if (course != model_.courses().end()) course->second->add(sample.time, sample.value);
   }
-  forward_ = make_forward_model(model_, basis);
+  BasisOptions whole = basis;
+  whole.steps_per_frame = kSteps;
+  forward_ = make_forward_model(model_, whole);
   const std::vector<int> nodes = observed_nodes(operators_, recording.frames);
   forward_->focus(nodes);
   if (!model_.nonlinear() || basis.nonlinear != BasisOptions::Nonlinear::in_full) return;
@@ -124,7 +128,7 @@ BatchFit Study::quick_fit(const Eigen::VectorXd& start, const Eigen::VectorXd& s
 BatchFit Study::fit_from_run_to_run(const std::vector<Frame>& frames, Eigen::VectorXd at, Eigen::VectorXd spread) const {
   const double start = problem(*forward_, frames).start;
   std::vector<double> times;
-  for (const Frame& frame : frames) times.push_back(frame.time);
+  for (const Frame& frame : recording_.frames) times.push_back(frame.time);
   const auto run = [&](const Eigen::VectorXd& w) {
     auto runs = std::make_unique<AnchoredModel>(*forward_, *quick_);
     runs->anchor(model_.theta(w), start, times);
@@ -137,7 +141,8 @@ BatchFit Study::fit_from_run_to_run(const std::vector<Frame>& frames, Eigen::Vec
     fit = fit_batch(problem(*anchored_, frames), at, spread);
     const Eigen::VectorXd std = fit.covariance.diagonal().cwiseSqrt();
     Eigen::VectorXd move = fit.w - at;
-    if ((move.array().abs() < kSettled * std.array()).all()) return fit;
+    const bool settled = (move.array().abs() < kSettled * std.array()).all();
+    if (settled || cost - fit.cost < kWorthwhile * cost) break;
     double gain = 0.0;
     for (int cut = 0; cut < kMostCuts && !(gain > 0.0); ++cut, move *= 0.3) {
       auto there = run(at + move);

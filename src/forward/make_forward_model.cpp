@@ -13,6 +13,7 @@ std::unique_ptr<ForwardModel> make_forward_model(const Model& model, const Basis
   if (!model.nonlinear() || left_out) return std::make_unique<ReducedModel>(model, basis);
   if (basis.nonlinear == BasisOptions::Nonlinear::first_order) return std::make_unique<FirstOrderModel>(model, basis);
   FullModel::Options options;
+  options.steps_per_frame = basis.steps_per_frame;
   options.step = model.settings().time.step;
   return std::make_unique<FullModel>(model, options);
 }

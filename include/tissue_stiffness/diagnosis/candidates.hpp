@@ -24,8 +24,8 @@ struct Candidate {
 };
 
 /// Everything that the library proposes for the fitted base model, but for effects to `ignore`. The tangents of all linear
-/// ones come from one reduced model that holds them all at their absent values, those of the others from one at first order.
-/// What is not linear in the base is left out of it.
+/// ones come from one reduced model that holds them all at their absent values, those of the others from one at first
+/// order. What is not linear in the base is left out of it.
 std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd& w, const std::vector<std::string>& ignore);
 
 /// d rows / d w of the fitted base model, in sigmas: N x free parameters.

@@ -8,14 +8,6 @@
 
 namespace tissue_stiffness {
 
-/// A model, its fit to the training frames, and the free run there.
-struct Fitted {
-  ModelSettings settings;
-  std::unique_ptr<Study> study;
-  BatchFit fit;
-  Study::Rows rows;
-};
-
 /// What one look at a fitted model finds missing.
 struct Finding {
   std::string verdict;  ///< adequate, missing, numerics or unexplained

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -49,11 +50,12 @@ struct Refit {
   double train_sigmas = 0.0, held_out_sigmas = 0.0;  ///< the same over sigma
   double cost = 0.0;                                 ///< sum of squared errors over sigma, all frames
   int added_parameters = 0;
+  std::shared_ptr<Fitted> model;  ///< null where it was only run quickly, and of all but the best
 };
 
 /// Fits the training frames by simulation, from the base's fit and the proposals' own starts: in full, but where
-/// quick runs of a model that is not linear explain next to nothing. `rows`: of the base's fit. Throws NumericalError when
+/// quick runs of a model that is not linear explain next to nothing. Throws NumericalError when
 /// no start can be run.
-Refit refit(const Study& base, const BatchFit& fit, const Study::Rows& rows, const std::vector<Addition>& additions);
+Refit refit(const Fitted& base, const std::vector<Addition>& additions);
 
 }  // namespace tissue_stiffness

@@ -71,6 +71,14 @@ class Study {
   std::vector<std::unique_ptr<ObservationOperator>> operators_;
 };
 
+/// A model, its fit to the training frames, and the free run there.
+struct Fitted {
+  ModelSettings settings;
+  std::unique_ptr<Study> study;
+  BatchFit fit;
+  Study::Rows rows;
+};
+
 /// Root mean square of the rows' errors over held-out (true) or training frames: in metres, and in sigmas.
 double rms_error(const Study::Rows& rows, const Recording& recording, bool held_out);
 double rms_sigmas(const Study::Rows& rows, const Recording& recording, bool held_out);

@@ -20,6 +20,7 @@ struct BasisOptions {
   int released = 40;  ///< for each support that may give way
   /// What becomes of effects that are not linear: simulated in full, at first order (FirstOrderModel), or not at all.
   enum class Nonlinear { in_full, first_order, left_out } nonlinear = Nonlinear::in_full;
+  int steps_per_frame = 4;  ///< of simulations in full
 };
 
 /// Load-dependent Ritz vectors (Wilson, Yuan & Dickens 1982), repeated K^-1 M solves from the static responses to the
