@@ -48,6 +48,9 @@ const Eigen::Matrix3Xd& Estimator::displacement() const {
 const Prediction& Estimator::prediction() const {
   return implementation_->scheme->prediction();
 }
+std::optional<double> Estimator::basis_error() const {
+  return implementation_->scheme->basis_error();
+}
 std::vector<std::string> Estimator::description() const {
   return implementation_->scheme->description();
 }

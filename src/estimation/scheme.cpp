@@ -6,9 +6,13 @@
 #include "tissue_stiffness/estimation/compare.hpp"
 #include "tissue_stiffness/estimation/ensemble.hpp"
 #include "tissue_stiffness/estimation/posterior.hpp"
+#include "tissue_stiffness/forward/reduced_basis.hpp"
 
 namespace tissue_stiffness {
 namespace {
+
+constexpr int kManyNodes = 10000;  // beyond which every vector of the basis delays the first estimate noticeably
+constexpr int kFewVectors = 24;    // to start with there; the basis grows when that is not enough
 
 // True when some point or some piece of the outline has a number.
 bool saw_something(const Observation& observation) {
@@ -29,10 +33,43 @@ Scheme::Scheme(const ModelSettings& settings, const TetMesh& mesh)
     throw InputError(settings.name + ": effects", "only known numbers", "at least one {prior, factor} or {mean, std}");
   }
   if (operators_.empty()) throw InputError(settings.name + ": observations", "an empty list", "at least one entry");
-  forward_ = make_forward_model(*model_);
+  BasisOptions basis;
+  if (mesh.node_count() > kManyNodes) basis.size = kFewVectors;
+  forward_ = make_forward_model(*model_, basis);
   displacement_ = Eigen::Matrix3Xd::Zero(3, mesh.node_count());
   const Eigen::VectorXd std = model_->prior_std();
   estimate_ = summarise(model_->free_parameters(), model_->prior_mean(), std.cwiseAbs2().asDiagonal());
+}
+
+const Eigen::Matrix3Xd& Scheme::displacement() const {
+  if (recover_) {
+    const Eigen::VectorXd u = recover_();
+    displacement_ = Eigen::Map<const Eigen::Matrix3Xd>(u.data(), 3, u.size() / 3);
+    recover_ = nullptr;
+  }
+  return displacement_;
+}
+
+void Scheme::focus_on(const Frame& frame) {
+  const TetMesh& mesh = model_->mesh();
+  bool more = seen_nodes_.empty();
+  if (more) {
+    seen_nodes_.assign(static_cast<std::size_t>(mesh.node_count()), 0);
+    for (Eigen::Index i = 0; i < mesh.facets.size(); ++i) seen_nodes_[static_cast<std::size_t>(mesh.facets(i))] = 1;
+  }
+  for (const Observation& observation : frame.observations) {
+    for (const int node : operators_[static_cast<std::size_t>(observation.source)]->nodes(observation)) {
+      char& seen = seen_nodes_[static_cast<std::size_t>(node)];
+      more = more || seen == 0;
+      seen = 1;
+    }
+  }
+  if (!more) return;
+  std::vector<int> nodes;
+  for (int node = 0; node < mesh.node_count(); ++node) {
+    if (seen_nodes_[static_cast<std::size_t>(node)] != 0) nodes.push_back(node);
+  }
+  forward_->focus(nodes);
 }
 
 void Scheme::set_first_stamp(double time) {
@@ -94,6 +131,7 @@ void Scheme::reset() {
   for (auto& course : model_->courses()) course.second->clear();
   const Eigen::VectorXd std = model_->prior_std();
   estimate_ = summarise(model_->free_parameters(), model_->prior_mean(), std.cwiseAbs2().asDiagonal());
+  recover_ = nullptr;
   displacement_.setZero();
   prediction_ = {};
   forget();
@@ -105,7 +143,10 @@ Prediction Scheme::at_rest(const Frame& frame) const {
 
 std::vector<Misfit> Scheme::compare_free_run(const std::vector<Frame>& frames, const Eigen::VectorXd& theta,
                                              const FreeFrameVisitor& visit) const {
-  return tissue_stiffness::free_run({*model_, *forward_, operators_, frames, start()}, theta, visit);
+  forward_->focus({});
+  auto misfits = tissue_stiffness::free_run({*model_, *forward_, operators_, frames, start()}, theta, visit);
+  seen_nodes_.clear();  // the next frame sets the focus again
+  return misfits;
 }
 
 }  // namespace tissue_stiffness

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <future>
 
+#include "tissue_stiffness/estimation/basis_error.hpp"
 #include "tissue_stiffness/estimation/choose_correction.hpp"
 #include "tissue_stiffness/estimation/compare.hpp"
 #include "tissue_stiffness/estimation/coordinate_scan.hpp"
@@ -19,24 +20,27 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kFar = 1.0;              // spreads between anchor and estimate that ask for a new anchor
-constexpr double kWide = 6.0;             // posterior standard deviations that the sigma points may span
-constexpr double kNewSpread = 2.0;        // posterior standard deviations that they span after a move
-constexpr double kFloor = 1e-3;           // of the prior's standard deviation: the smallest span
-constexpr double kBent = 0.2;             // of the misfit: nonlinearity over the span that asks for a smaller one
-constexpr double kLongestMove = 3.0;      // spreads that the anchor may move at once
-constexpr int kMostVisits = 6;            // moves of the anchor a frame
-constexpr std::size_t kEarly = 16;        // frames up to which the anchor may move at every frame
-constexpr double kRevisitGrowth = 1.1;    // of the recording between moves of the anchor later
-constexpr double kScanMisfit = 4.0;       // mean square error over sigma that asks for a scan of the parameters
-constexpr int kScanPoints = 25;           // on either side of the prior's mean
-constexpr double kUnexplained = 0.1;      // of the motion's mean square: more, and a free run's fit is badly biased
-constexpr std::size_t kCorrectFrom = 16;  // frames before which a misfit is not taken for missing physics
-constexpr int kVelocityFrames = 4;        // frames that the initial velocity is read from
-constexpr std::size_t kWindow = 4000;     // frames kept for replay; later ones only add information
-constexpr double kConverged = 0.05;       // relative standard deviation
-constexpr double kShiftDoubt = 0.5;       // of the mesh's effect, once it is corrected for
-constexpr double kInvalidSigmas = 10.0;   // rms error over noise at which the model says nothing about the body
+constexpr double kFar = 1.0;                // spreads between anchor and estimate that ask for a new anchor
+constexpr double kWide = 6.0;               // posterior standard deviations that the sigma points may span
+constexpr double kNewSpread = 2.0;          // posterior standard deviations that they span after a move
+constexpr double kFloor = 1e-3;             // of the prior's standard deviation: the smallest span
+constexpr double kBent = 0.2;               // of the misfit: nonlinearity over the span that asks for a smaller one
+constexpr double kLongestMove = 3.0;        // spreads that the anchor may move at once
+constexpr int kMostVisits = 6;              // moves of the anchor a frame
+constexpr std::size_t kEarly = 16;          // frames up to which the anchor may move at every frame
+constexpr double kRevisitGrowth = 1.1;      // of the recording between moves of the anchor later
+constexpr double kScanMisfit = 4.0;         // mean square error over sigma that asks for a scan of the parameters
+constexpr int kScanPoints = 25;             // on either side of the prior's mean
+constexpr double kUnexplained = 0.1;        // of the motion's mean square: more, and a free run's fit is badly biased
+constexpr std::size_t kCorrectFrom = 16;    // frames before which a misfit is not taken for missing physics
+constexpr int kVelocityFrames = 4;          // frames that the initial velocity is read from
+constexpr std::size_t kWindow = 4000;       // frames kept for replay; later ones only add information
+constexpr double kConverged = 0.05;         // relative standard deviation
+constexpr double kShiftDoubt = 0.5;         // of the mesh's effect, once it is corrected for
+constexpr std::size_t kFirstBasisLook = 4;  // frames
+constexpr double kBasisShare = 0.1;         // of the noise: what the reduced basis may leave out
+constexpr int kMostGrowths = 6;             // of the basis at once, by half each
+constexpr double kInvalidSigmas = 10.0;     // rms error over noise at which the model says nothing about the body
 
 class UnscentedScheme : public Scheme {
  public:
@@ -54,6 +58,7 @@ class UnscentedScheme : public Scheme {
   std::vector<Misfit> free_run(const FreeFrameVisitor& visit) const override {
     return frames_.empty() ? std::vector<Misfit>{} : compare_free_run(frames_, model_->theta(filter_.mean()), visit);
   }
+  std::optional<double> basis_error() const override { return basis_error_; }
   Eigen::MatrixXd parameter_covariance() const override { return filter_.covariance(); }
   void work_in_background() override { background_ = true; }
 
@@ -74,7 +79,8 @@ class UnscentedScheme : public Scheme {
     if (study_.valid()) study_.wait();
     study_ = {};
     shift_.resize(0);
-    last_study_ = 0;
+    last_study_ = last_basis_look_ = 0;
+    basis_error_.reset();
     complete_ = true;
     last_revisit_ = last_correction_ = 0;
     last_scan_ = 1;
@@ -102,6 +108,7 @@ class UnscentedScheme : public Scheme {
   StepResult assimilate(const Frame& frame) {
     StepResult result;
     Stopwatch watch(result.seconds);
+    focus_on(frame);
     start_if_needed();
     ensemble_.advance(frame.time);
     watch.lap("predict");
@@ -116,6 +123,8 @@ class UnscentedScheme : public Scheme {
     }
     if (complete_ && revisit()) predicted = ensemble_.predict(frame);
     watch.lap("revisit");
+    if (complete_ && study_basis()) predicted = ensemble_.predict(frame);
+    watch.lap("basis");
     study_mesh();
     watch.lap("mesh error");
     publish(frame, predicted, innovation, result);
@@ -240,8 +249,11 @@ class UnscentedScheme : public Scheme {
     const Eigen::VectorXd w = filter_.mean();
     prediction_ = predicted.central;
     prediction_.predicted = filter_.predict(predicted.rows, w);
-    const Eigen::VectorXd u = filter_.predict(ensemble_.displacements(), w);
-    displacement_ = Eigen::Map<const Eigen::Matrix3Xd>(u.data(), 3, u.size() / 3);
+    const Eigen::Index points = predicted.rows.cols();
+    recover_ = [this, weights = filter_.predict(Eigen::MatrixXd::Identity(points, points), w)] {
+      return ensemble_.combined(weights);
+    };
+    if (model_->nonlinear()) displacement();  // before a step that fails half-way
     result.used = true;
     result.misfit = compare(frame.time, prediction_, at_rest(frame).predicted, model_->mesh().node_count());
     result.misfit.nis = innovation.nis;
@@ -271,6 +283,23 @@ class UnscentedScheme : public Scheme {
     if (!model_->settings().mesh.discretisation_error) return "the model file asks not to";
     if (model_->nonlinear()) return "the model is not linear";
     return MeshError::why_not(model_->mesh());
+  }
+
+  // What the reduced basis leaves out, asked anew whenever the recording has doubled; the basis grows until it is a small
+  // part of the noise. True if the runs changed.
+  bool study_basis() {
+    auto* reduced = dynamic_cast<ReducedModel*>(forward_.get());
+    if (reduced == nullptr || frames_.size() < std::max(kFirstBasisLook, 2 * last_basis_look_)) return false;
+    last_basis_look_ = frames_.size();
+    bool grown = false;
+    for (int k = 0;; ++k) {
+      const BasisError error = tissue_stiffness::basis_error(*reduced, problem(), filter_.mean());
+      basis_error_ = error.rms;
+      if (error.sigmas <= kBasisShare || k == kMostGrowths || !reduced->grow()) break;
+      grown = true;
+    }
+    if (grown) replay(filter_.anchor(), filter_.spread());
+    return grown;
   }
 
   // What the mesh does to the estimate, asked anew whenever the recording has doubled; in the background when a node runs.
@@ -306,6 +335,8 @@ class UnscentedScheme : public Scheme {
   std::unique_ptr<MeshError> mesh_error_;  ///< the study's own; only its thread touches it
   Eigen::VectorXd shift_;                  ///< estimate less truth because of the mesh; empty: not known yet
   std::size_t last_study_ = 0;
+  std::optional<double> basis_error_;  ///< [m]
+  std::size_t last_basis_look_ = 0;
   bool background_ = false;
   std::future<Eigen::VectorXd> study_;  ///< last: its thread uses the members above
 };

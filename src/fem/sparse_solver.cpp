@@ -3,6 +3,8 @@
 
 #include <cholmod.h>
 
+#include <thread>
+
 #include "tissue_stiffness/fem/single_factor.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
@@ -14,21 +16,22 @@ namespace tissue_stiffness {
 
 namespace {
 
-void quiet_threads() {
-  if (openblas_set_num_threads != nullptr) openblas_set_num_threads(1);
+void set_threads(int count) {
+  if (openblas_set_num_threads != nullptr) openblas_set_num_threads(count);
   if (omp_set_max_active_levels != nullptr) omp_set_max_active_levels(0);  // CHOLMOD asks for 4 threads by name
 }
 
 }  // namespace
 
 struct SparseSolver::Data {
+  static constexpr std::size_t kLarge = 6000;
   cholmod_common common{};
   cholmod_factor* factor = nullptr;
   bool numeric = false;
   mutable std::unique_ptr<const SingleFactor> single;  ///< made when it is first asked for
 
   Data() {
-    quiet_threads();
+    set_threads(1);
     cholmod_start(&common);
 #ifdef TISSUE_STIFFNESS_CHOLMOD_SUPERNODAL
     common.supernodal = CHOLMOD_SUPERNODAL;
@@ -38,6 +41,19 @@ struct SparseSolver::Data {
     common.final_ll = 1;
     common.print = 0;
   }
+  // Nested dissection of the graph of nodes, a ninth of the matrix; small ones are left to CHOLMOD's own choice.
+  cholmod_factor* analyse(cholmod_sparse& a) {
+    if (a.nrow % 3 != 0 || a.nrow < kLarge) return cholmod_analyze(&a, &common);
+    std::vector<int> order = node_order(a);
+    if (order.empty()) return cholmod_analyze(&a, &common);
+    const int methods = common.nmethods;
+    common.nmethods = 1;
+    common.method[0].ordering = CHOLMOD_GIVEN;
+    cholmod_factor* result = cholmod_analyze_p(&a, order.data(), nullptr, 0, &common);
+    common.nmethods = methods;
+    return result;
+  }
+  std::vector<int> node_order(const cholmod_sparse& a);
   Data(const Data&) = delete;
   Data& operator=(const Data&) = delete;
   ~Data() {
@@ -87,20 +103,52 @@ SingleFactor::Layout layout(const cholmod_factor& factor) {
 
 }  // namespace
 
+// Empty when METIS does not order it.
+std::vector<int> SparseSolver::Data::node_order(const cholmod_sparse& a) {
+  const auto nodes = static_cast<int>(a.nrow / 3);
+  const int *starts = static_cast<const int*>(a.p), *rows = static_cast<const int*>(a.i);
+  std::vector<int> outer{0}, inner, last(static_cast<std::size_t>(nodes), -1);
+  for (int node = 0; node < nodes; ++node) {
+    for (int k = starts[3 * node]; k < starts[3 * node + 3]; ++k) {
+      const int other = rows[k] / 3;
+      if (other < node || last[static_cast<std::size_t>(other)] == node) continue;
+      last[static_cast<std::size_t>(other)] = node;
+      inner.push_back(other);
+    }
+    outer.push_back(static_cast<int>(inner.size()));
+  }
+  cholmod_sparse graph{};
+  graph.nrow = graph.ncol = static_cast<std::size_t>(nodes);
+  graph.nzmax = inner.size();
+  graph.p = outer.data();
+  graph.i = inner.data();
+  graph.stype = -1;
+  graph.itype = CHOLMOD_INT;
+  graph.xtype = CHOLMOD_PATTERN;
+  graph.dtype = CHOLMOD_DOUBLE;
+  graph.packed = 1;
+  std::vector<int> order(static_cast<std::size_t>(nodes)), all;
+  if (cholmod_metis(&graph, nullptr, 0, 1, order.data(), &common) == 0) return {};
+  for (const int node : order) {
+    for (int c = 0; c < 3; ++c) all.push_back(3 * node + c);
+  }
+  return all;
+}
+
 SparseSolver::SparseSolver() : data_(std::make_unique<Data>()) {}
 SparseSolver::~SparseSolver() = default;
 SparseSolver::SparseSolver(SparseSolver&&) noexcept = default;
 SparseSolver& SparseSolver::operator=(SparseSolver&&) noexcept = default;
 
-void SparseSolver::factorize(const SparseMatrix& matrix) {
-  quiet_threads();  // OpenMP keeps the number for each calling thread
+void SparseSolver::factorize(const SparseMatrix& matrix, Cores cores) {
+  set_threads(cores == Cores::all ? static_cast<int>(std::thread::hardware_concurrency()) : 1);
   cholmod_sparse a = view(matrix);
-  if (data_->factor == nullptr) data_->factor = cholmod_analyze(&a, &data_->common);
+  if (data_->factor == nullptr) data_->factor = data_->analyse(a);
   data_->numeric = false;
   data_->single = nullptr;
-  if (data_->factor == nullptr || cholmod_factorize(&a, data_->factor, &data_->common) == 0) {
-    throw NumericalError("sparse factorisation failed: out of memory or a pattern that changed");
-  }
+  const bool failed = data_->factor == nullptr || cholmod_factorize(&a, data_->factor, &data_->common) == 0;
+  set_threads(1);
+  if (failed) throw NumericalError("sparse factorisation failed: out of memory or a pattern that changed");
   if (data_->common.status == CHOLMOD_NOT_POSDEF) {
     throw NumericalError("matrix is not positive definite (column " + std::to_string(data_->factor->minor) + ")");
   }
@@ -113,7 +161,7 @@ bool SparseSolver::ready() const {
 
 Eigen::MatrixXd SparseSolver::solve(const Eigen::MatrixXd& b) const {
   if (!data_->numeric) throw NumericalError("solve before a successful factorisation");
-  quiet_threads();
+  set_threads(1);
   cholmod_dense rhs{};
   rhs.nrow = static_cast<std::size_t>(b.rows());
   rhs.ncol = static_cast<std::size_t>(b.cols());

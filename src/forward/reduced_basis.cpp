@@ -32,7 +32,7 @@ class StaticResponse {
     const bool held = std::any_of(fixed_.begin(), fixed_.end(), [](char flag) { return flag != 0; });
     if (!held) stiffness += kShift * stiffness.diagonal().sum() / mass.diagonal().sum() * mass;
     fix_dofs(stiffness, fixed_, stiffness.diagonal().mean());
-    solver_.factorize(stiffness);
+    solver_.factorize(stiffness, SparseSolver::Cores::all);
   }
   Eigen::MatrixXd operator()(Eigen::MatrixXd loads) const {
     zero_fixed(loads, fixed_);
@@ -61,17 +61,26 @@ class Builder {
     const Eigen::MatrixXd acting = acting_loads(model_, prior_, mass_);
     const auto first = std::min<Eigen::Index>(options_.size, room);
     if (acting.cols() > 0) extend(basis, held_, acting, stiffness_groups(model_, prior_), first);
+    const Eigen::Index awake = basis.size();
     add_sleeping(basis, acting);
     if (basis.size() == 0) {
       throw InputError(model_.settings().name + ": effects", "nothing that moves the body",
                        "gravity, pressure, traction or an initial velocity");
     }
-    ReducedBasis result{basis.vectors(), std::vector<int>(static_cast<std::size_t>(basis.size()), -1)};
+    ReducedBasis result{basis.vectors(), std::vector<int>(static_cast<std::size_t>(basis.size()), -1), {}};
+    mark(result, awake);
+    mark(result, basis.size() - awake);
     add_supports(basis, acting, result);
     return result;
   }
 
  private:
+  static void mark(ReducedBasis& basis, Eigen::Index count) {
+    const auto early = static_cast<std::size_t>((count + 1) / 2);
+    basis.late.insert(basis.late.end(), early, 0);
+    basis.late.insert(basis.late.end(), static_cast<std::size_t>(count) - early, 1);
+  }
+
   // Static responses to the loads, then to the inertia (and, with several moduli, the stiffnesses) of what was added last.
   static void extend(OrthonormalBasis& basis, const StaticResponse& respond, const SparseMatrix& mass,
                      const Eigen::MatrixXd& loads, const std::vector<SparseMatrix>& groups, Eigen::Index size) {
@@ -211,6 +220,7 @@ class Builder {
       result.vectors.conservativeResize(Eigen::NoChange, result.vectors.cols() + count);
       result.vectors.rightCols(count) = basis.vectors().rightCols(count);
       result.support.insert(result.support.end(), static_cast<std::size_t>(count), static_cast<int>(p));
+      mark(result, count);
     }
   }
 

@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "tissue_stiffness/forward/for_each_index.hpp"
 #include "tissue_stiffness/forward/reduced_trajectory.hpp"
 
 namespace tissue_stiffness {
@@ -15,6 +16,17 @@ constexpr std::size_t kKept = 16;  // modes of the last theta: what damping, loa
 
 Eigen::MatrixX3d unit_motion(Eigen::Index dofs) {
   return Eigen::Matrix3d::Identity().replicate(dofs / 3, 1);
+}
+
+// tall * small, blocks of rows in parallel: the tall one is read once.
+Eigen::MatrixXd product(const Eigen::MatrixXd& tall, const Eigen::MatrixXd& small) {
+  constexpr Eigen::Index block = 1024;
+  Eigen::MatrixXd out(tall.rows(), small.cols());
+  tbb::parallel_for(tbb::blocked_range<Eigen::Index>(0, tall.rows(), block), [&](const auto& part) {
+    const Eigen::Index count = part.end() - part.begin();
+    out.middleRows(part.begin(), count).noalias() = tall.middleRows(part.begin(), count) * small;
+  });
+  return out;
 }
 
 Eigen::MatrixXd chosen(const Eigen::MatrixXd& m, const std::vector<int>& rows, const std::vector<int>& columns) {
@@ -51,7 +63,7 @@ Eigen::MatrixXd project_matrix(const SparseMatrix& k, const Eigen::MatrixXd& bas
 
 }  // namespace
 
-ReducedModel::ReducedModel(const Model& model, const BasisOptions& options) : model_(model) {
+ReducedModel::ReducedModel(const Model& model, const BasisOptions& options) : model_(model), options_(options) {
   if (model.nonlinear() && options.nonlinear == BasisOptions::Nonlinear::in_full) {
     throw InputError("model", "a nonlinear effect", "linear effects only, in a reduced basis");
   }
@@ -97,9 +109,26 @@ void ReducedModel::project_part(std::size_t index) {
   for (const auto& term : part.terms.loads) out.loads.push_back(b.transpose() * term.pattern);
 }
 
-std::vector<int> ReducedModel::active(const Eigen::VectorXd& theta) const {
+bool ReducedModel::grow() {
+  const Eigen::Index before = basis_.vectors.cols();
+  const auto larger = [](int count) { return count + (count + 1) / 2; };
+  options_.size = larger(options_.size);
+  options_.per_part = larger(options_.per_part);
+  options_.largest = larger(options_.largest);
+  options_.released = larger(options_.released);
+  basis_ = build_reduced_basis(model_, options_);
+  projected_.clear();
+  known_.clear();
+  shaped_.clear();
+  project();
+  focus(std::vector<int>(focus_));
+  return basis_.vectors.cols() > before;
+}
+
+std::vector<int> ReducedModel::active(const Eigen::VectorXd& theta, bool half) const {
   std::vector<int> columns;
   for (std::size_t i = 0; i < basis_.support.size(); ++i) {
+    if (half && basis_.late[i] != 0) continue;
     const int support = basis_.support[i];
     if (support >= 0) {
       const auto& part = model_.parts()[static_cast<std::size_t>(support)];
@@ -111,8 +140,8 @@ std::vector<int> ReducedModel::active(const Eigen::VectorXd& theta) const {
 }
 
 // Everything that the modes depend on.
-Eigen::VectorXd ReducedModel::key(const Eigen::VectorXd& theta) const {
-  std::vector<double> values{model_.mass_factor(theta)};
+Eigen::VectorXd ReducedModel::key(const Eigen::VectorXd& theta, bool half) const {
+  std::vector<double> values{half ? 1.0 : 0.0, model_.mass_factor(theta)};
   for (const auto& part : model_.parts()) {
     const LinearTerms& terms = part.terms;
     if (terms.mass.empty() && terms.stiffness.empty() && terms.strain_stiffness.empty()) continue;
@@ -128,15 +157,15 @@ Eigen::VectorXd ReducedModel::key(const Eigen::VectorXd& theta) const {
   return Eigen::Map<Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
-std::shared_ptr<const ReducedModes> ReducedModel::modes(const Eigen::VectorXd& theta) const {
-  Eigen::VectorXd wanted = key(theta);
+std::shared_ptr<const ReducedModes> ReducedModel::modes(const Eigen::VectorXd& theta, bool half) const {
+  Eigen::VectorXd wanted = key(theta, half);
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     for (const Known& known : known_) {
       if (known.key == wanted) return known.modes;
     }
   }
-  auto modes = std::make_shared<const ReducedModes>(solve(theta));
+  auto modes = std::make_shared<const ReducedModes>(solve(theta, half));
   const std::lock_guard<std::mutex> lock(mutex_);
   if (known_.size() == kKept) known_.erase(known_.begin());
   known_.push_back({std::move(wanted), modes});
@@ -160,7 +189,7 @@ std::shared_ptr<const Eigen::MatrixXd> ReducedModel::shaped(const StrainTerm& te
   return shaped_.back().projected;
 }
 
-ReducedModes ReducedModel::solve(const Eigen::VectorXd& theta) const {
+ReducedModes ReducedModel::solve(const Eigen::VectorXd& theta, bool half) const {
   const Eigen::Index m = basis_.vectors.cols();
   Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(m, m), stiffness = mass;
   ReducedModes modes;
@@ -189,7 +218,7 @@ ReducedModes ReducedModel::solve(const Eigen::VectorXd& theta) const {
       stiffness += c * (constant ? part.strain_stiffness[k] : *shaped(term, p));
     }
   }
-  const std::vector<int> columns = active(theta);
+  const std::vector<int> columns = active(theta, half);
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(chosen(stiffness, columns, columns),
                                                                         chosen(mass, columns, columns));
   modes.square = eigen.eigenvalues().cwiseMax(0.0);
@@ -212,6 +241,16 @@ std::unique_ptr<Trajectory> ReducedModel::start(const Eigen::VectorXd& theta, do
   return std::make_unique<ReducedTrajectory>(*this, theta, start);
 }
 
+std::unique_ptr<Trajectory> ReducedModel::start_in_half(const Eigen::VectorXd& theta, double start) const {
+  return std::make_unique<ReducedTrajectory>(*this, theta, start, true);
+}
+
+std::unique_ptr<Trajectories> ReducedModel::start_all(const std::vector<Eigen::VectorXd>& thetas, double start) const {
+  std::vector<std::unique_ptr<Trajectory>> runs(thetas.size());
+  for_each_index(thetas.size(), [&](std::size_t i) { runs[i] = this->start(thetas[i], start); });
+  return std::make_unique<ReducedTrajectories>(*this, std::move(runs));
+}
+
 void ReducedModel::focus(const std::vector<int>& nodes) {
   focus_ = nodes;
   in_focus_.resize(3 * static_cast<Eigen::Index>(nodes.size()), basis_.vectors.cols());
@@ -221,13 +260,26 @@ void ReducedModel::focus(const std::vector<int>& nodes) {
 }
 
 Eigen::VectorXd ReducedModel::displacement(const Eigen::VectorXd& coordinates) const {
-  if (focus_.empty()) return basis_.vectors * coordinates;
-  const Eigen::VectorXd seen = in_focus_ * coordinates;
-  Eigen::VectorXd u = Eigen::VectorXd::Zero(basis_.vectors.rows());
-  for (std::size_t i = 0; i < focus_.size(); ++i) {
-    u.segment<3>(3 * focus_[i]) = seen.segment<3>(3 * static_cast<Eigen::Index>(i));
-  }
+  Eigen::MatrixXd u = Eigen::VectorXd::Zero(basis_.vectors.rows());
+  displacements(coordinates, u);
   return u;
+}
+
+void ReducedModel::displacements(const Eigen::MatrixXd& coordinates, Eigen::MatrixXd& out) const {
+  if (focus_.empty()) {
+    out = product(basis_.vectors, coordinates);
+    return;
+  }
+  const Eigen::MatrixXd seen = product(in_focus_, coordinates);
+  for (Eigen::Index k = 0; k < seen.cols(); ++k) {
+    for (std::size_t i = 0; i < focus_.size(); ++i) {
+      out.block<3, 1>(3 * focus_[i], k) = seen.block<3, 1>(3 * static_cast<Eigen::Index>(i), k);
+    }
+  }
+}
+
+Eigen::VectorXd ReducedModel::whole_displacement(const Eigen::VectorXd& coordinates) const {
+  return product(basis_.vectors, coordinates);
 }
 
 std::string ReducedModel::description() const {

@@ -11,11 +11,12 @@ constexpr double kLoadStep = 0.004;  // [s] at most between two looks at a load
 
 }  // namespace
 
-ReducedTrajectory::ReducedTrajectory(const ReducedModel& reduced, const Eigen::VectorXd& theta, double start)
+ReducedTrajectory::ReducedTrajectory(const ReducedModel& reduced, const Eigen::VectorXd& theta, double start,
+                                     bool half_basis)
     : reduced_(reduced),
       time_(start),
       load_factor_(reduced.model().load_factor(theta)),
-      modes_(reduced.modes(theta)),
+      modes_(reduced.modes(theta, half_basis)),
       constant_force_(modes_->weight * reduced.model().body_acceleration(theta)),
       damping_(reduced.model().mass_damping(theta) + reduced.model().stiffness_damping(theta) * modes_->square.array()),
       step_(modes_->square, damping_, reduced.model().relaxations(theta)),
@@ -63,6 +64,14 @@ ReducedTrajectory::FreeMotion ReducedTrajectory::free_motion(double span, int co
 void ReducedTrajectory::correct(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity) {
   state_.col(0) += modes_->to_modal * displacement;
   state_.col(1) += modes_->to_modal * velocity;
+}
+
+Eigen::MatrixXd ReducedTrajectories::coordinates() const {
+  Eigen::MatrixXd all(reduced_.basis().cols(), static_cast<Eigen::Index>(runs_.size()));
+  for (std::size_t i = 0; i < runs_.size(); ++i) {
+    all.col(static_cast<Eigen::Index>(i)) = static_cast<const ReducedTrajectory&>(*runs_[i]).coordinates();
+  }
+  return all;
 }
 
 void ReducedTrajectory::advance(double time) {

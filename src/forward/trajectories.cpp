@@ -17,4 +17,10 @@ void SeparateTrajectories::displacements(Eigen::MatrixXd& out) const {
   for_each_index(runs_.size(), [&](std::size_t i) { out.col(static_cast<Eigen::Index>(i)) = runs_[i]->displacement(); });
 }
 
+Eigen::VectorXd SeparateTrajectories::combined(const Eigen::VectorXd& weights) const {
+  Eigen::VectorXd sum = weights[0] * runs_.front()->displacement();
+  for (std::size_t i = 1; i < runs_.size(); ++i) sum += weights[static_cast<Eigen::Index>(i)] * runs_[i]->displacement();
+  return sum;
+}
+
 }  // namespace tissue_stiffness

@@ -218,6 +218,7 @@ void EstimatorNode::report(const StepResult& result) {
   }
   diagnostics_.count("frames used");
   diagnostics_.set("estimate", shown(result.estimate));
+  if (const auto error = estimator_->basis_error()) diagnostics_.set("basis error [m]", std::to_string(*error));
   for (const auto& [stage, seconds] : result.seconds) diagnostics_.time(stage, seconds);
   const EstimateState state = result.estimate.state;
   const bool good = state != EstimateState::model_invalid && state != EstimateState::drifting;

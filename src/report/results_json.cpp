@@ -43,6 +43,7 @@ std::string results_json(const Results& results) {
       {"rms_error", number(results.rms_error)},
       {"noise_rms", number(results.noise_rms)},
       {"relative_error", number(results.relative_error)},
+      {"basis_error", number(results.basis_error)},
       {"nis", {{"mean_per_dof", number(results.nis_mean_per_dof)}, {"p_value", number(results.nis_p_value)}}},
       {"seconds_per_frame",
        {{"median", number(results.frame_seconds_quantile(0.5))}, {"p99", number(results.frame_seconds_quantile(0.99))}}},

@@ -100,6 +100,7 @@ class Run {
     results.nis_mean_per_dof = nis_.mean_per_dof();
     results.nis_p_value = nis_.p_value();
     results.noise_rms = std::sqrt(noise_.sum / noise_.rows);
+    results.basis_error = estimator_.basis_error().value_or(results.basis_error);
     results.description = estimator_.description();
     for (const auto& [stage, samples] : run_.stage_samples) {
       double sum = 0.0;

@@ -32,8 +32,10 @@ class Ensemble {
   };
   Predicted predict(const Frame& frame) const;
 
-  /// Displacements, one column a sigma point, 3n x sigma points [m].
+  /// Displacements, one column a sigma point, 3n x sigma points [m]; of the nodes in the forward model's focus.
   const Eigen::MatrixXd& displacements() const { return displacements_; }
+  /// Their weighted sum, 3n, every node.
+  Eigen::VectorXd combined(const Eigen::VectorXd& weights) const { return runs_->combined(weights); }
   /// Linear models only, whose runs are separate.
   Trajectory& trajectory(std::size_t i) { return dynamic_cast<SeparateTrajectories&>(*runs_)[i]; }
 

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -70,6 +71,9 @@ class Estimator {
   const Prediction& prediction() const;
   /// By parameter name.
   std::map<std::string, Identifiability> identifiability() const;
+  /// What the reduced basis leaves out of the predictions, an upper bound (basis_error.hpp): rms over the worst frame [m].
+  /// None for a model that is integrated in full, and before a few frames.
+  std::optional<double> basis_error() const;
   /// What the estimator chose by itself, one line each (engine, time step, basis size, nodes), for logs and reports.
   std::vector<std::string> description() const;
 

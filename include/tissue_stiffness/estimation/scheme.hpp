@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -31,7 +32,9 @@ class Scheme {
 
   const Model& model() const { return *model_; }
   const Estimate& estimate() const { return estimate_; }
-  const Eigen::Matrix3Xd& displacement() const { return displacement_; }
+  const Eigen::Matrix3Xd& displacement() const;
+  /// Of the reduced basis [m], kBasisDoubt included; none for a model that runs in full, or before frames told.
+  virtual std::optional<double> basis_error() const { return std::nullopt; }
   const Prediction& prediction() const { return prediction_; }
 
  protected:
@@ -48,8 +51,13 @@ class Scheme {
   std::unique_ptr<ForwardModel> forward_;
   std::vector<std::unique_ptr<ObservationOperator>> operators_;
   Estimate estimate_;
-  Eigen::Matrix3Xd displacement_;
+  mutable Eigen::Matrix3Xd displacement_;
+  mutable std::function<Eigen::VectorXd()> recover_;  ///< what displacement_ is to become when somebody asks; may be empty
   Prediction prediction_;
+  mutable std::vector<char> seen_nodes_;  ///< a flag a node: on the surface, or observed so far
+
+  /// Lets the forward model tell where the frame's nodes are, and the surface's; others it may leave out.
+  void focus_on(const Frame& frame);
 
  private:
   /// Whether the frame holds anything to compare. Throws InputError for an observation that does not fit the model.

@@ -18,7 +18,9 @@ class SparseSolver {
   SparseSolver& operator=(SparseSolver&&) noexcept;
 
   /// Numerical factorisation; analyses the pattern at the first call. Throws NumericalError when not positive definite.
-  void factorize(const SparseMatrix& matrix);
+  /// On one core, for where others work beside it, or on all.
+  enum class Cores { one, all };
+  void factorize(const SparseMatrix& matrix, Cores cores = Cores::one);
   bool ready() const;
 
   /// Solution of A x = b for every column of b.

@@ -34,6 +34,8 @@ class Trajectories {
   virtual void advance(const std::vector<double>& times) = 0;
   /// Nodal displacements, a column each, 3n x size [m].
   virtual void displacements(Eigen::MatrixXd& out) const = 0;
+  /// Their weighted sum at every node, whatever the focus, 3n [m].
+  virtual Eigen::VectorXd combined(const Eigen::VectorXd& weights) const = 0;
 };
 
 /// Free runs that share nothing but the cores.
@@ -43,6 +45,7 @@ class SeparateTrajectories : public Trajectories {
   std::size_t size() const override { return runs_.size(); }
   void advance(const std::vector<double>& times) override;
   void displacements(Eigen::MatrixXd& out) const override;
+  Eigen::VectorXd combined(const Eigen::VectorXd& weights) const override;
   Trajectory& operator[](std::size_t i) { return *runs_[i]; }
 
  protected:

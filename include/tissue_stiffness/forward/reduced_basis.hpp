@@ -11,6 +11,7 @@ namespace tissue_stiffness {
 struct ReducedBasis {
   Eigen::MatrixXd vectors;   ///< 3n x m, M-orthonormal at the prior within what one set of held nodes allows
   std::vector<int> support;  ///< of each vector: the part that must let its nodes go for it, -1 for none
+  std::vector<char> late;    ///< of each vector: whether it came in the later half of its kind, the less important one
 };
 
 struct BasisOptions {

@@ -28,6 +28,12 @@ class ReducedModel : public ForwardModel {
   explicit ReducedModel(const Model& model, const BasisOptions& options = {});
 
   std::unique_ptr<Trajectory> start(const Eigen::VectorXd& theta, double start) const override;
+  /// Their displacements are recovered together.
+  std::unique_ptr<Trajectories> start_all(const std::vector<Eigen::VectorXd>& thetas, double start) const override;
+  /// A run in the earlier half of the basis: what the later half still changes tells what is left to come.
+  std::unique_ptr<Trajectory> start_in_half(const Eigen::VectorXd& theta, double start) const;
+  /// Makes the basis larger by half; false when that adds nothing. Runs started before must not be used any more.
+  bool grow();
   void focus(const std::vector<int>& nodes) override;
   std::string description() const override;
 
@@ -36,8 +42,12 @@ class ReducedModel : public ForwardModel {
   const Eigen::MatrixXd& basis() const { return basis_.vectors; }
   /// Nodal displacement of basis coordinates, 3n; zero away from the focus.
   Eigen::VectorXd displacement(const Eigen::VectorXd& coordinates) const;
-  /// Kept for the last few theta that differ in mass or stiffness.
-  std::shared_ptr<const ReducedModes> modes(const Eigen::VectorXd& theta) const;
+  /// The same of several, a column each, into rows of `out` that belong to the focus; others stay as they are.
+  void displacements(const Eigen::MatrixXd& coordinates, Eigen::MatrixXd& out) const;
+  /// Of every node, whatever the focus.
+  Eigen::VectorXd whole_displacement(const Eigen::VectorXd& coordinates) const;
+  /// Kept for the last few theta that differ in mass or stiffness. `half`: in the earlier half of the basis.
+  std::shared_ptr<const ReducedModes> modes(const Eigen::VectorXd& theta, bool half = false) const;
   /// Basis coordinates of a load term's pattern.
   Eigen::VectorXd load(std::size_t part, std::size_t term, const Eigen::VectorXd& parameters) const;
 
@@ -59,11 +69,12 @@ class ReducedModel : public ForwardModel {
   std::shared_ptr<const Eigen::MatrixXd> shaped(const StrainTerm& term, const Eigen::VectorXd& parameters) const;
   void project();
   void project_part(std::size_t part);
-  Eigen::VectorXd key(const Eigen::VectorXd& theta) const;
-  std::vector<int> active(const Eigen::VectorXd& theta) const;
-  ReducedModes solve(const Eigen::VectorXd& theta) const;
+  Eigen::VectorXd key(const Eigen::VectorXd& theta, bool half) const;
+  std::vector<int> active(const Eigen::VectorXd& theta, bool half) const;
+  ReducedModes solve(const Eigen::VectorXd& theta, bool half) const;
 
   const Model& model_;
+  BasisOptions options_;
   ReducedBasis basis_;
   std::vector<int> focus_;            ///< nodes; empty: all
   Eigen::MatrixXd in_focus_;          ///< their rows of the basis

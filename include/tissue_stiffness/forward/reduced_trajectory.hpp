@@ -13,7 +13,7 @@ namespace tissue_stiffness {
 /// tau z' = q - z for each relaxing branch, stepped with the exact transition for f linear over the step.
 class ReducedTrajectory : public Trajectory {
  public:
-  ReducedTrajectory(const ReducedModel& reduced, const Eigen::VectorXd& theta, double start);
+  ReducedTrajectory(const ReducedModel& reduced, const Eigen::VectorXd& theta, double start, bool half_basis = false);
 
   void advance(double time) override;
   double time() const override { return time_; }
@@ -58,6 +58,22 @@ class ReducedTrajectory : public Trajectory {
   ModalStep step_;
   Eigen::MatrixXd state_;  ///< columns q, q', z...; a row a mode
   Eigen::VectorXd force_;
+};
+
+/// Reduced runs side by side.
+class ReducedTrajectories : public SeparateTrajectories {
+ public:
+  ReducedTrajectories(const ReducedModel& reduced, std::vector<std::unique_ptr<Trajectory>> runs)
+      : SeparateTrajectories(std::move(runs)), reduced_(reduced) {}
+  void displacements(Eigen::MatrixXd& out) const override { reduced_.displacements(coordinates(), out); }
+  Eigen::VectorXd combined(const Eigen::VectorXd& weights) const override {
+    return reduced_.whole_displacement(coordinates() * weights);
+  }
+
+ private:
+  Eigen::MatrixXd coordinates() const;
+
+  const ReducedModel& reduced_;
 };
 
 }  // namespace tissue_stiffness

@@ -40,6 +40,7 @@ struct Results {
   double rms_error = std::numeric_limits<double>::quiet_NaN();       ///< of the free run at the final estimate [m]
   double relative_error = std::numeric_limits<double>::quiet_NaN();  ///< rms error / rms motion [-]
   double noise_rms = std::numeric_limits<double>::quiet_NaN();       ///< what the model file says about the sensors [m]
+  double basis_error = std::numeric_limits<double>::quiet_NaN();     ///< of the reduced basis, an upper bound [m]
   double nis_mean_per_dof = std::numeric_limits<double>::quiet_NaN();
   double nis_p_value = std::numeric_limits<double>::quiet_NaN();
   std::vector<FrameRecord> frames;

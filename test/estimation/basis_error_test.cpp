@@ -1,0 +1,106 @@
+// The error of the reduced basis: reported, a bound on the real one, and small because the basis grows.
+#include "tissue_stiffness/estimation/basis_error.hpp"
+
+#include <gtest/gtest.h>
+
+#include "bar.hpp"
+#include "tissue_stiffness/forward/full_model.hpp"
+#include "tissue_stiffness/forward/observation_operator.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr int kFrames = 40;
+
+class BasisErrorOfABar : public testing::Test {
+ protected:
+  BasisErrorOfABar()
+      : settings_(box_settings(bar_under_gravity(prior(30e3, 2.0)))),
+        mesh_(bar_mesh(6, 2, 2)),
+        model_(settings_, mesh_),
+        operators_(make_observation_operators(model_)) {
+    const Experiment truth(settings_, mesh_, {30e3});
+    frames_ = see_all(truth, truth.film(0.0, kFilmed, kFrames), kNoise, 3);
+  }
+
+  ReducedModel reduced(int size) const {
+    BasisOptions options;
+    options.size = size;
+    return ReducedModel(model_, options);
+  }
+
+  BasisError reported(const ReducedModel& model) const {
+    return basis_error(model, {model_, model, operators_, frames_, 0.0}, model_.prior_mean());
+  }
+
+  // Against a basis so large that nothing is missing from it.
+  double real(const ReducedModel& model) const {
+    const ReducedModel full = reduced(200);
+    const Eigen::VectorXd theta = model_.theta(model_.prior_mean());
+    const auto a = model.start(theta, 0.0), b = full.start(theta, 0.0);
+    double worst = 0.0;
+    for (const Frame& frame : frames_) {
+      a->advance(frame.time);
+      b->advance(frame.time);
+      const Eigen::VectorXd off = (a->displacement() - b->displacement()).head(3 * mesh_.corner_count);
+      worst = std::max(worst, std::sqrt(off.squaredNorm() / static_cast<double>(off.size())));
+    }
+    return worst;
+  }
+
+  ModelSettings settings_;
+  TetMesh mesh_;
+  Model model_;
+  std::vector<std::unique_ptr<ObservationOperator>> operators_;
+  std::vector<Frame> frames_;
+};
+
+TEST_F(BasisErrorOfABar, BoundsTheRealErrorWithinAFactorOfTwenty) {
+  for (const int size : {4, 6, 10, 16, 24, 48}) {
+    const ReducedModel model = reduced(size);
+    const double told = reported(model).rms, truth = real(model);
+    EXPECT_GE(told, truth) << size << " vectors";
+    EXPECT_LE(told, 20.0 * truth) << size << " vectors";
+  }
+}
+
+TEST_F(BasisErrorOfABar, AgreesWithTheFullModel) {
+  FullModel::Options fine;
+  fine.step = 2e-4;
+  fine.spectral_radius = 1.0;
+  const ReducedModel model = reduced(24);
+  const Eigen::VectorXd theta = model_.theta(model_.prior_mean());
+  const auto a = model.start(theta, 0.0), b = FullModel(model_, fine).start(theta, 0.0);
+  double worst = 0.0, motion = 0.0;
+  for (int k = 1; k <= 10; ++k) {
+    a->advance(kFilmed * k);
+    b->advance(kFilmed * k);
+    worst = std::max(worst, (a->displacement() - b->displacement()).cwiseAbs().maxCoeff());
+    motion = std::max(motion, b->displacement().cwiseAbs().maxCoeff());
+  }
+  EXPECT_LT(worst, 2e-3 * motion);
+}
+
+TEST_F(BasisErrorOfABar, MakesACrippledBasisGrow) {
+  ReducedModel model = reduced(2);
+  ASSERT_GT(reported(model).sigmas, 0.1) << "two vectors are enough here";
+  const Eigen::Index before = model.basis().cols();
+  for (int k = 0; k < 12 && reported(model).sigmas > 0.1; ++k) ASSERT_TRUE(model.grow());
+  EXPECT_GT(model.basis().cols(), before);
+  EXPECT_LE(reported(model).sigmas, 0.1);
+  EXPECT_LT(real(model), 0.1 * kNoise);
+}
+
+TEST_F(BasisErrorOfABar, IsReportedByTheEstimatorBelowATenthOfTheNoise) {
+  Estimator estimator(settings_, mesh_);
+  EXPECT_FALSE(estimator.basis_error());
+  step_through(estimator, frames_);
+  ASSERT_TRUE(estimator.basis_error());
+  EXPECT_GT(*estimator.basis_error(), 0.0);
+  EXPECT_LE(*estimator.basis_error(), 0.1 * kNoise);
+  estimator.reset();
+  EXPECT_FALSE(estimator.basis_error());
+}
+
+}  // namespace
+}  // namespace tissue_stiffness
