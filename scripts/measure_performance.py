@@ -58,9 +58,9 @@ def cost_table(runs, law):
     for (name, _), r in runs.items():
         if name == law:
             rows.append([f"{r['nodes']:,.0f}", digits(r['median_ms']), digits(r['p99_ms']), digits(r['start_s']),
-                         digits(r['replay_s']), f"{r['peak_MB']:,.0f}", f"{r['error_pct']:+.3f} %"])
+                         digits(r['replay_s']), f"{r['peak_MB']:,.0f}", f"{r['basis_um']:.1f}" if r['basis_um'] > 0 else '-', f"{r['error_pct']:+.3f} %"])
     return table(['nodes', 'frame, median [ms]', 'p99 [ms]', 'first estimate [s]', 'past run again [s]',
-                  'peak memory [MB]', 'E off'], rows)
+                  'peak memory [MB]', 'basis error [um]', 'E off'], rows)
 
 
 def peer_table(runs, peers):
@@ -102,7 +102,7 @@ def machine():
 def write(path, tables):
     with open(path) as file:
         text = file.read()
-    text = MARK.sub(lambda m: m.group(1) + tables[m.group(2)] + m.group(3), text)
+    text = MARK.sub(lambda m: m.group(1) + tables[m.group(2)] + m.group(3) if m.group(2) in tables else m.group(0), text)
     with open(path, 'w') as file:
         file.write(text)
 

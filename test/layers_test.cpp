@@ -35,6 +35,7 @@ const std::map<std::string, std::set<std::string>> kAllowed = [] {
   add("report", {"settings"});
   add("nodes", {"diagnosis", "segmentation", "report"});
   add("tools", {"nodes"});
+  add("nodelets", {"nodes"});
   add("rviz", {"nodes"});
   return allowed;
 }();
@@ -42,13 +43,13 @@ const std::map<std::string, std::set<std::string>> kAllowed = [] {
 bool is_ros(const std::string& header) {
   static const std::regex ros(
       "^(ros|rosbag|tf2?|tf2_\\w+|\\w+_msgs|std_srvs|cv_bridge|image_transport|pcl_conversions|XmlRpc\\w*|"
-      "message_filters|diagnostic_updater|pluginlib|rviz)(/|\\.h).*|^tissue_stiffness/[A-Z]\\w*\\.h$");
+      "message_filters|diagnostic_updater|pluginlib|nodelet|rviz)(/|\\.h).*|^tissue_stiffness/[A-Z]\\w*\\.h$");
   return std::regex_match(header, ros);
 }
 
 /// What is wrong with an include of `header` in `layer`; empty when nothing is.
 std::string fault(const std::string& layer, const std::string& header) {
-  static const std::set<std::string> with_ros{"nodes", "tools", "rviz"};
+  static const std::set<std::string> with_ros{"nodes", "nodelets", "tools", "rviz"};
   if (is_ros(header) && with_ros.count(layer) == 0) return "ROS outside nodes, tools and rviz";
   static const std::regex qt("^(Qt|Q[A-Z])\\w*(/.*)?$");
   if (std::regex_match(header, qt) && layer != "rviz") return "Qt outside rviz";

@@ -2,13 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "tissue_stiffness/estimation/ensemble.hpp"
+#include <limits>
 
 namespace tissue_stiffness {
 namespace {
 
 constexpr std::size_t kLooks = 32;  // frames compared
+
+double least_noise(const Model& model) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const ObservationSettings& observation : model.settings().observations) {
+    least = std::min(least, observation.noise);
+  }
+  return least;
+}
 
 }  // namespace
 
@@ -17,27 +24,16 @@ BasisError basis_error(const ReducedModel& reduced, const FitProblem& problem, c
   const double delay = problem.model.delay(theta);
   const auto whole = reduced.start(theta, problem.start), half = reduced.start_in_half(theta, problem.start);
   const std::size_t stride = (problem.frames.size() + kLooks - 1) / kLooks;
-  BasisError worst;
+  double square = 0.0;
   for (std::size_t k = 0; k < problem.frames.size(); ++k) {
-    const Frame& frame = problem.frames[k];
-    whole->advance(frame.time - delay);
-    half->advance(frame.time - delay);
+    const double time = problem.frames[k].time - delay;
+    whole->advance(time);
+    half->advance(time);
     if (k % stride != 0 && k + 1 != problem.frames.size()) continue;
-    const Prediction a = predict_frame(problem.model, problem.operators, frame, theta, whole->displacement()),
-                     b = predict_frame(problem.model, problem.operators, frame, theta, half->displacement());
-    double square = 0.0, sigmas = 0.0, count = 0.0;
-    for (Eigen::Index i = 0; i < a.predicted.size(); ++i) {
-      const double off = kBasisDoubt * (a.predicted[i] - b.predicted[i]);
-      if (!std::isfinite(off) || !std::isfinite(a.sigma[i])) continue;
-      square += off * off;
-      sigmas += std::pow(off / a.sigma[i], 2);
-      count += 1.0;
-    }
-    if (count == 0.0) continue;
-    worst.rms = std::max(worst.rms, std::sqrt(square / count));
-    worst.sigmas = std::max(worst.sigmas, std::sqrt(sigmas / count));
+    square = std::max(square, (whole->displacement() - half->displacement()).squaredNorm());
   }
-  return worst;
+  const double rms = kBasisDoubt * std::sqrt(square / (3.0 * reduced.nodes_in_focus()));
+  return {rms, rms / least_noise(problem.model)};
 }
 
 }  // namespace tissue_stiffness

@@ -39,7 +39,8 @@ constexpr double kConverged = 0.05;         // relative standard deviation
 constexpr double kShiftDoubt = 0.5;         // of the mesh's effect, once it is corrected for
 constexpr std::size_t kFirstBasisLook = 4;  // frames
 constexpr double kBasisShare = 0.1;         // of the noise: what the reduced basis may leave out
-constexpr int kMostGrowths = 6;             // of the basis at once, by half each
+constexpr int kMostGrowths = 4;             // of the basis at once, by half each
+constexpr double kGrowthHelps = 0.9;        // of the error: what a growth leaves, if it is worth another
 constexpr double kInvalidSigmas = 10.0;     // rms error over noise at which the model says nothing about the body
 
 class UnscentedScheme : public Scheme {
@@ -292,12 +293,15 @@ class UnscentedScheme : public Scheme {
     if (reduced == nullptr || frames_.size() < std::max(kFirstBasisLook, 2 * last_basis_look_)) return false;
     last_basis_look_ = frames_.size();
     bool grown = false;
-    for (int k = 0;; ++k) {
+    for (int k = 0; !basis_exhausted_; ++k) {
       const BasisError error = tissue_stiffness::basis_error(*reduced, problem(), filter_.mean());
+      const bool helps = k == 0 || error.rms < kGrowthHelps * *basis_error_;
       basis_error_ = error.rms;
-      if (error.sigmas <= kBasisShare || k == kMostGrowths || !reduced->grow()) break;
-      grown = true;
+      if (error.sigmas <= kBasisShare) break;
+      basis_exhausted_ = k == kMostGrowths || !helps || !reduced->grow();
+      grown = grown || !basis_exhausted_;
     }
+    if (basis_exhausted_) basis_error_ = tissue_stiffness::basis_error(*reduced, problem(), filter_.mean()).rms;
     if (grown) replay(filter_.anchor(), filter_.spread());
     return grown;
   }
@@ -337,6 +341,7 @@ class UnscentedScheme : public Scheme {
   std::size_t last_study_ = 0;
   std::optional<double> basis_error_;  ///< [m]
   std::size_t last_basis_look_ = 0;
+  bool basis_exhausted_ = false;  ///< more vectors do not help
   bool background_ = false;
   std::future<Eigen::VectorXd> study_;  ///< last: its thread uses the members above
 };

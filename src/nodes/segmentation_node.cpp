@@ -3,6 +3,8 @@
 #include <cv_bridge/cv_bridge.h>
 #include <ros/ros.h>
 
+#include <boost/make_shared.hpp>
+
 #include "tissue_stiffness/nodes/message_conversions.hpp"
 #include "tissue_stiffness/nodes/node_keys.hpp"
 #include "tissue_stiffness/nodes/sensor_conversions.hpp"
@@ -96,7 +98,10 @@ void SegmentationNode::on_image(const sensor_msgs::ImageConstPtr& message) {
                        size_of(camera_info_->width, camera_info_->height) + " as in " + camera_info_topic_);
     }
     const Segmentation found = segment(message, image);
-    if (found.found()) contour_publisher_.publish(to_message(found.contour, message->header));
+    // As a pointer: a subscriber in this process gets this very message.
+    if (found.found()) {
+      contour_publisher_.publish(boost::make_shared<ContourMessage>(to_message(found.contour, message->header)));
+    }
     if (overlay_publisher_.getNumSubscribers() == 0) return waiting_.clear();
     waiting_.push_back({message, image, found.contour});
     const bool awaited = predicted_subscriber_.getNumPublishers() > 0 && found.found();

@@ -5,12 +5,12 @@
 
 namespace tissue_stiffness {
 
-/// What a reduced basis leaves out of the predictions, from the basis itself: the run in its earlier half against the run
+/// What a reduced basis leaves out of the motion, from the basis itself: the run in its earlier half against the run
 /// in all of it, times kBasisDoubt. While each half of the vectors takes away a third of the error or more, as
 /// load-dependent Ritz vectors do, the real error is not larger; where they do better it is smaller by as much.
 struct BasisError {
-  double rms = 0.0;     ///< over a frame's rows, of the worst frame [m]
-  double sigmas = 0.0;  ///< the same in standard deviations of the noise
+  double rms = 0.0;     ///< over the coordinates of the nodes in focus, of the worst frame [m]
+  double sigmas = 0.0;  ///< the same in standard deviations of the most precise sensor's noise
 };
 constexpr double kBasisDoubt = 2.0;
 

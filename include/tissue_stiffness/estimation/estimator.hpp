@@ -71,8 +71,8 @@ class Estimator {
   const Prediction& prediction() const;
   /// By parameter name.
   std::map<std::string, Identifiability> identifiability() const;
-  /// What the reduced basis leaves out of the predictions, an upper bound (basis_error.hpp): rms over the worst frame [m].
-  /// None for a model that is integrated in full, and before a few frames.
+  /// What the reduced basis leaves out of the surface's motion, an upper bound (basis_error.hpp): rms of the worst frame
+  /// [m]. None for a model that is integrated in full, and before a few frames.
   std::optional<double> basis_error() const;
   /// What the estimator chose by itself, one line each (engine, time step, basis size, nodes), for logs and reports.
   std::vector<std::string> description() const;

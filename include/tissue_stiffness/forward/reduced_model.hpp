@@ -35,6 +35,7 @@ class ReducedModel : public ForwardModel {
   /// Makes the basis larger by half; false when that adds nothing. Runs started before must not be used any more.
   bool grow();
   void focus(const std::vector<int>& nodes) override;
+  int nodes_in_focus() const { return focus_.empty() ? model_.fem().node_count() : static_cast<int>(focus_.size()); }
   std::string description() const override;
 
   const Model& model() const { return model_; }

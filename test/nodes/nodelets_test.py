@@ -1,0 +1,84 @@
+#!/usr/bin/env python3
+"""Images through the nodelets give what they give through the nodes, and what the nodelets hand on is one process's."""
+import os
+import subprocess
+import sys
+import tempfile
+import threading
+import unittest
+
+import roslib.packages
+import rosgraph
+import rospkg
+import rospy
+import rostest
+
+from tissue_stiffness.msg import StiffnessEstimate
+
+PACKAGE = rospkg.RosPack().get_path('tissue_stiffness')
+SCENES = os.path.join(PACKAGE, 'test', 'report', 'browser')
+MODEL, SCENE = os.path.join(SCENES, 'camera_model.yaml'), os.path.join(SCENES, 'camera_scene.yaml')
+FRAMES = 18  # of the 0.5 s at 40 Hz
+MANAGER = '/tissue_stiffness_manager'
+
+
+class Replay:
+    """A recording replayed into nodes or nodelets: the estimates, and who subscribed to the images."""
+
+    def __init__(self, bag, nodelets):
+        self.estimates, self.enough, self.listeners = [], threading.Event(), set()
+        subscriber = rospy.Subscriber('/stiffness', StiffnessEstimate, self.on_estimate, queue_size=100)
+        launch = subprocess.Popen(
+            ['roslaunch', 'tissue_stiffness', 'replay.launch', 'model:=' + MODEL, 'bag:=' + bag, 'rate:=0.5',
+             'diagnosis_period:=0', 'nodelets:=' + ('true' if nodelets else 'false')],
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+        try:
+            self.enough.wait(90)
+        finally:
+            launch.terminate()
+            self.output = launch.communicate(timeout=30)[0]
+            subscriber.unregister()
+
+    def on_estimate(self, message):
+        if not self.estimates:
+            _, subscribers, _ = rosgraph.Master('/nodelets_test').getSystemState()
+            for topic, nodes in subscribers:
+                if topic in ('/camera/image_raw', '/contour'):
+                    self.listeners.update(nodes)
+        self.estimates.append(message)
+        if len(self.estimates) >= FRAMES:
+            self.enough.set()
+
+
+class NodeletsTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        bag = os.path.join(cls.folder.name, 'camera.bag')
+        simulate = roslib.packages.find_node('tissue_stiffness', 'simulate')[0]
+        subprocess.run([simulate, SCENE, '--output', bag], check=True, timeout=120, stdout=subprocess.PIPE)
+        cls.nodes, cls.nodelets = Replay(bag, False), Replay(bag, True)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def test_the_estimates_are_the_same(self):
+        self.assertGreaterEqual(len(self.nodelets.estimates), FRAMES, self.nodelets.output)
+        nodes = {e.header.stamp: e for e in self.nodes.estimates}
+        nodelets = {e.header.stamp: e for e in self.nodelets.estimates}
+        shared = sorted(set(nodes) & set(nodelets))
+        self.assertGreaterEqual(len(shared), FRAMES - 1)
+        for stamp in shared:
+            self.assertEqual(nodes[stamp].mean, nodelets[stamp].mean, stamp)
+            self.assertEqual(nodes[stamp].covariance, nodelets[stamp].covariance, stamp)
+            self.assertEqual(nodes[stamp].state, nodelets[stamp].state, stamp)
+
+    def test_the_nodelets_are_one_process(self):
+        self.assertEqual(self.nodelets.listeners, {MANAGER})
+        self.assertEqual(self.nodes.listeners, {'/segmentation_node', '/estimator_node'})
+
+
+if __name__ == '__main__':
+    rospy.init_node('nodelets_test', disable_rostime=True)
+    rostest.rosrun('tissue_stiffness', 'nodelets', NodeletsTest, sys.argv)
