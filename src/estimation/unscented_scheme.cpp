@@ -20,28 +20,30 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kFar = 1.0;                // spreads between anchor and estimate that ask for a new anchor
-constexpr double kWide = 6.0;               // posterior standard deviations that the sigma points may span
-constexpr double kNewSpread = 2.0;          // posterior standard deviations that they span after a move
-constexpr double kFloor = 1e-3;             // of the prior's standard deviation: the smallest span
-constexpr double kBent = 0.2;               // of the misfit: nonlinearity over the span that asks for a smaller one
-constexpr double kLongestMove = 3.0;        // spreads that the anchor may move at once
-constexpr int kMostVisits = 6;              // moves of the anchor a frame
-constexpr std::size_t kEarly = 16;          // frames up to which the anchor may move at every frame
-constexpr double kRevisitGrowth = 1.1;      // of the recording between moves of the anchor later
-constexpr double kScanMisfit = 4.0;         // mean square error over sigma that asks for a scan of the parameters
-constexpr int kScanPoints = 25;             // on either side of the prior's mean
-constexpr double kUnexplained = 0.1;        // of the motion's mean square: more, and a free run's fit is badly biased
-constexpr std::size_t kCorrectFrom = 16;    // frames before which a misfit is not taken for missing physics
-constexpr int kVelocityFrames = 4;          // frames that the initial velocity is read from
-constexpr std::size_t kWindow = 4000;       // frames kept for replay; later ones only add information
-constexpr double kConverged = 0.05;         // relative standard deviation
-constexpr double kShiftDoubt = 0.5;         // of the mesh's effect, once it is corrected for
-constexpr std::size_t kFirstBasisLook = 4;  // frames
-constexpr double kBasisShare = 0.1;         // of the noise: what the reduced basis may leave out
-constexpr int kMostGrowths = 4;             // of the basis at once, by half each
-constexpr double kGrowthHelps = 0.9;        // of the error: what a growth leaves, if it is worth another
-constexpr double kInvalidSigmas = 10.0;     // rms error over noise at which the model says nothing about the body
+constexpr double kFar = 1.0;                   // spreads between anchor and estimate that ask for a new anchor
+constexpr double kWide = 6.0;                  // posterior standard deviations that the sigma points may span
+constexpr double kNewSpread = 2.0;             // posterior standard deviations that they span after a move
+constexpr double kFloor = 1e-3;                // of the prior's standard deviation: the smallest span
+constexpr double kBent = 0.2;                  // of the misfit: nonlinearity over the span that asks for a smaller one
+constexpr double kLongestMove = 3.0;           // spreads that the anchor may move at once
+constexpr int kMostVisits = 6;                 // moves of the anchor a frame
+constexpr std::size_t kEarly = 16;             // frames up to which the anchor may move at every frame
+constexpr double kRevisitGrowth = 1.1;         // of the recording between moves of the anchor later
+constexpr double kScanMisfit = 4.0;            // mean square error over sigma that asks for a scan of the parameters
+constexpr int kScanPoints = 25;                // on either side of the prior's mean
+constexpr double kUnexplained = 0.1;           // of the motion's mean square: more, and a free run's fit is badly biased
+constexpr std::size_t kCorrectFrom = 16;       // frames before which a misfit is not taken for missing physics
+constexpr int kVelocityFrames = 4;             // frames that the initial velocity is read from
+constexpr std::size_t kWindow = 4000;          // frames kept for replay; later ones only add information
+constexpr double kConverged = 0.05;            // relative standard deviation
+constexpr double kShiftDoubt = 0.5;            // of the mesh's effect, once it is corrected for
+constexpr std::size_t kFirstBasisLook = 4;     // frames
+constexpr double kBasisShare = 0.1;            // of the noise: what the reduced basis may leave out
+constexpr int kMostGrowths = 4;                // of the basis at once, by half each
+constexpr std::size_t kRehearsed = 30;         // instants before the first frame
+constexpr double kRehearsalStep = 1.0 / 30.0;  // [s]
+constexpr double kGrowthHelps = 0.9;           // of the error: what a growth leaves, if it is worth another
+constexpr double kInvalidSigmas = 10.0;        // rms error over noise at which the model says nothing about the body
 
 class UnscentedScheme : public Scheme {
  public:
@@ -134,7 +136,18 @@ class UnscentedScheme : public Scheme {
   }
 
   void start_if_needed() {
-    if (!ensemble_.started()) restart();
+    if (ensemble_.started()) return;
+    rehearse();
+    restart();
+  }
+
+  // Lets the basis grow before the first frame as far as loads tell that are known by then, so that no later one waits.
+  void rehearse() {
+    std::vector<Frame> instants(kRehearsed);
+    for (std::size_t k = 0; k < instants.size(); ++k) {
+      instants[k].time = start() + kRehearsalStep * static_cast<double>(k + 1);
+    }
+    grow_basis(instants);
   }
 
   void restart() {
@@ -289,20 +302,27 @@ class UnscentedScheme : public Scheme {
   // What the reduced basis leaves out, asked anew whenever the recording has doubled; the basis grows until it is a small
   // part of the noise. True if the runs changed.
   bool study_basis() {
-    auto* reduced = dynamic_cast<ReducedModel*>(forward_.get());
-    if (reduced == nullptr || frames_.size() < std::max(kFirstBasisLook, 2 * last_basis_look_)) return false;
+    if (frames_.size() < std::max(kFirstBasisLook, 2 * last_basis_look_)) return false;
     last_basis_look_ = frames_.size();
+    const bool grown = grow_basis(frames_);
+    if (grown) replay(filter_.anchor(), filter_.spread());
+    return grown;
+  }
+
+  bool grow_basis(const std::vector<Frame>& frames) {
+    auto* reduced = dynamic_cast<ReducedModel*>(forward_.get());
+    if (reduced == nullptr) return false;
+    const FitProblem run{*model_, *forward_, operators_, frames, start()};
     bool grown = false;
     for (int k = 0; !basis_exhausted_; ++k) {
-      const BasisError error = tissue_stiffness::basis_error(*reduced, problem(), filter_.mean());
+      const BasisError error = tissue_stiffness::basis_error(*reduced, run, filter_.mean());
       const bool helps = k == 0 || error.rms < kGrowthHelps * *basis_error_;
       basis_error_ = error.rms;
       if (error.sigmas <= kBasisShare) break;
       basis_exhausted_ = k == kMostGrowths || !helps || !reduced->grow();
       grown = grown || !basis_exhausted_;
     }
-    if (basis_exhausted_) basis_error_ = tissue_stiffness::basis_error(*reduced, problem(), filter_.mean()).rms;
-    if (grown) replay(filter_.anchor(), filter_.spread());
+    if (basis_exhausted_) basis_error_ = tissue_stiffness::basis_error(*reduced, run, filter_.mean()).rms;
     return grown;
   }
 
