@@ -19,9 +19,10 @@ TARGETS = (
 MARK = re.compile(r'(<!-- measured: (\w+) -->\n).*?(<!-- end -->)', re.S)
 
 
-def run_benchmark(program):
+def run_benchmark(program, choice):
     with tempfile.NamedTemporaryFile(suffix='.json') as out:
-        subprocess.run([program, '--benchmark_out=' + out.name, '--benchmark_out_format=json'], check=True)
+        subprocess.run([program, '--benchmark_out=' + out.name, '--benchmark_out_format=json',
+                        '--benchmark_filter=bandwidth|' + choice], check=True)
         runs = json.load(out)['benchmarks']
     for run in runs:
         if run.get('error_occurred'):
@@ -66,6 +67,8 @@ def cost_table(runs, law):
 def peer_table(runs, peers):
     rows = []
     for nodes, peer in peers.items():
+        if ('linear', str(nodes)) not in runs:
+            continue
         ours, theirs = runs[('linear', str(nodes))]['median_ms'], 1e3 * peer['seconds_per_frame']
         rows.append([f'{nodes:,}', digits(theirs), digits(ours), f'{theirs / ours:,.0f}'])
     return table(['nodes', 'peer [ms a frame]', 'ours [ms a frame]', 'ratio'], rows)
@@ -87,6 +90,8 @@ def limit_table(runs):
 def target_table(runs):
     rows = []
     for law, nodes, counter, bound, unit in TARGETS:
+        if (law, str(nodes)) not in runs:
+            continue
         value = runs[(law, str(nodes))][counter]
         rows.append([law.replace('_', '-'), f'{nodes:,}', f'{bound:.3g} {unit}', digits(value),
                      'yes' if value < bound else 'NO'])
@@ -96,7 +101,9 @@ def target_table(runs):
 def machine():
     with open('/proc/cpuinfo') as file:
         name = re.search(r'model name\s*:\s*(.*)', file.read()).group(1)
-    return f'{os.cpu_count()} cores of {name}.\n'
+    load = os.getloadavg()[0]
+    busy = f' Others kept it busy: load {load:.1f} at the start.' if load > 1.0 else ''
+    return f'{os.cpu_count()} cores of {name}.{busy}\n'
 
 
 def write(path, tables):
@@ -112,10 +119,12 @@ def main():
     parser.add_argument('root')
     parser.add_argument('program')
     parser.add_argument('--output', help='the page whose tables are written; doc/performance.md')
+    parser.add_argument('--filter', default='.', help='regular expression: benchmarks to run, as neo_hookean/5577')
     arguments = parser.parse_args()
-    runs = run_benchmark(arguments.program)
+    about = machine()
+    runs = run_benchmark(arguments.program, arguments.filter)
     peers = run_peer(arguments.program, arguments.root)
-    tables = {'machine': machine(), 'targets': target_table(runs), 'linear': cost_table(runs, 'linear'),
+    tables = {'machine': about, 'targets': target_table(runs), 'linear': cost_table(runs, 'linear'),
               'neo_hookean': cost_table(runs, 'neo_hookean'), 'peer': peer_table(runs, peers),
               'limit': limit_table(runs)}
     for text in tables.values():
