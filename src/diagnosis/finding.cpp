@@ -102,6 +102,11 @@ class Look {
   MissingEffect describe(const Ranked& r) const;
   bool leaves_more_than_noise() const { return refits_.empty() || refits_.front().cost > kExplained * kExplained * rows_; }
   bool noise() const { return cost_ < kAdequate * kAdequate * rows_; }
+  bool explained() const {
+    if (refits_.empty()) return false;
+    const double left = refits_.front().cost - rows_;
+    return left < (1.0 - kExplains) * structured() || left < floor_ * floor_ * rows_;
+  }
   double structured() const { return std::max(0.0, cost_ - rows_); }
 
   const Fitted& base_;
@@ -213,11 +218,14 @@ void Look::drop_worse_ways() {
   }
 }
 
-// Where phases have drifted apart a tangent says little: what it leaves unexplained may still be a single effect's.
+// Where phases have drifted apart a tangent says little: what it leaves unexplained may still be a single effect's, of any
+// effect's while most of it is.
 void Look::refit_rest() {
   std::vector<std::vector<Addition>> list;
+  const bool any = !explained();
   for (const Ranked& r : ranked_) {
-    if (r.best->linear && r.evidence > kSameEvidence && !refitted(r.effect)) list.push_back({{r.best, r.score.amplitude}});
+    const bool worth = any || r.evidence > kSameEvidence;
+    if (r.best->linear && worth && !refitted(r.effect)) list.push_back({{r.best, r.score.amplitude}});
   }
   refit_all(list);
 }
@@ -254,9 +262,7 @@ std::string Look::judge() const {
   if (noise() && (!gained || by_mesh_ > 0.5 * (cost_ - refits_.front().cost))) return "adequate";
   if (by_mesh_ > kExplains * structured()) return "numerics";
   if (!gained) return "unexplained";
-  const double left = refits_.front().cost - rows_;
-  const bool explains = left < (1.0 - kExplains) * structured() || left < floor_ * floor_ * rows_;
-  return explains ? "missing" : "unexplained";
+  return explained() ? "missing" : "unexplained";
 }
 
 std::vector<std::string> Look::set() const {
