@@ -1,4 +1,6 @@
 #include <fstream>
+#include <functional>
+#include <iostream>
 #include <iterator>
 #include <string>
 
@@ -13,6 +15,7 @@
 #include "tissue_stiffness/tools/recording_reader.hpp"
 #include "tissue_stiffness/tools/run_tool.hpp"
 #include "tissue_stiffness/tools/versions.hpp"
+#include "tissue_stiffness/types/error.hpp"
 
 namespace {
 
@@ -41,6 +44,15 @@ Estimate estimate_at_last(const ModelSettings& settings, const TetMesh& mesh, co
   return estimator.estimate();
 }
 
+/// What was found is kept where a last run of it fails, as with a prior that reaches into the impossible.
+void try_run(const std::string& what, const std::function<void()>& run) {
+  try {
+    run();
+  } catch (const NumericalError& error) {
+    std::cerr << "diagnose: " << what << " could not be run for the report: " << error.what() << "\n";
+  }
+}
+
 /// The given model's free run and, where effects were added, the last one's.
 Showing show(const ModelSettings& settings, const RecordingReader& reader, const Recording& recording,
              const Diagnosis& diagnosis) {
@@ -50,9 +62,11 @@ Showing show(const ModelSettings& settings, const RecordingReader& reader, const
   out.replays.push_back(replay_model(settings, reader.mesh(), recording, diagnosis.steps.front().parameters, stamps));
   out.replays.back().name = "as given";
   if (diagnosis.entries.empty()) return out;
-  const ModelSettings extended = last_model(settings, diagnosis);
-  out.replays.push_back(replay_model(extended, reader.mesh(), recording, diagnosis.steps.back().parameters, stamps));
-  out.replays.back().name = "with " + effect_list(diagnosis.final_effects);
+  try_run("the extended model", [&] {
+    const ModelSettings extended = last_model(settings, diagnosis);
+    out.replays.push_back(replay_model(extended, reader.mesh(), recording, diagnosis.steps.back().parameters, stamps));
+    out.replays.back().name = "with " + effect_list(diagnosis.final_effects);
+  });
   return out;
 }
 
@@ -87,7 +101,7 @@ int main(int argc, char** argv) {
     texts.next_model_text = extend_model(texts.model_text, diagnosis.entries, settings.directory);
     texts.versions = versions();
     say("run the models once more for the report");
-    diagnosis.estimate = estimate_at_last(settings, reader.mesh(), recording, diagnosis);
+    try_run("the estimator", [&] { diagnosis.estimate = estimate_at_last(settings, reader.mesh(), recording, diagnosis); });
     write_diagnosis(diagnosis, texts, show(settings, reader, recording, diagnosis), output);
     progress.finish();
     if (json) {
