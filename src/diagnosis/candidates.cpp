@@ -164,7 +164,7 @@ Eigen::MatrixXd base_tangents(const Study& base, const Eigen::VectorXd& w, const
     Eigen::VectorXd up = w, down = w;
     up[i] += step;
     down[i] -= step;
-    out.col(i) = rows.used.cwiseProduct(base.quick_rows(up).predicted - base.quick_rows(down).predicted) / (2.0 * step);
+    out.col(i) = rows.used.cwiseProduct(base.rows(up).predicted - base.rows(down).predicted) / (2.0 * step);
   });
   return out;
 }

@@ -18,11 +18,10 @@ constexpr double kAddedSpread = 0.02;  // and of a model's that starts from a re
 
 Fitted fit_model(const ModelSettings& settings, const TetMesh& mesh, const Recording& recording) {
   Fitted out;
-  out.settings = settings;
   out.study = std::make_unique<Study>(settings, mesh, recording);
   const Eigen::VectorXd start = out.study->scan(out.study->model().prior_mean());
-  out.fit = out.study->fit(start, kBaseSpread * out.study->model().prior_std(), false);
-  out.rows = out.study->quick_rows(out.fit.w);
+  out.fit = out.study->fit(start, kBaseSpread * out.study->model().prior_std());
+  out.rows = out.study->rows(out.fit.w);
   return out;
 }
 
@@ -30,15 +29,15 @@ Fitted fit_model(const ModelSettings& settings, const TetMesh& mesh, const Recor
 Fitted extended(const Fitted& base, const Refit& refit, const TetMesh& mesh, const Recording& recording) {
   if (refit.model) return std::move(*refit.model);
   Fitted out;
-  out.settings = base.settings;
-  for (const std::string& entry : refit.entries) add_effect(out.settings, entry);
-  out.study = std::make_unique<Study>(out.settings, mesh, recording);
+  ModelSettings settings = base.study->model().settings();
+  for (const std::string& entry : refit.entries) add_effect(settings, entry);
+  out.study = std::make_unique<Study>(settings, mesh, recording);
   Eigen::VectorXd start = out.study->model().prior_mean();
   for (const auto& [name, value] : refit.parameters) {
     const Eigen::Index i = out.study->index(name);
     if (i >= 0) start[i] = out.study->model().free_parameters()[static_cast<std::size_t>(i)].to_coordinate(value);
   }
-  out.fit = out.study->fit(start, kAddedSpread * out.study->model().prior_std(), false);
+  out.fit = out.study->fit(start, kAddedSpread * out.study->model().prior_std());
   out.rows = out.study->rows(out.fit.w);
   return out;
 }
@@ -58,15 +57,14 @@ DiagnosisStep step_of(const Fitted& model, const Recording& recording, const std
 
 // Exactly the noise that the model file states, to what the least effect would add: there is nothing left to look for.
 bool is_noise(const Study::Rows& rows) {
-  const double count = static_cast<double>((rows.used.array() > 0.0).count());
-  return std::abs(rows.error.squaredNorm() / count - 1.0) < kLeastExcess;
+  return std::abs(rows.error.squaredNorm() / rows.count() - 1.0) < kLeastExcess;
 }
 
 void describe_residual(const Fitted& model, double floor, Diagnosis& out) {
   out.where = where_it_fails(*model.study, model.rows);
   out.when = when_it_fails(*model.study, model.rows);
   out.residual = residual_views(*model.study, model.rows);
-  const double count = static_cast<double>((model.rows.used.array() > 0.0).count());
+  const double count = model.rows.count();
   const double sigma = noise_floor(model.rows);
   out.sigmas = {std::sqrt(model.rows.error.squaredNorm() / count), 1.0, floor, 0.0};
   out.sigmas.structured = std::sqrt(std::max(0.0, out.sigmas.total * out.sigmas.total - 1.0));

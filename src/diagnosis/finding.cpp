@@ -1,6 +1,5 @@
 #include "tissue_stiffness/diagnosis/finding.hpp"
 
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 
@@ -30,10 +29,6 @@ constexpr double kPromise = 0.2;        // of the structured part
 constexpr double kExplains = 0.8;       // of the structured part: less is no explanation
 constexpr double kHeldOutGain = 0.995;  // of the held-out rms: what an accepted effect must fall below
 
-double rows_used(const Study::Rows& rows) {
-  return static_cast<double>((rows.used.array() > 0.0).count());
-}
-
 // Evidence of a refit after Schwarz, errors counted as large as the best refit leaves them.
 double evidence(const Refit& refit, double rows, double variance) {
   return -0.5 * refit.cost / variance - 0.5 * refit.added_parameters * std::log(rows);
@@ -43,7 +38,7 @@ double evidence(const Refit& refit, double rows, double variance) {
 class Look {
  public:
   Look(const Fitted& base, const DiagnosisOptions& options)
-      : base_(base), options_(options), rows_(rows_used(base.rows)), cost_(base.rows.error.squaredNorm()) {
+      : base_(base), options_(options), rows_(base.rows.count()), cost_(base.rows.error.squaredNorm()) {
     options.progress("tangents of the library, and what a finer mesh would change");
     const Eigen::VectorXd std = base.fit.covariance.diagonal().cwiseSqrt();
     Eigen::MatrixXd known;
@@ -128,29 +123,28 @@ void Look::require_proposed(const std::vector<std::string>& wanted) const {
   }
 }
 
+std::string names_of(const std::vector<Addition>& additions) {
+  std::string names;
+  for (const Addition& a : additions) names += (names.empty() ? "" : " and ") + a.way->effect;
+  return names;
+}
+
 // Each on a core of its own.
 void Look::refit_all(const std::vector<std::vector<Addition>>& list) {
   std::vector<std::optional<Refit>> done(list.size());
   std::mutex telling;
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, list.size(), 1),
-      [&](const tbb::blocked_range<std::size_t>& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
-          std::string names;
-          for (const Addition& a : list[i]) names += (names.empty() ? "" : " and ") + a.way->effect;
-          {
-            const std::lock_guard<std::mutex> lock(telling);
-            options_.progress("refit with " + names);
-          }
-          try {
-            done[i] = refit(base_, list[i]);
-          } catch (const NumericalError&) {
-            base_.study->recording()
-                .checkpoint();  // a study that was ended; else a model that cannot be run explains nothing
-          }
-        }
-      },
-      tbb::simple_partitioner());
+  const auto try_one = [&](std::size_t i) {
+    {
+      const std::lock_guard<std::mutex> lock(telling);
+      options_.progress("refit with " + names_of(list[i]));
+    }
+    try {
+      done[i] = refit(base_, list[i]);
+    } catch (const NumericalError&) {
+      base_.study->recording().checkpoint();  // a study that was ended; else a model that cannot be run explains nothing
+    }
+  };
+  tbb::parallel_for(std::size_t{0}, list.size(), try_one, tbb::simple_partitioner());
   for (std::optional<Refit>& refit : done) {
     if (refit) refits_.push_back(std::move(*refit));
   }

@@ -20,7 +20,7 @@ FinerMesh finer_mesh(const Fitted& base) {
   }
   const TetMesh mesh = finer(model.mesh());
   const Study fine(model.settings(), mesh, refine(model.regions(), model.mesh(), mesh), base.study->recording());
-  const BatchFit fit = fine.fit(base.fit.w, kSpread * model.prior_std(), false);
+  const BatchFit fit = fine.fit(base.fit.w, kSpread * model.prior_std());
   const Study::Rows rows = fine.rows(fit.w);
   if (rows.predicted.size() != base.rows.predicted.size()) return out;
   out.change = base.rows.used.cwiseProduct(rows.predicted - base.rows.predicted);

@@ -126,7 +126,7 @@ std::optional<Start> quick_start(const Study& study, const Study& base, const st
 }
 
 double structured(const Study::Rows& rows) {
-  return rows.error.squaredNorm() - static_cast<double>((rows.used.array() > 0.0).count());
+  return rows.error.squaredNorm() - rows.count();
 }
 
 }  // namespace
@@ -134,20 +134,20 @@ double structured(const Study::Rows& rows) {
 Refit refit(const Fitted& base, const std::vector<Addition>& additions) {
   const Study& known = *base.study;
   auto model = std::make_shared<Fitted>();
-  model->settings = known.model().settings();
-  for (const Addition& addition : additions) add_effect(model->settings, addition.way->proposal.refine);
-  model->study = std::make_unique<Study>(model->settings, known.model().mesh(), known.recording());
+  ModelSettings settings = known.model().settings();
+  for (const Addition& addition : additions) add_effect(settings, addition.way->proposal.refine);
+  model->study = std::make_unique<Study>(settings, known.model().mesh(), known.recording());
   const Study& study = *model->study;
   model->study->borrow(known);
   std::string reason;
   std::optional<Start> start = quick_start(study, known, starts(study, known, base.fit.w, additions), reason);
   if (!start) throw NumericalError(additions.front().way->effect + " cannot be refitted: " + reason);
-  Study::Rows& rows = model->rows = study.quick_rows(start->fit.w);
+  Study::Rows& rows = model->rows = study.rows(start->fit.w);
   const double gain = base.rows.error.squaredNorm() - rows.error.squaredNorm();
   const bool only_quick = known.model().nonlinear() && gain < kPromise * structured(base.rows);
   if (study.model().nonlinear() && !only_quick) {
-    start->fit = study.fit(start->fit.w, start->spread, false);
-    rows = study.quick_rows(start->fit.w);  // the last full run was at just this place
+    start->fit = study.fit(start->fit.w, start->spread);
+    rows = study.rows(start->fit.w);  // the last full run was at just this place
   }
   model->fit = start->fit;
   Refit out;

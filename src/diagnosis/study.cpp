@@ -76,16 +76,8 @@ FitProblem Study::problem(const ForwardModel& forward, const std::vector<Frame>&
 }
 
 Study::Rows Study::rows(const Eigen::VectorXd& w) const {
-  return rows_of(*forward_, w);
-}
-
-Study::Rows Study::quick_rows(const Eigen::VectorXd& w) const {
-  return rows_of(quick(), w);
-}
-
-Study::Rows Study::rows_of(const ForwardModel& forward, const Eigen::VectorXd& w) const {
-  const FitProblem all = problem(forward, recording_.frames);
-  Ensemble run(model_, forward, operators_);
+  const FitProblem all = problem(quick(), recording_.frames);
+  Ensemble run(model_, quick(), operators_);
   run.restart(w, all.start);
   std::vector<Prediction> predictions;
   Rows out;
@@ -115,9 +107,8 @@ Study::Rows Study::rows_of(const ForwardModel& forward, const Eigen::VectorXd& w
   return out;
 }
 
-BatchFit Study::fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread, bool all_frames) const {
-  const std::vector<Frame>& frames = all_frames ? recording_.frames : training_;
-  return quick_ ? fit_from_run_to_run(frames, start, spread) : fit_batch(problem(*forward_, frames), start, spread);
+BatchFit Study::fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread) const {
+  return quick_ ? fit_from_run_to_run(start, spread) : quick_fit(start, spread);
 }
 
 BatchFit Study::quick_fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread) const {
@@ -125,8 +116,8 @@ BatchFit Study::quick_fit(const Eigen::VectorXd& start, const Eigen::VectorXd& s
 }
 
 // Every full run says by how much quick ones are off there; a fit that allows for it says where the next one has to be.
-BatchFit Study::fit_from_run_to_run(const std::vector<Frame>& frames, Eigen::VectorXd at, Eigen::VectorXd spread) const {
-  const double start = problem(*forward_, frames).start;
+BatchFit Study::fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd spread) const {
+  const double start = problem(*forward_, training_).start;
   std::vector<double> times;
   for (const Frame& frame : recording_.frames) times.push_back(frame.time);
   const auto run = [&](const Eigen::VectorXd& w) {
@@ -135,10 +126,10 @@ BatchFit Study::fit_from_run_to_run(const std::vector<Frame>& frames, Eigen::Vec
     return runs;
   };
   anchored_ = run(at);
-  double cost = free_fit(problem(*anchored_, frames), at).cost;
+  double cost = free_fit(problem(*anchored_, training_), at).cost;
   BatchFit fit;
   for (int k = 0; k < kMostRuns; ++k) {
-    fit = fit_batch(problem(*anchored_, frames), at, spread);
+    fit = fit_batch(problem(*anchored_, training_), at, spread);
     const Eigen::VectorXd std = fit.covariance.diagonal().cwiseSqrt();
     Eigen::VectorXd move = fit.w - at;
     const bool settled = (move.array().abs() < kSettled * std.array()).all();
@@ -146,7 +137,7 @@ BatchFit Study::fit_from_run_to_run(const std::vector<Frame>& frames, Eigen::Vec
     double gain = 0.0;
     for (int cut = 0; cut < kMostCuts && !(gain > 0.0); ++cut, move *= 0.3) {
       auto there = run(at + move);
-      const double now = free_fit(problem(*there, frames), at + move).cost;
+      const double now = free_fit(problem(*there, training_), at + move).cost;
       gain = cost - now;
       if (!(gain > 0.0)) continue;
       at += move;
@@ -220,7 +211,7 @@ double rms_sigmas(const Study::Rows& rows, const Recording& recording, bool held
 }
 
 double noise_floor(const Study::Rows& rows) {
-  return std::sqrt(rows.sigma.squaredNorm() / static_cast<double>((rows.used.array() > 0.0).count()));
+  return std::sqrt(rows.sigma.squaredNorm() / rows.count());
 }
 
 }  // namespace tissue_stiffness

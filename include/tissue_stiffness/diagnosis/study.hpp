@@ -35,13 +35,15 @@ class Study {
     Eigen::VectorXd sigma;              ///< [m]
     Eigen::VectorXi nodes;              ///< nearest mesh node
     std::vector<Eigen::Index> offsets;  ///< first row of each frame, and the number of rows at the end
+
+    /// Of the rows that say something.
+    double count() const { return static_cast<double>((used.array() > 0.0).count()); }
   };
-  /// The free run at w.
+  /// The free run at w. Of a nonlinear model it is off by as much as quick runs were at the last full run of a fit, here or
+  /// in the study that was borrowed from.
   Rows rows(const Eigen::VectorXd& w) const;
-  /// The same without a full run: off by as much as at the last fit, or at that of the study that was borrowed from.
-  Rows quick_rows(const Eigen::VectorXd& w) const;
-  /// Fits the training frames, or all of them.
-  BatchFit fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread, bool all_frames) const;
+  /// Fits the training frames.
+  BatchFit fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread) const;
   /// The same without full runs.
   BatchFit quick_fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread) const;
   /// Lets quick runs be off by as much as those of a fitted model with fewer effects.
@@ -58,8 +60,7 @@ class Study {
 
  private:
   FitProblem problem(const ForwardModel& forward, const std::vector<Frame>& frames) const;
-  Rows rows_of(const ForwardModel& forward, const Eigen::VectorXd& w) const;
-  BatchFit fit_from_run_to_run(const std::vector<Frame>& frames, Eigen::VectorXd at, Eigen::VectorXd spread) const;
+  BatchFit fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd spread) const;
   const ForwardModel& quick() const { return anchored_ ? *anchored_ : quick_ ? *quick_ : *forward_; }
 
   const Recording& recording_;
@@ -73,7 +74,6 @@ class Study {
 
 /// A model, its fit to the training frames, and the free run there.
 struct Fitted {
-  ModelSettings settings;
   std::unique_ptr<Study> study;
   BatchFit fit;
   Study::Rows rows;
