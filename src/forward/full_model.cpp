@@ -54,9 +54,7 @@ class FullTrajectories : public Trajectories {
     for (std::size_t i = 0; i < states_.size(); ++i) out.col(static_cast<Eigen::Index>(i)) = states_[i].displacement;
   }
   Eigen::VectorXd combined(const Eigen::VectorXd& weights) const override {
-    Eigen::VectorXd sum = weights[0] * states_.front().displacement;
-    for (std::size_t i = 1; i < states_.size(); ++i) sum += weights[static_cast<Eigen::Index>(i)] * states_[i].displacement;
-    return sum;
+    return weighted_sum(weights, [this](std::size_t i) -> const Eigen::VectorXd& { return states_[i].displacement; });
   }
   const DynamicState& state(std::size_t i) const { return states_[i]; }
 

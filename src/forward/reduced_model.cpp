@@ -6,7 +6,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
-#include "tissue_stiffness/forward/for_each_index.hpp"
 #include "tissue_stiffness/forward/reduced_trajectory.hpp"
 
 namespace tissue_stiffness {
@@ -246,9 +245,7 @@ std::unique_ptr<Trajectory> ReducedModel::start_in_half(const Eigen::VectorXd& t
 }
 
 std::unique_ptr<Trajectories> ReducedModel::start_all(const std::vector<Eigen::VectorXd>& thetas, double start) const {
-  std::vector<std::unique_ptr<Trajectory>> runs(thetas.size());
-  for_each_index(thetas.size(), [&](std::size_t i) { runs[i] = this->start(thetas[i], start); });
-  return std::make_unique<ReducedTrajectories>(*this, std::move(runs));
+  return std::make_unique<ReducedTrajectories>(*this, start_each(thetas, start));
 }
 
 void ReducedModel::focus(const std::vector<int>& nodes) {

@@ -3,10 +3,15 @@
 
 namespace tissue_stiffness {
 
-std::unique_ptr<Trajectories> ForwardModel::start_all(const std::vector<Eigen::VectorXd>& thetas, double start) const {
+std::vector<std::unique_ptr<Trajectory>> ForwardModel::start_each(const std::vector<Eigen::VectorXd>& thetas,
+                                                                  double start) const {
   std::vector<std::unique_ptr<Trajectory>> runs(thetas.size());
   for_each_index(thetas.size(), [&](std::size_t i) { runs[i] = this->start(thetas[i], start); });
-  return std::make_unique<SeparateTrajectories>(std::move(runs));
+  return runs;
+}
+
+std::unique_ptr<Trajectories> ForwardModel::start_all(const std::vector<Eigen::VectorXd>& thetas, double start) const {
+  return std::make_unique<SeparateTrajectories>(start_each(thetas, start));
 }
 
 void SeparateTrajectories::advance(const std::vector<double>& times) {
@@ -18,9 +23,7 @@ void SeparateTrajectories::displacements(Eigen::MatrixXd& out) const {
 }
 
 Eigen::VectorXd SeparateTrajectories::combined(const Eigen::VectorXd& weights) const {
-  Eigen::VectorXd sum = weights[0] * runs_.front()->displacement();
-  for (std::size_t i = 1; i < runs_.size(); ++i) sum += weights[static_cast<Eigen::Index>(i)] * runs_[i]->displacement();
-  return sum;
+  return weighted_sum(weights, [this](std::size_t i) { return runs_[i]->displacement(); });
 }
 
 }  // namespace tissue_stiffness

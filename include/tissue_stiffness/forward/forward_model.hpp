@@ -38,6 +38,14 @@ class Trajectories {
   virtual Eigen::VectorXd combined(const Eigen::VectorXd& weights) const = 0;
 };
 
+/// sum_i weights[i] displacement(i).
+template <typename Displacement>
+Eigen::VectorXd weighted_sum(const Eigen::VectorXd& weights, const Displacement& displacement) {
+  Eigen::VectorXd sum = weights[0] * displacement(std::size_t{0});
+  for (Eigen::Index i = 1; i < weights.size(); ++i) sum += weights[i] * displacement(static_cast<std::size_t>(i));
+  return sum;
+}
+
 /// Free runs that share nothing but the cores.
 class SeparateTrajectories : public Trajectories {
  public:
@@ -64,6 +72,9 @@ class ForwardModel {
   virtual void focus(const std::vector<int>&) {}
   /// What it is, in one line.
   virtual std::string description() const = 0;
+
+ protected:
+  std::vector<std::unique_ptr<Trajectory>> start_each(const std::vector<Eigen::VectorXd>& thetas, double start) const;
 };
 
 struct BasisOptions;
