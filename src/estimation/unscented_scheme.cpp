@@ -314,16 +314,15 @@ class UnscentedScheme : public Scheme {
     if (reduced == nullptr) return false;
     const FitProblem run{*model_, *forward_, operators_, frames, start()};
     bool grown = false;
-    for (int k = 0; !basis_exhausted_; ++k) {
+    for (int k = 0;; ++k) {
       const BasisError error = tissue_stiffness::basis_error(*reduced, run, filter_.mean());
       const bool helps = k == 0 || error.rms < kGrowthHelps * *basis_error_;
       basis_error_ = error.rms;
-      if (error.sigmas <= kBasisShare) break;
+      if (basis_exhausted_ || error.sigmas <= kBasisShare) return grown;
       basis_exhausted_ = k == kMostGrowths || !helps || !reduced->grow();
-      grown = grown || !basis_exhausted_;
+      if (basis_exhausted_) return grown;
+      grown = true;
     }
-    if (basis_exhausted_) basis_error_ = tissue_stiffness::basis_error(*reduced, run, filter_.mean()).rms;
-    return grown;
   }
 
   // What the mesh does to the estimate, asked anew whenever the recording has doubled; in the background when a node runs.
