@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <set>
+#include <string>
+#include <vector>
 
 namespace tissue_stiffness {
 namespace {
@@ -74,6 +76,30 @@ std::vector<std::array<int, 3>> triangles(Eigen::Index facet_nodes) {
   return {{0, 1, 2}};
 }
 
+/// Of float fields and one integer field after them, `count` points.
+sensor_msgs::PointCloud2 empty_cloud(const std_msgs::Header& header, const std::vector<std::string>& reals,
+                                     const std::string& integer, std::size_t count) {
+  sensor_msgs::PointCloud2 cloud;
+  cloud.header = header;
+  cloud.height = 1;
+  cloud.width = static_cast<std::uint32_t>(count);
+  cloud.is_dense = 1;
+  const auto add = [&](const std::string& name, std::uint8_t type) {
+    sensor_msgs::PointField field;
+    field.name = name;
+    field.offset = cloud.point_step;
+    field.datatype = type;
+    field.count = 1;
+    cloud.fields.push_back(field);
+    cloud.point_step += 4;
+  };
+  for (const std::string& name : reals) add(name, sensor_msgs::PointField::FLOAT32);
+  add(integer, sensor_msgs::PointField::INT32);
+  cloud.row_step = cloud.point_step * cloud.width;
+  cloud.data.resize(cloud.row_step);
+  return cloud;
+}
+
 double at(const Eigen::VectorXd& values, int node) {
   return node < values.size() ? values[node] : std::numeric_limits<double>::quiet_NaN();
 }
@@ -115,15 +141,8 @@ visualization_msgs::Marker surface_marker(const TetMesh& mesh, const Eigen::Matr
 sensor_msgs::PointCloud2 surface_cloud(const TetMesh& mesh, const Eigen::Matrix3Xd& displacement, const Misfit& misfit,
                                        const std_msgs::Header& header) {
   const std::set<int> surface(mesh.facets.data(), mesh.facets.data() + mesh.facets.size());
-  sensor_msgs::PointCloud2 cloud;
-  cloud.header = header;
-  cloud.height = 1;
-  cloud.is_dense = 1;
-  sensor_msgs::PointCloud2Modifier modifier(cloud);
-  constexpr auto real = sensor_msgs::PointField::FLOAT32;
-  modifier.setPointCloud2Fields(9, "x", 1, real, "y", 1, real, "z", 1, real, "dx", 1, real, "dy", 1, real, "dz", 1, real,
-                                "misfit", 1, real, "misfit_sigma", 1, real, "vertex", 1, sensor_msgs::PointField::INT32);
-  modifier.resize(surface.size());
+  sensor_msgs::PointCloud2 cloud =
+      empty_cloud(header, {"x", "y", "z", "dx", "dy", "dz", "misfit", "misfit_sigma"}, "vertex", surface.size());
   sensor_msgs::PointCloud2Iterator<float> value(cloud, "x");
   sensor_msgs::PointCloud2Iterator<std::int32_t> vertex(cloud, "vertex");
   for (const int node : surface) {
@@ -145,14 +164,7 @@ sensor_msgs::PointCloud2 surface_cloud(const TetMesh& mesh, const Eigen::Matrix3
 sensor_msgs::PointCloud2 measured_cloud(const Frame& frame, const std_msgs::Header& header) {
   std::size_t count = 0;
   for (const Observation& seen : frame.observations) count += static_cast<std::size_t>(seen.points.cols());
-  sensor_msgs::PointCloud2 cloud;
-  cloud.header = header;
-  cloud.height = 1;
-  cloud.is_dense = 1;
-  sensor_msgs::PointCloud2Modifier modifier(cloud);
-  constexpr auto real = sensor_msgs::PointField::FLOAT32;
-  modifier.setPointCloud2Fields(4, "x", 1, real, "y", 1, real, "z", 1, real, "source", 1, sensor_msgs::PointField::INT32);
-  modifier.resize(count);
+  sensor_msgs::PointCloud2 cloud = empty_cloud(header, {"x", "y", "z"}, "source", count);
   sensor_msgs::PointCloud2Iterator<float> value(cloud, "x");
   sensor_msgs::PointCloud2Iterator<std::int32_t> source(cloud, "source");
   for (const Observation& seen : frame.observations) {

@@ -77,50 +77,37 @@ ServiceCalls::Answer ServiceCalls::with_added(const ros::NodeHandle& node, Answe
   return answer;
 }
 
-void ServiceCalls::diagnose(const ros::NodeHandle& node, Done done) {
+template <typename Service>
+void ServiceCalls::call(const ros::NodeHandle& node, const std::string& name, Service service, bool changes_model,
+                        Done done) {
   enqueue(
-      [=] {
-        Diagnose service;
-        const Answer answer = ask(node, "diagnose", service);
+      [this, node, name, service, changes_model]() mutable {
+        const Answer answer = ask(node, name, service);
         if (!answer.success) return answer;
-        return Answer{service.response.success != 0, service.response.message, {}, false};
+        Answer said{service.response.success != 0, service.response.message, {}, false};
+        return changes_model ? with_added(node, std::move(said)) : said;
       },
       std::move(done));
+}
+
+void ServiceCalls::diagnose(const ros::NodeHandle& node, Done done) {
+  call(node, "diagnose", Diagnose(), false, std::move(done));
 }
 
 void ServiceCalls::add_effect(const ros::NodeHandle& node, const std::string& effect, Done done) {
-  enqueue(
-      [=] {
-        AddEffect service;
-        service.request.effect = effect;
-        const Answer answer = ask(node, "add_effect", service);
-        if (!answer.success) return answer;
-        return with_added(node, {service.response.success != 0, service.response.message, {}, false});
-      },
-      std::move(done));
+  AddEffect service;
+  service.request.effect = effect;
+  call(node, "add_effect", service, true, std::move(done));
 }
 
 void ServiceCalls::remove_effect(const ros::NodeHandle& node, const std::string& effect, Done done) {
-  enqueue(
-      [=] {
-        RemoveEffect service;
-        service.request.effect = effect;
-        const Answer answer = ask(node, "remove_effect", service);
-        if (!answer.success) return answer;
-        return with_added(node, {service.response.success != 0, service.response.message, {}, false});
-      },
-      std::move(done));
+  RemoveEffect service;
+  service.request.effect = effect;
+  call(node, "remove_effect", service, true, std::move(done));
 }
 
 void ServiceCalls::reset(const ros::NodeHandle& node, Done done) {
-  enqueue(
-      [=] {
-        std_srvs::Trigger service;
-        const Answer answer = ask(node, "reset", service);
-        if (!answer.success) return answer;
-        return Answer{service.response.success != 0, service.response.message, {}, false};
-      },
-      std::move(done));
+  call(node, "reset", std_srvs::Trigger(), false, std::move(done));
 }
 
 void ServiceCalls::list_effects(const ros::NodeHandle& node, Done done) {

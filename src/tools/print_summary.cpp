@@ -17,10 +17,15 @@ double quantile(std::vector<double> values, double p) {
 }
 
 template <typename... Arguments>
-void print_line(std::ostream& out, const char* format, Arguments... arguments) {
+std::string formatted(const char* format, Arguments... arguments) {
   char line[256];
   std::snprintf(line, sizeof line, format, arguments...);
-  out << line << "\n";
+  return line;
+}
+
+template <typename... Arguments>
+void print_line(std::ostream& out, const char* format, Arguments... arguments) {
+  out << formatted(format, arguments...) << "\n";
 }
 
 std::string painted(EstimateState state, const Paint& paint) {
@@ -31,10 +36,9 @@ std::string painted(EstimateState state, const Paint& paint) {
 }
 
 void print_parameters(const Results& results, const Paint& paint, std::ostream& out) {
-  char head[128];
-  std::snprintf(head, sizeof head, "%-32s %12s  %-28s %-5s %s", "parameter", "estimate", "95 % interval", "unit",
-                "identifiable");
-  out << paint.bold(head) << "\n";
+  out << paint.bold(
+             formatted("%-32s %12s  %-28s %-5s %s", "parameter", "estimate", "95 % interval", "unit", "identifiable"))
+      << "\n";
   for (const ParameterEstimate& p : results.parameters) {
     const ShownUnit unit = shown_unit(p.mean, p.unit);
     const double spread = unit.scale * p.std;
@@ -47,9 +51,7 @@ void print_parameters(const Results& results, const Paint& paint, std::ostream& 
 }
 
 void print_stages(const EstimationRun& run, const Paint& paint, std::ostream& out) {
-  char head[128];
-  std::snprintf(head, sizeof head, "%-12s %12s %12s %12s", "stage", "median [ms]", "p99 [ms]", "total [s]");
-  out << paint.bold(head) << "\n";
+  out << paint.bold(formatted("%-12s %12s %12s %12s", "stage", "median [ms]", "p99 [ms]", "total [s]")) << "\n";
   for (const char* stage : {"segment", "predict", "observe", "update", "revisit", "mesh error"}) {
     const auto samples = run.stage_samples.find(stage);
     if (samples == run.stage_samples.end()) continue;

@@ -39,6 +39,9 @@ class ServiceCalls {
  private:
   template <typename Service>
   Answer ask(ros::NodeHandle node, const std::string& name, Service& service);
+  /// `changes_model`: its answer comes with the effects added by then.
+  template <typename Service>
+  void call(const ros::NodeHandle& node, const std::string& name, Service service, bool changes_model, Done done);
   Answer with_added(const ros::NodeHandle& node, Answer answer);
   void enqueue(std::function<Answer()> call, Done done);
   void run();

@@ -25,17 +25,22 @@ async function embedded(page) {
   return page.evaluate(() => JSON.parse(document.getElementById("data").textContent));
 }
 
+// E with its interval in the page's answer.
+async function checkModulus(page, { mean, interval95 }) {
+  const answer = await page.textContent("#answer");
+  const found = answer.match(/([\d.]+) ([GMk]?Pa) ?95 %: ([\d.]+) to ([\d.]+) \2/);
+  assert.ok(found, "the answer has E with its interval: " + answer);
+  assertShown(found[1], inUnit(mean, found[2], "Pa"), "E");
+  assertShown(found[3], inUnit(interval95[0], found[2], "Pa"), "lower end");
+  assertShown(found[4], inUnit(interval95[1], found[2], "Pa"), "upper end");
+  return answer;
+}
+
 export async function checkResults(page, folder) {
   const file = JSON.parse(readFileSync(folder + "/results.json", "utf8"));
   assert.deepEqual((await embedded(page)).results, file, "the page's data are results.json");
   const [name] = Object.keys(file.parameters).filter((n) => n.endsWith("young_modulus"));
-  const modulus = file.parameters[name];
-  const answer = await page.textContent("#answer");
-  const found = answer.match(/([\d.]+) ([GMk]?Pa) ?95 %: ([\d.]+) to ([\d.]+) \2/);
-  assert.ok(found, "the answer has E with its interval: " + answer);
-  assertShown(found[1], inUnit(modulus.mean, found[2], "Pa"), "E");
-  assertShown(found[3], inUnit(modulus.interval95[0], found[2], "Pa"), "lower end");
-  assertShown(found[4], inUnit(modulus.interval95[1], found[2], "Pa"), "upper end");
+  const answer = await checkModulus(page, file.parameters[name]);
   assert.ok(answer.includes(file.state.replace("_", " ")), "the state");
   assert.ok(answer.includes(file.identifiable[name].reason), "what E is relative to");
   const facts = await page.locator("#facts dd").evaluateAll((all) => all.map((e) => e.firstChild.textContent));
@@ -49,13 +54,7 @@ export async function checkDiagnosis(page, folder) {
   const file = JSON.parse(readFileSync(folder + "/diagnosis.json", "utf8"));
   assert.deepEqual((await embedded(page)).diagnosis, file, "the page's data are diagnosis.json");
   const [name] = Object.keys(file.final.parameters).filter((n) => n.endsWith("young_modulus"));
-  const modulus = file.final.parameters[name];
-  const answer = await page.textContent("#answer");
-  const found = answer.match(/([\d.]+) ([GMk]?Pa) ?95 %: ([\d.]+) to ([\d.]+) \2/);
-  assert.ok(found, "the answer has E with its interval: " + answer);
-  assertShown(found[1], inUnit(modulus.mean, found[2], "Pa"), "E");
-  assertShown(found[3], inUnit(modulus.interval95[0], found[2], "Pa"), "lower end");
-  assertShown(found[4], inUnit(modulus.interval95[1], found[2], "Pa"), "upper end");
+  await checkModulus(page, file.final.parameters[name]);
   const rows = await page.locator("#staircase tbody tr").all();
   assert.equal(rows.length, file.steps.length);
   for (const [i, step] of file.steps.entries()) {
