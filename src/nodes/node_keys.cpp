@@ -6,44 +6,29 @@
 namespace tissue_stiffness {
 namespace {
 
-using Kind = KeySpec::Kind;
-
-KeySpec number(const std::string& name, const std::string& unit, double lower, double upper, double value,
-               const std::string& meaning) {
-  return {name, Kind::number, unit, lower, upper, {}, false, value, "", meaning};
-}
-
 KeySpec frame() {
-  return {"model_frame", Kind::text, "", 0, 0, {}, false, 0, "model", "tf frame that the model lives in"};
+  return text_key("model_frame", "model", "tf frame that the model lives in");
 }
 
 KeySpec patience(double seconds) {
-  return number("transform_timeout", "s", 0, 60, seconds, "how long to wait for a sensor's pose on tf, in wall time");
+  return number_key("transform_timeout", "s", 0, 60, seconds, "how long to wait for a sensor's pose on tf, in wall time");
 }
 
 const std::vector<std::pair<std::string, std::vector<KeySpec>>>& all_keys() {
   static const std::vector<std::pair<std::string, std::vector<KeySpec>>> keys{
       {"segmentation_node",
-       {{"segmentation",
-         Kind::map,
-         "",
-         0,
-         0,
-         {},
-         false,
-         0,
-         "",
-         "`{kind, seed}` as in a model file's contour, for a node without a model"},
-        number("contour_number", "", 1, 100, 1, "which of the model's contours"),
-        number("queue_size", "images", 1, 1e4, 100, "that may wait before the oldest is dropped")}},
+       {plain_key("segmentation", KeySpec::Kind::map, "",
+                  "`{kind, seed}` as in a model file's contour, for a node without a model"),
+        number_key("contour_number", "", 1, 100, 1, "which of the model's contours"),
+        number_key("queue_size", "images", 1, 1e4, 100, "that may wait before the oldest is dropped")}},
       {"mesh_node", {frame(), patience(1.0)}},
       {"estimator_node",
        {frame(), patience(0.1),
-        number("load_timeout", "s", 0, 60, 0.1, "how long a frame waits for the loads up to its stamp, in wall time"),
-        number("queue_size", "frames", 1, 1e5, 100, "that may wait before the oldest is dropped"),
-        number("diagnosis_period", "s", 0, 1e6, 10,
-               "wall time between checks of what the model misses; 0: on request only"),
-        number("diagnosis_window", "s", 1, 1e5, 20, "how much of the run a check sees")}}};
+        number_key("load_timeout", "s", 0, 60, 0.1, "how long a frame waits for the loads up to its stamp, in wall time"),
+        number_key("queue_size", "frames", 1, 1e5, 100, "that may wait before the oldest is dropped"),
+        number_key("diagnosis_period", "s", 0, 1e6, 10,
+                   "wall time between checks of what the model misses; 0: on request only"),
+        number_key("diagnosis_window", "s", 1, 1e5, 20, "how much of the run a check sees")}}};
   return keys;
 }
 
@@ -51,26 +36,9 @@ const std::vector<std::pair<std::string, std::vector<KeySpec>>>& all_keys() {
 
 const std::vector<KeySpec>& common_node_keys() {
   static const std::vector<KeySpec> keys{
-      {"model",
-       Kind::text,
-       "",
-       0,
-       0,
-       {},
-       false,
-       0,
-       "",
-       "the model file; without it the private parameters are the model's keys themselves"},
-      {"directory",
-       Kind::text,
-       "",
-       0,
-       0,
-       {},
-       false,
-       0,
-       "",
-       "where relative files are looked up when there is no `model`; the working directory when absent"}};
+      text_key("model", "", "the model file; without it the private parameters are the model's keys themselves"),
+      text_key("directory", "",
+               "where relative files are looked up when there is no `model`; the working directory when absent")};
   return keys;
 }
 

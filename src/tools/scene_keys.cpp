@@ -10,22 +10,23 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kPositive = std::numeric_limits<double>::min();
 constexpr int kMost = std::numeric_limits<int>::max();
 
+// Below `simulation`.
 KeySpec number(const std::string& path, const std::string& unit, double lower, double upper, double value,
                const std::string& meaning) {
-  return {"simulation." + path, Kind::number, unit, lower, upper, {}, false, value, "", meaning};
+  return number_key("simulation." + path, unit, lower, upper, value, meaning);
 }
 KeySpec needed(const std::string& path, const std::string& unit, double lower, double upper, const std::string& meaning) {
-  return {"simulation." + path, Kind::number, unit, lower, upper, {}, true, 0, "", meaning};
+  return required_number("simulation." + path, unit, lower, upper, meaning);
 }
 KeySpec integer(const std::string& path, int lower, int upper, int value, const std::string& meaning) {
-  return {"simulation." + path, Kind::integer, "", double(lower), double(upper), {}, false, double(value), "", meaning};
+  return integer_key("simulation." + path, lower, upper, value, meaning);
 }
 KeySpec other(const std::string& path, Kind kind, const std::string& unit, bool required, const std::string& meaning) {
-  return {"simulation." + path, kind, unit, 0, 0, {}, required, 0, "", meaning};
+  return (required ? required_key : plain_key)("simulation." + path, kind, unit, meaning);
 }
 
 std::vector<KeySpec> run_keys() {
-  return {{"simulation", Kind::map, "", 0, 0, {}, true, 0, "", "how the scene is run and recorded"},
+  return {required_key("simulation", Kind::map, "", "how the scene is run and recorded"),
           needed("duration", "s", kPositive, kInfinity, "of the recording"),
           needed("rate", "Hz", kPositive, 1e6, "of the frames"),
           needed("step", "s", kPositive, kInfinity, "of the integration"),

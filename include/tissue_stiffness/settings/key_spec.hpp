@@ -24,6 +24,18 @@ struct KeySpec {
   std::string name() const;
 };
 
+// A key of each kind, not required unless it says so. `value`: what it is when it is not given.
+KeySpec plain_key(const std::string& path, KeySpec::Kind kind, const std::string& unit, const std::string& meaning);
+KeySpec required_key(const std::string& path, KeySpec::Kind kind, const std::string& unit, const std::string& meaning);
+KeySpec text_key(const std::string& path, const std::string& value, const std::string& meaning);
+KeySpec number_key(const std::string& path, const std::string& unit, double lower, double upper, double value,
+                   const std::string& meaning);
+KeySpec required_number(const std::string& path, const std::string& unit, double lower, double upper,
+                        const std::string& meaning);
+KeySpec integer_key(const std::string& path, int lower, int upper, int value, const std::string& meaning);
+KeySpec choice_key(const std::string& path, const std::vector<std::string>& choices, bool required,
+                   const std::string& meaning);
+
 /// Every key of a model file but the effects' own, which their specs hold. In the order in which they are documented.
 const std::vector<KeySpec>& model_keys();
 
