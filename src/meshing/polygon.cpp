@@ -8,6 +8,9 @@
 namespace tissue_stiffness {
 namespace {
 
+// Of the squared sides: a corner so near a side counts as on it, whatever the rounding of its coordinates.
+constexpr double kOnSide = 1e-9;
+
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
@@ -40,7 +43,7 @@ double ear_shape(const Eigen::Matrix2Xd& points, const std::vector<int>& left, s
   for (const int other : left) {
     const Eigen::Vector2d p = points.col(other);
     if (p == a || p == b || p == c) continue;
-    if (side_of(a, b, p) >= 0.0 && side_of(b, c, p) >= 0.0 && side_of(c, a, p) >= 0.0) {
+    if (std::min({side_of(a, b, p), side_of(b, c, p), side_of(c, a, p)}) >= -kOnSide * sides) {
       return -std::numeric_limits<double>::infinity();
     }
   }
