@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <mutex>
 #include <sstream>
 
 #include "tissue_stiffness/types/error.hpp"
@@ -35,7 +36,29 @@ Course Course::from_csv(const std::string& file, int components) {
   return course;
 }
 
+Course::Course(const Course& other) {
+  *this = other;
+}
+
+Course& Course::operator=(const Course& other) {
+  if (this == &other) return *this;
+  const std::shared_lock<std::shared_mutex> theirs(other.mutex_);
+  const std::unique_lock<std::shared_mutex> own(mutex_);
+  components_ = other.components_;
+  from_file_ = other.from_file_;
+  offset_ = other.offset_;
+  times_ = other.times_;
+  values_ = other.values_;
+  return *this;
+}
+
+bool Course::empty() const {
+  const std::shared_lock<std::shared_mutex> lock(mutex_);
+  return times_.empty();
+}
+
 void Course::add(double time, const Eigen::VectorXd& value) {
+  const std::unique_lock<std::shared_mutex> lock(mutex_);
   const auto at = std::lower_bound(times_.begin(), times_.end(), time);
   const auto index = at - times_.begin();
   if (at != times_.end() && *at == time) {
@@ -47,6 +70,7 @@ void Course::add(double time, const Eigen::VectorXd& value) {
 }
 
 double Course::value(double time, int component) const {
+  const std::shared_lock<std::shared_mutex> lock(mutex_);
   if (times_.empty()) return 0.0;
   time -= offset_;
   const auto at = std::upper_bound(times_.begin(), times_.end(), time);
@@ -58,12 +82,14 @@ double Course::value(double time, int component) const {
 }
 
 void Course::clear() {
+  const std::unique_lock<std::shared_mutex> lock(mutex_);
   if (from_file_) return;
   times_.clear();
   values_.clear();
 }
 
 void Course::shift(double offset) {
+  const std::unique_lock<std::shared_mutex> lock(mutex_);
   if (from_file_) offset_ = offset;
 }
 

@@ -27,7 +27,6 @@ TEST(Course, IsLinearBetweenSamplesAndHeldOutside) {
   EXPECT_DOUBLE_EQ(course.value(2.0, 0), -10.0);
   EXPECT_DOUBLE_EQ(course.value(2.75, 0), 20.0);
   EXPECT_EQ(course.value(9.0, 0), 30.0);
-  EXPECT_EQ(course.last_time(), 3.0);
 }
 
 TEST(Course, KeepsTheLaterOfTwoSamplesAtOneTime) {

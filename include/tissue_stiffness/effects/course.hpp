@@ -3,15 +3,19 @@
 #include <Eigen/Core>
 #include <map>
 #include <memory>
+#include <shared_mutex>
 #include <string>
 #include <vector>
 
 namespace tissue_stiffness {
 
-/// A load's value over time: linear between samples, held outside, zero before the first sample arrives.
+/// A load's value over time: linear between samples, held outside, zero before the first sample arrives. Thread safe:
+/// samples come in while runs of the past look values up.
 class Course {
  public:
   explicit Course(int components) : components_(components) {}
+  Course(const Course& other);
+  Course& operator=(const Course& other);
 
   /// Reads `time,value...` rows (s and SI units; a header line and # comments are skipped). Times count from the
   /// recording's first stamp. Throws InputError naming file and line.
@@ -21,14 +25,14 @@ class Course {
   void add(double time, const Eigen::VectorXd& value);
   double value(double time, int component) const;
   void clear();
-  bool empty() const { return times_.empty(); }
+  bool empty() const;
   int components() const { return components_; }
-  double last_time() const { return times_.back(); }
   /// Offset added to the times of a file's samples when the recording's first stamp is known.
   void shift(double offset);
   bool from_file() const { return from_file_; }
 
  private:
+  mutable std::shared_mutex mutex_;  ///< of everything below
   int components_;
   bool from_file_ = false;
   double offset_ = 0.0;
