@@ -22,7 +22,7 @@ Replay replay_model(const ModelSettings& settings, const TetMesh& mesh, const Re
     if (value != parameters.end()) w[i] = free.to_coordinate(value->second);
   }
   ReplayRecorder recorder(mesh, recording.first_stamp, picture_stamps);
-  free_run({model, *forward, operators, recording.frames, recording.first_stamp + settings.time.start}, model.theta(w),
+  free_run({model, *forward, operators, recording.frames, {recording.first_stamp + settings.time.start}}, model.theta(w),
            [&](const FreeFrame& frame) { recorder.add(frame); });
   return recorder.finish();
 }

@@ -71,8 +71,8 @@ void Study::borrow(const Study& base) {
 }
 
 FitProblem Study::problem(const ForwardModel& forward, const std::vector<Frame>& frames) const {
-  return {
-      model_, forward, operators_, frames, recording_.first_stamp + model_.settings().time.start, recording_.checkpoint};
+  const RunStart start{recording_.first_stamp + model_.settings().time.start};
+  return {model_, forward, operators_, frames, start, recording_.checkpoint};
 }
 
 Study::Rows Study::rows(const Eigen::VectorXd& w) const {
@@ -117,7 +117,7 @@ BatchFit Study::quick_fit(const Eigen::VectorXd& start, const Eigen::VectorXd& s
 
 // Every full run says by how much quick ones are off there; a fit that allows for it says where the next one has to be.
 BatchFit Study::fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd spread) const {
-  const double start = problem(*forward_, training_).start;
+  const double start = problem(*forward_, training_).start.time;
   std::vector<double> times;
   for (const Frame& frame : recording_.frames) times.push_back(frame.time);
   const auto run = [&](const Eigen::VectorXd& w) {

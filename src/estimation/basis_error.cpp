@@ -22,7 +22,7 @@ double least_noise(const Model& model) {
 BasisError basis_error(const ReducedModel& reduced, const FitProblem& problem, const Eigen::VectorXd& w) {
   const Eigen::VectorXd theta = problem.model.theta(w);
   const double delay = problem.model.delay(theta);
-  const auto whole = reduced.start(theta, problem.start), half = reduced.start_in_half(theta, problem.start);
+  const auto whole = reduced.start(theta, problem.start.time), half = reduced.start_in_half(theta, problem.start.time);
   const std::size_t stride = (problem.frames.size() + kLooks - 1) / kLooks;
   double square = 0.0;
   for (std::size_t k = 0; k < problem.frames.size(); ++k) {

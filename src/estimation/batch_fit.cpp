@@ -29,7 +29,7 @@ void run(const FitProblem& problem, AnchoredFilter& filter, const Eigen::VectorX
 
 BatchFit fit_batch(const FitProblem& problem, const Eigen::VectorXd& start, const Eigen::VectorXd& spread) {
   const Eigen::VectorXd prior = problem.model.prior_std();
-  AnchoredFilter filter(problem.model.prior_mean(), prior);
+  AnchoredFilter filter(problem.model.prior_mean(), prior.cwiseAbs2().asDiagonal());
   run(problem, filter, start, spread);
   for (int k = 0; k < kMostIterations; ++k) {
     const Eigen::VectorXd std = filter.covariance().diagonal().cwiseSqrt();

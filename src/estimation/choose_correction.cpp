@@ -26,7 +26,7 @@ Eigen::VectorXd rest_prediction(const FitProblem& problem, const Frame& frame, c
 FreeFit free_fit(const FitProblem& problem, const Eigen::VectorXd& w) {
   const Eigen::VectorXd theta = problem.model.theta(w);
   const double delay = problem.model.delay(theta);
-  const auto run = problem.forward.start(theta, problem.start);
+  const auto run = problem.forward.begin(theta, problem.start);
   FreeFit fit;
   for (const Frame& frame : problem.frames) {
     problem.checkpoint();
@@ -45,11 +45,11 @@ FreeFit free_fit(const FitProblem& problem, const Eigen::VectorXd& w) {
 std::optional<Correction> choose_correction(const FitProblem& problem, const Eigen::VectorXd& w) {
   const Model& model = problem.model;
   const double free = free_fit(problem, w).cost;
-  const double scale = modal_force_scale(model, problem.forward, problem.frames, w, problem.start);
+  const double scale = modal_force_scale(model, problem.forward, problem.frames, w, problem.start.time);
   // Where the corrections would replace the model, the likelihood says nothing about its parameters.
   const auto deviance = [&](const Eigen::VectorXd& x, double force) {
     if (free_fit(problem, x).cost > kReplaced * free) return std::numeric_limits<double>::infinity();
-    return CorrectedRuns(model, problem.forward, problem.operators, force).deviance(problem.frames, x, problem.start);
+    return CorrectedRuns(model, problem.forward, problem.operators, force).deviance(problem.frames, x, problem.start.time);
   };
   const auto scan = [&](const std::function<double(const Eigen::VectorXd&)>& cost, int points) {
     return scan_coordinates(cost, w, model.prior_mean(), model.prior_std(), points);

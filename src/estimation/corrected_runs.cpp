@@ -25,7 +25,7 @@ ReducedTrajectory& CorrectedRuns::run(std::size_t i) {
 }
 
 void CorrectedRuns::restart(const Eigen::MatrixXd& sigma_points, double start) {
-  ensemble_.restart(sigma_points, start);
+  ensemble_.restart(sigma_points, {start});
   correction_.restart();
   time_ = start;
   theta_ = model_.theta(sigma_points.col(0));

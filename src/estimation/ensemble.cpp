@@ -4,10 +4,10 @@
 
 namespace tissue_stiffness {
 
-void Ensemble::restart(const Eigen::MatrixXd& sigma_points, double start) {
+void Ensemble::restart(const Eigen::MatrixXd& sigma_points, const RunStart& start) {
   theta_.clear();
   for (Eigen::Index i = 0; i < sigma_points.cols(); ++i) theta_.push_back(model_.theta(sigma_points.col(i)));
-  runs_ = forward_.start_all(theta_, start);
+  runs_ = forward_.begin_all(theta_, start);
   displacements_ = Eigen::MatrixXd::Zero(model_.fem().dof_count(), sigma_points.cols());
 }
 

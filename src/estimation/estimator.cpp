@@ -33,6 +33,9 @@ void Estimator::add_load(const LoadSample& sample) {
 StepResult Estimator::step(const Frame& frame) {
   return implementation_->scheme->step(frame);
 }
+StepResult Estimator::replay(const std::vector<Frame>& frames) {
+  return implementation_->scheme->replay(frames);
+}
 void Estimator::reset() {
   implementation_->scheme->reset();
 }
@@ -54,7 +57,7 @@ std::optional<double> Estimator::basis_error() const {
 std::vector<std::string> Estimator::description() const {
   return implementation_->scheme->description();
 }
-std::vector<Misfit> Estimator::free_run(const FreeFrameVisitor& visit) const {
+std::vector<Misfit> Estimator::free_run(const FreeFrameVisitor& visit) {
   return implementation_->scheme->free_run(visit);
 }
 

@@ -14,7 +14,7 @@ Prediction predict_at_rest(const Model& model, const std::vector<std::unique_ptr
 std::vector<Misfit> free_run(const FreeRunProblem& problem, const Eigen::VectorXd& theta, const FreeFrameVisitor& visit) {
   const Model& model = problem.model;
   std::vector<Misfit> misfits;
-  const auto run = problem.forward.start(theta, problem.start);
+  const auto run = problem.forward.begin(theta, problem.start);
   for (const Frame& frame : problem.frames) {
     run->advance(frame.time - model.delay(theta));
     const Eigen::VectorXd u = run->displacement();

@@ -60,12 +60,12 @@ Eigen::VectorXd MeshError::shift(const Question& q) {
     const Eigen::VectorXd u = run->displacement().head(s.coarse.fem().dof_count());
     truth.push_back(predict_frame(s.coarse, s.operators, frame, theta, u));
   }
-  AnchoredFilter filter(q.w, q.prior_std);
+  AnchoredFilter filter(q.w, q.prior_std.cwiseAbs2().asDiagonal());
   Ensemble ensemble(s.coarse, s.coarse_runs, s.operators);
   Eigen::VectorXd fit = q.w;
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
     filter.move_anchor(fit, q.spread);
-    ensemble.restart(filter.sigma_points(), q.start);
+    ensemble.restart(filter.sigma_points(), {q.start});
     for (std::size_t k = 0; k < q.frames.size(); ++k) {
       ensemble.advance(q.frames[k].time);
       const Eigen::MatrixXd rows = ensemble.predict(q.frames[k]).rows;

@@ -35,7 +35,7 @@ class PaperScheme : public Scheme {
     return {"paper: parameter-only unscented filter, state by finite differences, " + std::to_string(kStepsPerFrame) +
             " Newmark steps a frame"};
   }
-  std::vector<Misfit> free_run(const FreeFrameVisitor& visit) const override {
+  std::vector<Misfit> free_run(const FreeFrameVisitor& visit) override {
     return compare_free_run(frames_, model_->theta(filter_.mean()), visit);
   }
   Eigen::MatrixXd parameter_covariance() const override { return filter_.covariance(); }

@@ -69,6 +69,7 @@ void Scheme::focus_on(const Frame& frame) {
   for (int node = 0; node < mesh.node_count(); ++node) {
     if (seen_nodes_[static_cast<std::size_t>(node)] != 0) nodes.push_back(node);
   }
+  stop();
   forward_->focus(nodes);
 }
 
@@ -109,6 +110,17 @@ StepResult Scheme::step(const Frame& frame) {
   }
 }
 
+StepResult Scheme::replay(const std::vector<Frame>& frames) {
+  replaying_ = true;
+  StepResult last;
+  for (const Frame& frame : frames) {
+    StepResult result = step(frame);
+    if (result.used || !last.used) last = std::move(result);
+  }
+  replaying_ = false;
+  return last;
+}
+
 bool Scheme::seen(const Frame& frame) const {
   bool any = false;
   for (const Observation& observation : frame.observations) {
@@ -124,6 +136,7 @@ bool Scheme::seen(const Frame& frame) const {
 }
 
 void Scheme::reset() {
+  stop();
   last_time_.reset();
   first_stamp_.reset();
   first_load_ = INFINITY;
@@ -142,9 +155,9 @@ Prediction Scheme::at_rest(const Frame& frame) const {
 }
 
 std::vector<Misfit> Scheme::compare_free_run(const std::vector<Frame>& frames, const Eigen::VectorXd& theta,
-                                             const FreeFrameVisitor& visit) const {
+                                             const FreeFrameVisitor& visit) {
   forward_->focus({});
-  auto misfits = tissue_stiffness::free_run({*model_, *forward_, operators_, frames, start()}, theta, visit);
+  auto misfits = tissue_stiffness::free_run({*model_, *forward_, operators_, frames, {start()}}, theta, visit);
   seen_nodes_.clear();  // the next frame sets the focus again
   return misfits;
 }

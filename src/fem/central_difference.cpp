@@ -48,7 +48,7 @@ Eigen::VectorXd CentralDifference::acceleration(const DynamicState& state) const
 }
 
 void CentralDifference::initialise(DynamicState& state) const {
-  state.relaxed.assign(system_.relaxations().size(), state.displacement);
+  state.relaxed.resize(system_.relaxations().size(), state.displacement);
   state.acceleration = acceleration(state);
 }
 

@@ -57,8 +57,8 @@ void turn_nodes(const Eigen::Matrix3Xd& turn, bool back, Eigen::Ref<Eigen::Vecto
   }
 }
 
-void start_from_rest(const DynamicSystem& system, DynamicState& state) {
-  state.relaxed.assign(system.relaxations().size(), state.displacement);
+void find_acceleration(const DynamicSystem& system, DynamicState& state) {
+  state.relaxed.resize(system.relaxations().size(), state.displacement);
   Eigen::VectorXd f = system.force(state.time, state.displacement, state.velocity);
   if (system.damped()) f -= system.damping() * state.velocity;
   zero_fixed(f, system.fixed());
@@ -93,11 +93,11 @@ Newmark::Newmark(const DynamicSystem& system, double spectral_radius, double tol
     : Newmark(std::vector<const DynamicSystem*>{&system}, spectral_radius, tolerance) {}
 
 void Newmark::initialise(std::vector<DynamicState>& states) const {
-  tbb::parallel_for(std::size_t{0}, states.size(), [&](std::size_t i) { start_from_rest(*columns_[i].system, states[i]); });
+  tbb::parallel_for(std::size_t{0}, states.size(), [&](std::size_t i) { find_acceleration(*columns_[i].system, states[i]); });
 }
 
 void Newmark::initialise(DynamicState& state) const {
-  start_from_rest(*columns_.front().system, state);
+  find_acceleration(*columns_.front().system, state);
 }
 
 void Newmark::step(std::vector<DynamicState>& states, const std::vector<double>& steps) {

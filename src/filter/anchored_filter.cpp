@@ -6,9 +6,10 @@
 
 namespace tissue_stiffness {
 
-AnchoredFilter::AnchoredFilter(const Eigen::VectorXd& mean, const Eigen::VectorXd& std)
-    : prior_mean_(mean), prior_information_(std.array().square().inverse()) {
-  move_anchor(mean, std);
+AnchoredFilter::AnchoredFilter(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance)
+    : prior_mean_(mean),
+      prior_information_(covariance.ldlt().solve(Eigen::MatrixXd::Identity(mean.size(), mean.size()))) {
+  move_anchor(mean, covariance.diagonal().cwiseSqrt());
 }
 
 void AnchoredFilter::move_anchor(const Eigen::VectorXd& anchor, const Eigen::VectorXd& spread) {
@@ -82,14 +83,12 @@ double AnchoredFilter::misfit_scale() const {
 }
 
 Eigen::MatrixXd AnchoredFilter::total_information() const {
-  Eigen::MatrixXd total = information_ / misfit_scale();
-  total.diagonal() += prior_information_;
-  return total;
+  return information_ / misfit_scale() + prior_information_;
 }
 
 Eigen::VectorXd AnchoredFilter::mean() const {
   return anchor_ + total_information().ldlt().solve(gradient_ / misfit_scale() +
-                                                    prior_information_.cwiseProduct(prior_mean_ - anchor_));
+                                                    prior_information_ * (prior_mean_ - anchor_));
 }
 
 Eigen::MatrixXd AnchoredFilter::covariance() const {
@@ -98,7 +97,8 @@ Eigen::MatrixXd AnchoredFilter::covariance() const {
 }
 
 double AnchoredFilter::cost() const {
-  return data_cost_ + misfit_scale() * (anchor_ - prior_mean_).cwiseAbs2().dot(prior_information_);
+  const Eigen::VectorXd step = anchor_ - prior_mean_;
+  return data_cost_ + misfit_scale() * step.dot(prior_information_ * step);
 }
 
 bool AnchoredFilter::stale(double far, double wide, const Eigen::VectorXd& floor) const {

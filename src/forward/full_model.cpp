@@ -33,13 +33,12 @@ DynamicState at_start(const Model& model, const Eigen::VectorXd& theta, double s
 
 class FullTrajectories : public Trajectories {
  public:
-  FullTrajectories(const Model& model, const std::vector<Eigen::VectorXd>& thetas, double start,
+  FullTrajectories(const Model& model, const std::vector<Eigen::VectorXd>& thetas, std::vector<DynamicState> states,
                    const FullModel::Options& options)
       : options_(options),
         systems_(make_systems(model, thetas)),
-        newmark_(views(systems_), options.spectral_radius, options.tolerance * body_size(model.mesh())) {
-    for (const Eigen::VectorXd& theta : thetas) states_.push_back(at_start(model, theta, start));
-  }
+        newmark_(views(systems_), options.spectral_radius, options.tolerance * body_size(model.mesh())),
+        states_(std::move(states)) {}
 
   std::size_t size() const override { return states_.size(); }
   void advance(const std::vector<double>& times) override {
@@ -102,8 +101,9 @@ class FullTrajectories : public Trajectories {
 
 class FullTrajectory : public Trajectory {
  public:
-  FullTrajectory(const Model& model, const Eigen::VectorXd& theta, double start, const FullModel::Options& options)
-      : runs_(model, {theta}, start, options) {}
+  FullTrajectory(const Model& model, const Eigen::VectorXd& theta, DynamicState state, const FullModel::Options& options)
+      : runs_(model, {theta}, {std::move(state)}, options) {}
+  const DynamicState& state() const { return runs_.state(0); }
   void advance(double time) override { runs_.advance({time}); }
   double time() const override { return runs_.state(0).time; }
   Eigen::VectorXd displacement() const override { return runs_.state(0).displacement; }
@@ -116,14 +116,30 @@ class FullTrajectory : public Trajectory {
 }  // namespace
 
 std::unique_ptr<Trajectory> FullModel::start(const Eigen::VectorXd& theta, double start) const {
-  return std::make_unique<FullTrajectory>(model_, theta, start, options_);
+  return std::make_unique<FullTrajectory>(model_, theta, at_start(model_, theta, start), options_);
+}
+
+std::unique_ptr<Trajectory> FullModel::resume(const Eigen::VectorXd& theta, const Trajectory& from) const {
+  return std::make_unique<FullTrajectory>(model_, theta, dynamic_cast<const FullTrajectory&>(from).state(), options_);
+}
+
+bool FullModel::hold_the_same(const std::vector<Eigen::VectorXd>& thetas) const {
+  return std::all_of(thetas.begin(), thetas.end(),
+                     [&](const Eigen::VectorXd& theta) { return model_.fixed(theta) == model_.fixed(thetas.front()); });
+}
+
+std::unique_ptr<Trajectories> FullModel::resume_all(const std::vector<Eigen::VectorXd>& thetas,
+                                                    const Trajectory& from) const {
+  if (!hold_the_same(thetas)) return ForwardModel::resume_all(thetas, from);
+  const DynamicState& state = dynamic_cast<const FullTrajectory&>(from).state();
+  return std::make_unique<FullTrajectories>(model_, thetas, std::vector<DynamicState>(thetas.size(), state), options_);
 }
 
 std::unique_ptr<Trajectories> FullModel::start_all(const std::vector<Eigen::VectorXd>& thetas, double start) const {
-  for (const Eigen::VectorXd& theta : thetas) {
-    if (model_.fixed(theta) != model_.fixed(thetas.front())) return ForwardModel::start_all(thetas, start);
-  }
-  return std::make_unique<FullTrajectories>(model_, thetas, start, options_);
+  if (!hold_the_same(thetas)) return ForwardModel::start_all(thetas, start);
+  std::vector<DynamicState> states;
+  for (const Eigen::VectorXd& theta : thetas) states.push_back(at_start(model_, theta, start));
+  return std::make_unique<FullTrajectories>(model_, thetas, std::move(states), options_);
 }
 
 std::string FullModel::description() const {

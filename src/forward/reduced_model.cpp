@@ -108,20 +108,17 @@ void ReducedModel::project_part(std::size_t index) {
   for (const auto& term : part.terms.loads) out.loads.push_back(b.transpose() * term.pattern);
 }
 
-bool ReducedModel::grow() {
-  const Eigen::Index before = basis_.vectors.cols();
+std::unique_ptr<ReducedModel> ReducedModel::grown() const {
   const auto larger = [](int count) { return count + (count + 1) / 2; };
-  options_.size = larger(options_.size);
-  options_.per_part = larger(options_.per_part);
-  options_.largest = larger(options_.largest);
-  options_.released = larger(options_.released);
-  basis_ = build_reduced_basis(model_, options_);
-  projected_.clear();
-  known_.clear();
-  shaped_.clear();
-  project();
-  focus(std::vector<int>(focus_));
-  return basis_.vectors.cols() > before;
+  BasisOptions options = options_;
+  options.size = larger(options.size);
+  options.per_part = larger(options.per_part);
+  options.largest = larger(options.largest);
+  options.released = larger(options.released);
+  auto out = std::make_unique<ReducedModel>(model_, options);
+  if (out->basis_.vectors.cols() <= basis_.vectors.cols()) return nullptr;
+  out->focus(focus_);
+  return out;
 }
 
 std::vector<int> ReducedModel::active(const Eigen::VectorXd& theta, bool half) const {
@@ -238,6 +235,15 @@ Eigen::VectorXd ReducedModel::load(std::size_t part, std::size_t term, const Eig
 
 std::unique_ptr<Trajectory> ReducedModel::start(const Eigen::VectorXd& theta, double start) const {
   return std::make_unique<ReducedTrajectory>(*this, theta, start);
+}
+
+std::unique_ptr<Trajectory> ReducedModel::resume(const Eigen::VectorXd& theta, const Trajectory& from) const {
+  return std::make_unique<ReducedTrajectory>(*this, theta, dynamic_cast<const ReducedTrajectory&>(from));
+}
+
+std::unique_ptr<Trajectories> ReducedModel::resume_all(const std::vector<Eigen::VectorXd>& thetas,
+                                                       const Trajectory& from) const {
+  return std::make_unique<ReducedTrajectories>(*this, resume_each(thetas, from));
 }
 
 std::unique_ptr<Trajectory> ReducedModel::start_in_half(const Eigen::VectorXd& theta, double start) const {

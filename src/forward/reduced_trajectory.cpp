@@ -26,6 +26,14 @@ ReducedTrajectory::ReducedTrajectory(const ReducedModel& reduced, const Eigen::V
   force_ = modal_force(start);
 }
 
+ReducedTrajectory::ReducedTrajectory(const ReducedModel& reduced, const Eigen::VectorXd& theta,
+                                     const ReducedTrajectory& from)
+    : ReducedTrajectory(reduced, theta, from.time_) {
+  const Eigen::Index shared = std::min(state_.cols(), from.state_.cols());
+  state_.leftCols(shared) = modes_->to_modal * (from.modes_->shapes * from.state_.leftCols(shared));
+  for (Eigen::Index branch = shared; branch < state_.cols(); ++branch) state_.col(branch) = state_.col(0);  // relaxed
+}
+
 void ReducedTrajectory::collect_loads(const Eigen::VectorXd& theta) {
   const auto& parts = reduced_.model().parts();
   for (std::size_t p = 0; p < parts.size(); ++p) {

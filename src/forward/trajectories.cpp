@@ -1,17 +1,42 @@
+#include <stdexcept>
+
 #include "tissue_stiffness/forward/for_each_index.hpp"
 #include "tissue_stiffness/forward/forward_model.hpp"
 
 namespace tissue_stiffness {
 
-std::vector<std::unique_ptr<Trajectory>> ForwardModel::start_each(const std::vector<Eigen::VectorXd>& thetas,
-                                                                  double start) const {
-  std::vector<std::unique_ptr<Trajectory>> runs(thetas.size());
+ForwardModel::Runs ForwardModel::start_each(const std::vector<Eigen::VectorXd>& thetas, double start) const {
+  Runs runs(thetas.size());
   for_each_index(thetas.size(), [&](std::size_t i) { runs[i] = this->start(thetas[i], start); });
+  return runs;
+}
+
+ForwardModel::Runs ForwardModel::resume_each(const std::vector<Eigen::VectorXd>& thetas, const Trajectory& from) const {
+  Runs runs(thetas.size());
+  for_each_index(thetas.size(), [&](std::size_t i) { runs[i] = this->resume(thetas[i], from); });
   return runs;
 }
 
 std::unique_ptr<Trajectories> ForwardModel::start_all(const std::vector<Eigen::VectorXd>& thetas, double start) const {
   return std::make_unique<SeparateTrajectories>(start_each(thetas, start));
+}
+
+std::unique_ptr<Trajectory> ForwardModel::resume(const Eigen::VectorXd&, const Trajectory&) const {
+  throw std::logic_error(description() + " cannot be resumed");
+}
+
+std::unique_ptr<Trajectories> ForwardModel::resume_all(const std::vector<Eigen::VectorXd>& thetas,
+                                                       const Trajectory& from) const {
+  return std::make_unique<SeparateTrajectories>(resume_each(thetas, from));
+}
+
+std::unique_ptr<Trajectory> ForwardModel::begin(const Eigen::VectorXd& theta, const RunStart& from) const {
+  return from.motion ? resume(theta, *from.motion) : start(theta, from.time);
+}
+
+std::unique_ptr<Trajectories> ForwardModel::begin_all(const std::vector<Eigen::VectorXd>& thetas,
+                                                      const RunStart& from) const {
+  return from.motion ? resume_all(thetas, *from.motion) : start_all(thetas, from.time);
 }
 
 void SeparateTrajectories::advance(const std::vector<double>& times) {

@@ -2,6 +2,7 @@
 
 #include <ros/ros.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include "tissue_stiffness/nodes/message_conversions.hpp"
@@ -159,14 +160,11 @@ void EstimatorNode::run_again() {
   const Recording recording = services_->check().recording();
   estimator_->set_first_stamp(recording.first_stamp);
   for (const LoadSample& load : recording.loads) estimator_->add_load(load);
-  StepResult result;
-  const Frame* last = nullptr;
-  for (const Frame& frame : recording.frames) {
-    result = estimator_->step(frame);
-    if (result.used) last = &frame;
-  }
-  if (last == nullptr) return;
+  const StepResult result = estimator_->replay(recording.frames);
+  if (!result.used) return;
   report(result);
+  const auto last = std::find_if(recording.frames.begin(), recording.frames.end(),
+                                 [&](const Frame& frame) { return frame.time == result.misfit.time; });
   outputs_.publish(*estimator_, result, *last, ros::Time(last->time));
 }
 

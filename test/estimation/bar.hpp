@@ -34,7 +34,7 @@ inline StepResult step_through(Estimator& estimator, const std::vector<Frame>& f
   return last;
 }
 
-inline double value(const Estimator& estimator, std::size_t parameter = 0) {
+inline double value(Estimator& estimator, std::size_t parameter = 0) {
   return estimator.estimate().parameters.at(parameter).mean;
 }
 
@@ -43,7 +43,7 @@ inline bool holds(const ParameterEstimate& parameter, double truth) {
 }
 
 /// Every number and word of an estimate and of the body's state, byte by byte.
-inline std::string bytes(const Estimator& estimator) {
+inline std::string bytes(Estimator& estimator) {
   std::string out;
   const auto append = [&out](const double* data, Eigen::Index count) {
     out.append(reinterpret_cast<const char*>(data), static_cast<std::size_t>(count) * sizeof(double));

@@ -45,7 +45,7 @@ Seen seen(const TetMesh& mesh, const std::string& effect, bool moving) {
   const auto sensors = make_observation_operators(model);
   const ReducedModel runs(model);
   Ensemble ensemble(model, runs, sensors);
-  ensemble.restart(Eigen::MatrixXd::Zero(0, 1), 0.0);
+  ensemble.restart(Eigen::MatrixXd::Zero(0, 1), {0.0});
   ensemble.advance(moving ? kLate : -1.0);
   const Eigen::VectorXd h = ensemble.predict(frame(mesh)).central.predicted;
   return {Eigen::Map<const Eigen::Matrix3Xd>(h.data(), 3, 2), h[6]};

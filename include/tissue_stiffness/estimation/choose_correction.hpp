@@ -15,7 +15,7 @@ struct FitProblem {
   const ForwardModel& forward;
   const std::vector<std::unique_ptr<ObservationOperator>>& operators;
   const std::vector<Frame>& frames;
-  double start;  ///< [s]
+  RunStart start;
   /// Called before every frame; what it throws ends the fit.
   std::function<void()> checkpoint = [] {};
 };
@@ -34,8 +34,8 @@ struct Correction {
   Eigen::VectorXd step;  ///< resolution of the search along each coordinate; 0 where w is as it was
   double force = 0.0;    ///< see StateCorrection
 };
-/// The place and the missing force with the highest likelihood, for a linear model that fits badly: looks around the prior
-/// with much and with little correction, and at `w`. Empty when the free run at `w` is likelier than all of them.
+/// The place and the missing force with the highest likelihood, for a linear model from rest that fits badly: looks around
+/// the prior with much and with little correction, and at `w`. Empty when the free run at `w` is likelier than all of them.
 std::optional<Correction> choose_correction(const FitProblem& problem, const Eigen::VectorXd& w);
 
 }  // namespace tissue_stiffness

@@ -17,8 +17,8 @@ class Ensemble {
            const std::vector<std::unique_ptr<ObservationOperator>>& operators)
       : model_(model), forward_(forward), operators_(operators) {}
 
-  /// A fresh trajectory from `start` [s] for each column of `sigma_points` (filter coordinates).
-  void restart(const Eigen::MatrixXd& sigma_points, double start);
+  /// A fresh trajectory for each column of `sigma_points` (filter coordinates).
+  void restart(const Eigen::MatrixXd& sigma_points, const RunStart& start);
   bool started() const { return runs_ != nullptr; }
   void clear() { runs_ = nullptr; }
 

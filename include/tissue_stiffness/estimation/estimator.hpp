@@ -48,8 +48,8 @@ class Estimator {
   /// knows. Without this call the first frame's or load's time is taken as the first stamp.
   void set_first_stamp(double time);
 
-  /// Lets long studies (of the mesh's error) run beside the frames instead of holding one up; which frame first sees their
-  /// result then depends on timing.
+  /// Lets what takes long (another look at all frames so far, the study of the mesh's error) run beside the frames instead
+  /// of holding one up; which frame first sees its result then depends on timing.
   void work_in_background();
 
   /// Feeds a load. Samples may come in any order up to the frame that needs them; between samples loads are linear in time,
@@ -59,6 +59,9 @@ class Estimator {
   /// Predict, observe, update. A frame that is late, empty or makes the model diverge is skipped with the reason; never
   /// throws on data.
   StepResult step(const Frame& frame);
+
+  /// Steps through frames that were measured before, waiting for every look back; the last used one's result, or the last's.
+  StepResult replay(const std::vector<Frame>& frames);
 
   /// Back to the prior; loads and frames are forgotten.
   void reset();
@@ -79,7 +82,7 @@ class Estimator {
 
   /// The free run from rest to the last frame at the final estimate, compared with every frame kept: what rms_error,
   /// relative_error and the reports are made of. One misfit a kept frame; `visit` sees each.
-  std::vector<Misfit> free_run(const FreeFrameVisitor& visit = {}) const;
+  std::vector<Misfit> free_run(const FreeFrameVisitor& visit = {});
 
  private:
   class Implementation;

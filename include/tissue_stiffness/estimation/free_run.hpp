@@ -30,7 +30,7 @@ struct FreeRunProblem {
   const ForwardModel& forward;
   const std::vector<std::unique_ptr<ObservationOperator>>& operators;
   const std::vector<Frame>& frames;
-  double start;  ///< when the body was at rest [s]
+  RunStart start;
 };
 
 /// Runs the model at `theta` from rest and compares it with every frame: one misfit a frame. `visit`, where there is one,

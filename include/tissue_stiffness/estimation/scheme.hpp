@@ -21,13 +21,14 @@ class Scheme {
   virtual ~Scheme() = default;
 
   StepResult step(const Frame& frame);
+  StepResult replay(const std::vector<Frame>& frames);
   void reset();
   void set_first_stamp(double time);
   void add_load(const LoadSample& sample);
 
   virtual std::vector<std::string> description() const = 0;
-  virtual void work_in_background() {}
-  virtual std::vector<Misfit> free_run(const FreeFrameVisitor& visit) const = 0;
+  void work_in_background() { background_ = true; }
+  virtual std::vector<Misfit> free_run(const FreeFrameVisitor& visit) = 0;
   virtual Eigen::MatrixXd parameter_covariance() const = 0;  ///< in the filter's coordinates
 
   const Model& model() const { return *model_; }
@@ -40,21 +41,27 @@ class Scheme {
  protected:
   virtual StepResult process(const Frame& frame) = 0;
   virtual void forget() = 0;
+  /// Ends what runs of the model are under way beside the frames, before anything that they read is changed.
+  virtual void stop() {}
+
+  /// Frames do not wait for another look at the past: it runs beside them.
+  bool hurried() const { return background_ && !replaying_; }
+  bool background() const { return background_; }
 
   double start() const { return first_stamp_.value_or(0.0) + model_->settings().time.start; }
   Prediction at_rest(const Frame& frame) const;
   /// The free run at `theta` over the frames, compared with each.
   std::vector<Misfit> compare_free_run(const std::vector<Frame>& frames, const Eigen::VectorXd& theta,
-                                       const FreeFrameVisitor& visit) const;
+                                       const FreeFrameVisitor& visit);
 
   std::unique_ptr<Model> model_;
-  std::unique_ptr<ForwardModel> forward_;
+  std::shared_ptr<ForwardModel> forward_;
   std::vector<std::unique_ptr<ObservationOperator>> operators_;
   Estimate estimate_;
   mutable Eigen::Matrix3Xd displacement_;
   mutable std::function<Eigen::VectorXd()> recover_;  ///< what displacement_ is to become when somebody asks; may be empty
   Prediction prediction_;
-  mutable std::vector<char> seen_nodes_;  ///< a flag a node: on the surface, or observed so far
+  std::vector<char> seen_nodes_;  ///< a flag a node: on the surface, or observed so far
 
   /// Lets the forward model tell where the frame's nodes are, and the surface's; others it may leave out.
   void focus_on(const Frame& frame);
@@ -66,6 +73,7 @@ class Scheme {
   std::optional<double> first_stamp_;
   double first_load_ = std::numeric_limits<double>::infinity();  ///< earliest load's time [s]
   std::optional<double> last_time_;
+  bool background_ = false, replaying_ = false;
 };
 
 std::unique_ptr<Scheme> make_unscented_scheme(const ModelSettings& settings, const TetMesh& mesh);

@@ -53,7 +53,8 @@ class Newmark {
   Newmark(std::vector<const DynamicSystem*> systems, double spectral_radius, double tolerance);
   Newmark(const DynamicSystem& system, double spectral_radius, double tolerance);
 
-  /// Fills in the acceleration that belongs to displacement and velocity, and a history of rest at this displacement.
+  /// Fills in the acceleration that belongs to displacement and velocity, and where there is no history yet one of rest at
+  /// this displacement.
   void initialise(std::vector<DynamicState>& states) const;
   void initialise(DynamicState& state) const;
   /// Advances each system by its step [s]; the steps may differ by parts in a hundred. Throws NumericalError when ten

@@ -17,8 +17,9 @@ namespace tissue_stiffness {
 /// (iterated posterior linearisation).
 class AnchoredFilter {
  public:
-  /// Prior N(mean, diag(std^2)) in the filter's coordinates; anchored at its mean with its spread.
-  AnchoredFilter(const Eigen::VectorXd& mean, const Eigen::VectorXd& std);
+  /// Prior N(mean, covariance) in the filter's coordinates, p and p x p; anchored at its mean, with its standard deviations
+  /// for a spread.
+  AnchoredFilter(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance);
 
   /// Sigma points, one a column: the anchor, then anchor + spread_i e_i, then anchor - spread_i e_i. p x (2p + 1).
   const Eigen::MatrixXd& sigma_points() const { return points_; }
@@ -63,7 +64,8 @@ class AnchoredFilter {
  private:
   Eigen::MatrixXd total_information() const;
 
-  Eigen::VectorXd prior_mean_, prior_information_;
+  Eigen::VectorXd prior_mean_;
+  Eigen::MatrixXd prior_information_;
   Eigen::VectorXd anchor_, spread_;
   Eigen::MatrixXd points_;
   Eigen::MatrixXd information_;  ///< of the data

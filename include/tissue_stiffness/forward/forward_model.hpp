@@ -60,6 +60,12 @@ class SeparateTrajectories : public Trajectories {
   std::vector<std::unique_ptr<Trajectory>> runs_;
 };
 
+/// Where a free run begins.
+struct RunStart {
+  double time = 0.0;                              ///< [s]
+  std::shared_ptr<const Trajectory> motion = {};  ///< at that time, of the same model; null: at rest, undeformed
+};
+
 /// Eq. 1 of Yang & Lin (2016): parameters in, trajectory out.
 class ForwardModel {
  public:
@@ -68,13 +74,23 @@ class ForwardModel {
   virtual std::unique_ptr<Trajectory> start(const Eigen::VectorXd& theta, double start) const = 0;
   /// One run for each theta.
   virtual std::unique_ptr<Trajectories> start_all(const std::vector<Eigen::VectorXd>& thetas, double start) const;
+  /// Goes on from another run's motion at other parameters: displacement, velocity and history stay, the force jumps.
+  /// Throws std::logic_error for a model that only stands in for another one, which nothing resumes.
+  virtual std::unique_ptr<Trajectory> resume(const Eigen::VectorXd& theta, const Trajectory& from) const;
+  virtual std::unique_ptr<Trajectories> resume_all(const std::vector<Eigen::VectorXd>& thetas,
+                                                   const Trajectory& from) const;
+  /// From rest or from a motion, as `from` says.
+  std::unique_ptr<Trajectory> begin(const Eigen::VectorXd& theta, const RunStart& from) const;
+  std::unique_ptr<Trajectories> begin_all(const std::vector<Eigen::VectorXd>& thetas, const RunStart& from) const;
   /// Runs that start from now on need to tell where these nodes are, no others: what is cheaper may leave those at rest.
   virtual void focus(const std::vector<int>&) {}
   /// What it is, in one line.
   virtual std::string description() const = 0;
 
  protected:
-  std::vector<std::unique_ptr<Trajectory>> start_each(const std::vector<Eigen::VectorXd>& thetas, double start) const;
+  using Runs = std::vector<std::unique_ptr<Trajectory>>;
+  Runs start_each(const std::vector<Eigen::VectorXd>& thetas, double start) const;
+  Runs resume_each(const std::vector<Eigen::VectorXd>& thetas, const Trajectory& from) const;
 };
 
 struct BasisOptions;

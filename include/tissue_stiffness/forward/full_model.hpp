@@ -21,9 +21,14 @@ class FullModel : public ForwardModel {
   std::unique_ptr<Trajectory> start(const Eigen::VectorXd& theta, double start) const override;
   /// Runs that hold the same nodes step side by side around one factor.
   std::unique_ptr<Trajectories> start_all(const std::vector<Eigen::VectorXd>& thetas, double start) const override;
+  std::unique_ptr<Trajectory> resume(const Eigen::VectorXd& theta, const Trajectory& from) const override;
+  std::unique_ptr<Trajectories> resume_all(const std::vector<Eigen::VectorXd>& thetas,
+                                           const Trajectory& from) const override;
   std::string description() const override;
 
  private:
+  bool hold_the_same(const std::vector<Eigen::VectorXd>& thetas) const;
+
   const Model& model_;
   Options options_;
 };

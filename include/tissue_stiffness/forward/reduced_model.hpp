@@ -30,10 +30,13 @@ class ReducedModel : public ForwardModel {
   std::unique_ptr<Trajectory> start(const Eigen::VectorXd& theta, double start) const override;
   /// Their displacements are recovered together.
   std::unique_ptr<Trajectories> start_all(const std::vector<Eigen::VectorXd>& thetas, double start) const override;
+  std::unique_ptr<Trajectory> resume(const Eigen::VectorXd& theta, const Trajectory& from) const override;
+  std::unique_ptr<Trajectories> resume_all(const std::vector<Eigen::VectorXd>& thetas,
+                                           const Trajectory& from) const override;
   /// A run in the earlier half of the basis: what the later half still changes tells what is left to come.
   std::unique_ptr<Trajectory> start_in_half(const Eigen::VectorXd& theta, double start) const;
-  /// Makes the basis larger by half; false when that adds nothing. Runs started before must not be used any more.
-  bool grow();
+  /// The same in a basis larger by half; null when that adds nothing.
+  std::unique_ptr<ReducedModel> grown() const;
   void focus(const std::vector<int>& nodes) override;
   int nodes_in_focus() const { return focus_.empty() ? model_.fem().node_count() : static_cast<int>(focus_.size()); }
   std::string description() const override;

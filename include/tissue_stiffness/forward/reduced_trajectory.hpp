@@ -14,6 +14,8 @@ namespace tissue_stiffness {
 class ReducedTrajectory : public Trajectory {
  public:
   ReducedTrajectory(const ReducedModel& reduced, const Eigen::VectorXd& theta, double start, bool half_basis = false);
+  /// At other parameters from where another run of the same model is.
+  ReducedTrajectory(const ReducedModel& reduced, const Eigen::VectorXd& theta, const ReducedTrajectory& from);
 
   void advance(double time) override;
   double time() const override { return time_; }

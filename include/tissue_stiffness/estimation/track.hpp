@@ -1,0 +1,90 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "tissue_stiffness/estimation/choose_correction.hpp"
+#include "tissue_stiffness/estimation/corrected_runs.hpp"
+#include "tissue_stiffness/estimation/ensemble.hpp"
+#include "tissue_stiffness/filter/anchored_filter.hpp"
+
+namespace tissue_stiffness {
+
+/// The sigma points' free runs over a recording, and the filter that they feed. Frames only add information, until `look`
+/// moves the sigma points to where the estimate went and runs the recording again.
+class Track {
+ public:
+  using Operators = std::vector<std::unique_ptr<ObservationOperator>>;
+  using Checkpoint = std::function<void()>;  ///< called before every frame of a replay; what it throws ends the look
+
+  Track(const Model& model, const Operators& operators, std::shared_ptr<ForwardModel> forward, AnchoredFilter prior,
+        RunStart start);
+  /// The same filter, forward model and notes, with runs that have not begun: what a look may move while this one goes on.
+  std::unique_ptr<Track> twin() const;
+
+  const AnchoredFilter& filter() const { return filter_; }
+  const std::shared_ptr<ForwardModel>& forward() const { return forward_; }
+  const RunStart& start() const { return start_; }
+  /// What the reduced basis leaves out of the surface's motion [m] (basis_error.hpp), as of the last look at it.
+  std::optional<double> basis_error() const { return notes_.basis_error; }
+  /// The runs are corrected towards the frames, because the model lacks physics.
+  bool corrected() const { return corrected_ != nullptr; }
+
+  bool begun() const { return ensemble_ != nullptr; }
+  void begin();
+  void advance(double time) { ensemble_->advance(time); }
+  Ensemble::Predicted predict(const Frame& frame) const { return ensemble_->predict(frame); }
+  /// Feeds the filter with a frame that was predicted.
+  AnchoredFilter::Innovation absorb(const Frame& frame, const Ensemble::Predicted& predicted);
+  /// Advance, predict and absorb.
+  AnchoredFilter::Innovation absorb(const Frame& frame);
+  /// Weighted sum of the sigma points' displacements, 3n [m].
+  Eigen::VectorXd combined(const Eigen::VectorXd& weights) const { return ensemble_->combined(weights); }
+
+  /// Whether `look` would do anything after `count` frames.
+  bool wants_look(std::size_t count) const;
+  /// Moves the sigma points until nothing moves, looks for a better minimum, for missing physics and at the basis, each
+  /// when its time has come. True if the runs changed: they are then at the last frame. False, too, when runs on the way
+  /// diverge or the checkpoint throws a NumericalError: this track must then not be used.
+  bool look(const std::vector<Frame>& frames, const Checkpoint& checkpoint);
+  /// Of a twin whose look changed nothing: not to be repeated.
+  void take_notes(const Track& other) { notes_ = other.notes_; }
+
+ private:
+  bool look_at(const std::vector<Frame>& frames, const Checkpoint& checkpoint);
+  bool bent() const;
+  bool stale() const;
+  bool settle_is_due(std::size_t count) const;
+  bool scan_is_due(std::size_t count) const;
+  bool correction_is_due(std::size_t count) const;
+  bool basis_is_due(std::size_t count) const;
+  bool settle(const FitProblem& problem);
+  void move_anchor(const FitProblem& problem);
+  bool scan(const FitProblem& problem);
+  bool correct(const FitProblem& problem);
+  bool grow_basis(const FitProblem& problem);
+  void replay(const FitProblem& problem, const Eigen::VectorXd& anchor, const Eigen::VectorXd& spread);
+  FitProblem problem(const std::vector<Frame>& frames, const Checkpoint& checkpoint) const;
+
+  /// What was looked at when, in frames.
+  struct Notes {
+    std::size_t settled = 0, scanned = 1, corrected = 0, basis = 0;
+    std::optional<double> basis_error;  ///< [m]
+    bool basis_exhausted = false;       ///< more vectors do not help
+  };
+
+  const Model& model_;
+  const Operators& operators_;
+  std::shared_ptr<ForwardModel> forward_;
+  RunStart start_;
+  AnchoredFilter filter_;
+  std::unique_ptr<Ensemble> ensemble_;
+  std::optional<double> force_;               ///< that corrects the runs (StateCorrection)
+  std::unique_ptr<CorrectedRuns> corrected_;  ///< beside the free ones
+  Notes notes_;
+};
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,222 @@
+#include "tissue_stiffness/estimation/track.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "tissue_stiffness/estimation/basis_error.hpp"
+#include "tissue_stiffness/estimation/compare.hpp"
+#include "tissue_stiffness/estimation/coordinate_scan.hpp"
+#include "tissue_stiffness/forward/reduced_model.hpp"
+#include "tissue_stiffness/types/error.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr double kFar = 1.0;                // spreads between anchor and estimate that ask for a new anchor
+constexpr double kWide = 6.0;               // posterior standard deviations that the sigma points may span
+constexpr double kNewSpread = 2.0;          // posterior standard deviations that they span after a move
+constexpr double kFloor = 1e-3;             // of the prior's standard deviation: the smallest span
+constexpr double kBent = 0.2;               // of the misfit: nonlinearity over the span that asks for a smaller one
+constexpr double kLongestMove = 3.0;        // spreads that the anchor may move at once
+constexpr int kMostVisits = 6;              // moves of the anchor a look
+constexpr std::size_t kEarly = 16;          // frames up to which the anchor may move at every frame
+constexpr double kRevisitGrowth = 1.1;      // of the recording between moves of the anchor later
+constexpr double kScanMisfit = 4.0;         // mean square error over sigma that asks for a scan of the parameters
+constexpr int kScanPoints = 25;             // on either side of the prior's mean
+constexpr double kUnexplained = 0.1;        // of the motion's mean square: more, and a free run's fit is badly biased
+constexpr std::size_t kCorrectFrom = 16;    // frames before which a misfit is not taken for missing physics
+constexpr std::size_t kFirstBasisLook = 4;  // frames
+constexpr double kBasisShare = 0.1;         // of the noise: what the reduced basis may leave out
+constexpr int kMostGrowths = 4;             // of the basis at once, by half each
+constexpr double kGrowthHelps = 0.9;        // of the error: what a growth leaves, if it is worth another
+
+}  // namespace
+
+Track::Track(const Model& model, const Operators& operators, std::shared_ptr<ForwardModel> forward, AnchoredFilter prior,
+             RunStart start)
+    : model_(model),
+      operators_(operators),
+      forward_(std::move(forward)),
+      start_(std::move(start)),
+      filter_(std::move(prior)) {}
+
+std::unique_ptr<Track> Track::twin() const {
+  auto out = std::make_unique<Track>(model_, operators_, forward_, filter_, start_);
+  out->force_ = force_;
+  out->notes_ = notes_;
+  return out;
+}
+
+void Track::begin() {
+  ensemble_ = std::make_unique<Ensemble>(model_, *forward_, operators_);
+  ensemble_->restart(filter_.sigma_points(), start_);
+  corrected_ = nullptr;
+  if (!force_) return;
+  corrected_ = std::make_unique<CorrectedRuns>(model_, *forward_, operators_, *force_);
+  corrected_->restart(filter_.sigma_points(), start_.time);
+}
+
+AnchoredFilter::Innovation Track::absorb(const Frame& frame, const Ensemble::Predicted& predicted) {
+  if (corrected_) return corrected_->absorb(frame, filter_);
+  Prediction now = predicted.central;
+  now.predicted = filter_.predict(predicted.rows, filter_.mean());
+  return filter_.update(now.measured, predicted.rows, now.sigma.cwiseAbs2(), row_weights(now));
+}
+
+AnchoredFilter::Innovation Track::absorb(const Frame& frame) {
+  if (corrected_) return corrected_->absorb(frame, filter_);
+  ensemble_->advance(frame.time);
+  return absorb(frame, ensemble_->predict(frame));
+}
+
+bool Track::bent() const {
+  return filter_.nonlinearity() > kBent * filter_.misfit_scale();
+}
+
+bool Track::stale() const {
+  return filter_.stale(kFar, kWide, kFloor * model_.prior_std()) || bent();
+}
+
+bool Track::settle_is_due(std::size_t count) const {
+  return count <= kEarly || static_cast<double>(count) >= kRevisitGrowth * static_cast<double>(notes_.settled);
+}
+
+// Linear models only, whose runs cost next to nothing.
+bool Track::scan_is_due(std::size_t count) const {
+  return !model_.nonlinear() && !force_ && count >= 2 * notes_.scanned && filter_.misfit_scale() >= kScanMisfit;
+}
+
+bool Track::correction_is_due(std::size_t count) const {
+  return !model_.nonlinear() && !start_.motion && count >= std::max(kCorrectFrom, 2 * notes_.corrected);
+}
+
+bool Track::basis_is_due(std::size_t count) const {
+  return !model_.nonlinear() && !start_.motion && count >= std::max(kFirstBasisLook, 2 * notes_.basis);
+}
+
+bool Track::wants_look(std::size_t count) const {
+  const bool revisit = settle_is_due(count) && (stale() || scan_is_due(count) || correction_is_due(count));
+  return revisit || basis_is_due(count);
+}
+
+bool Track::look(const std::vector<Frame>& frames, const Checkpoint& checkpoint) {
+  try {
+    return look_at(frames, checkpoint);
+  } catch (const NumericalError&) {
+    return false;
+  }
+}
+
+bool Track::look_at(const std::vector<Frame>& frames, const Checkpoint& checkpoint) {
+  const std::size_t count = frames.size();
+  const FitProblem run = problem(frames, checkpoint);
+  bool moved = false;
+  if (settle_is_due(count)) {
+    moved = scan(run);
+    moved = settle(run) || moved;
+    if (correct(run)) {
+      settle(run);
+      moved = true;
+    }
+    if (moved) notes_.settled = count;
+  }
+  if (grow_basis(run)) {
+    replay(problem(frames, checkpoint), filter_.anchor(), filter_.spread());
+    moved = true;
+  }
+  return moved;
+}
+
+FitProblem Track::problem(const std::vector<Frame>& frames, const Checkpoint& checkpoint) const {
+  return {model_, *forward_, operators_, frames, start_, checkpoint};
+}
+
+bool Track::settle(const FitProblem& problem) {
+  int visit = 0;
+  for (; visit < kMostVisits && stale(); ++visit) move_anchor(problem);
+  return visit > 0;
+}
+
+void Track::move_anchor(const FitProblem& problem) {
+  const AnchoredFilter before = filter_;
+  const Eigen::VectorXd limit = kLongestMove * before.spread();
+  Eigen::VectorXd move = (before.mean() - before.anchor()).cwiseMax(-limit).cwiseMin(limit);
+  const Eigen::VectorXd std = before.covariance().diagonal().cwiseSqrt();
+  Eigen::VectorXd spread = (kNewSpread * std).cwiseMin(before.spread());
+  if (bent()) {
+    const double excess = before.nonlinearity() / (kBent * before.misfit_scale());
+    spread = spread.cwiseMin(0.8 * std::pow(excess, -0.25) * before.spread());
+  }
+  spread = spread.cwiseMax(kFloor * model_.prior_std());
+  for (int cut = 0; cut < 3; ++cut, move *= 0.25) {
+    replay(problem, before.anchor() + move, spread);
+    if (filter_.cost() <= before.cost() * (1.0 + 1e-3) + 1.0) return;
+  }
+  replay(problem, before.anchor(), spread);
+}
+
+// When the misfit is large, looks for a better minimum whenever the recording has doubled.
+bool Track::scan(const FitProblem& problem) {
+  if (!scan_is_due(problem.frames.size())) return false;
+  notes_.scanned = problem.frames.size();
+  const ScanResult found = scan_coordinates([&](const Eigen::VectorXd& w) { return free_fit(problem, w).cost; },
+                                            filter_.anchor(), model_.prior_mean(), model_.prior_std(), kScanPoints);
+  if (!found.moved) return false;
+  const Eigen::VectorXd narrow = found.step.cwiseMin(filter_.spread());
+  replay(problem, found.best, (found.step.array() > 0.0).select(narrow, filter_.spread()));
+  return true;
+}
+
+// A free run that no parameters bring near the data lacks physics, and its best fit is biased. The parameters are then
+// read from runs corrected towards each frame, by as much as makes the data most likely. Decided anew whenever the
+// recording has doubled. True if the runs changed.
+bool Track::correct(const FitProblem& problem) {
+  if (!correction_is_due(problem.frames.size())) return false;
+  notes_.corrected = problem.frames.size();
+  const Eigen::VectorXd w = filter_.mean();
+  const FreeFit free = free_fit(problem, w);
+  const bool lacking = free.cost > kScanMisfit * free.rows && free.cost > kUnexplained * free.motion;
+  const auto correction = lacking ? choose_correction(problem, w) : std::nullopt;
+  if (!correction) {
+    if (!force_) return false;
+    force_.reset();
+    replay(problem, w, filter_.spread());
+    return true;
+  }
+  force_ = correction->force;
+  replay(problem, correction->w, (correction->step.array() > 0.0).select(correction->step, filter_.spread()));
+  return true;
+}
+
+// What the reduced basis leaves out, asked anew whenever the recording has doubled; the basis grows until it is a small
+// part of the noise. True if it grew.
+bool Track::grow_basis(const FitProblem& problem) {
+  if (!basis_is_due(problem.frames.size())) return false;
+  notes_.basis = problem.frames.size();
+  auto reduced = std::dynamic_pointer_cast<ReducedModel>(forward_);
+  for (int k = 0;; ++k) {
+    const FitProblem run{model_, *reduced, operators_, problem.frames, start_, problem.checkpoint};
+    const BasisError error = tissue_stiffness::basis_error(*reduced, run, filter_.mean());
+    const bool helps = k == 0 || error.rms < kGrowthHelps * *notes_.basis_error;
+    notes_.basis_error = error.rms;
+    if (notes_.basis_exhausted || error.sigmas <= kBasisShare) break;
+    std::shared_ptr<ReducedModel> larger = k == kMostGrowths || !helps ? nullptr : reduced->grown();
+    notes_.basis_exhausted = larger == nullptr;
+    if (!larger) break;
+    reduced = std::move(larger);
+  }
+  return std::exchange(forward_, reduced) != reduced;
+}
+
+void Track::replay(const FitProblem& problem, const Eigen::VectorXd& anchor, const Eigen::VectorXd& spread) {
+  filter_.move_anchor(anchor, spread);
+  begin();
+  for (const Frame& frame : problem.frames) {
+    problem.checkpoint();
+    absorb(frame);
+  }
+  if (corrected_) ensemble_->advance(problem.frames.back().time);
+}
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,87 @@
+// What takes long runs beside the frames: no frame waits for it, and the answer is the same.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "bar.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr double kTruth = 30e3;
+constexpr int kFrames = 120;
+
+const std::vector<std::string> kPulled{"inertia: {density: 1000}", modulus(prior(12e3, 3)), "fixed: {region: clamp}",
+                                       "gravity: {acceleration: [0.5, 1, -3]}", "traction: {region: tip, topic: /wrench}"};
+
+LoadSample wrench(double time) {
+  LoadSample sample{"/wrench", time, Eigen::VectorXd::Zero(6)};
+  sample.value[2] = 5e-3 * std::sin(15.0 * time);
+  return sample;
+}
+
+std::vector<Frame> recording() {
+  Experiment bar(box_settings(kPulled), bar_mesh(), {kTruth});
+  for (int k = 0; k <= kFrames; ++k) bar.add_load(wrench(kFilmed * k));
+  return see_all(bar, bar.film(0.0, kFilmed, kFrames), kNoise, 1);
+}
+
+/// Loads come with the frames, as they do live.
+StepResult step_with_loads(Estimator& estimator, const std::vector<Frame>& frames, std::chrono::microseconds pause) {
+  estimator.set_first_stamp(0.0);
+  estimator.add_load(wrench(0.0));
+  StepResult last;
+  for (const Frame& frame : frames) {
+    estimator.add_load(wrench(frame.time));
+    last = estimator.step(frame);
+    EXPECT_TRUE(last.used) << last.reason;
+    std::this_thread::sleep_for(pause);
+  }
+  return last;
+}
+
+TEST(Background, ComesToTheSameEstimate) {
+  const std::vector<Frame> frames = recording();
+  Estimator waiting(box_settings(kPulled), bar_mesh());
+  const ParameterEstimate at_once = step_with_loads(waiting, frames, {}).estimate.parameters.front();
+  Estimator estimator(box_settings(kPulled), bar_mesh());
+  estimator.work_in_background();
+  const StepResult last = step_with_loads(estimator, frames, std::chrono::milliseconds(5));
+  const ParameterEstimate& beside = last.estimate.parameters.front();
+  EXPECT_NEAR(beside.mean, at_once.mean, 0.3 * at_once.std);
+  EXPECT_NEAR(beside.std, at_once.std, 0.3 * at_once.std);
+  EXPECT_EQ(last.estimate.state, EstimateState::converged);
+  EXPECT_LT(last.misfit.rms_sigma, 1.2);
+}
+
+TEST(Background, HoldsUpNoFrame) {
+  Estimator estimator(box_settings(kPulled), bar_mesh());
+  estimator.work_in_background();
+  estimator.set_first_stamp(0.0);
+  for (int k = 0; k <= kFrames; ++k) estimator.add_load(wrench(kFilmed * k));
+  double revisits = 0.0;
+  for (const Frame& frame : recording()) revisits = std::max(revisits, estimator.step(frame).seconds.at("revisit"));
+  Estimator waiting(box_settings(kPulled), bar_mesh());
+  waiting.set_first_stamp(0.0);
+  for (int k = 0; k <= kFrames; ++k) waiting.add_load(wrench(kFilmed * k));
+  double waited = 0.0;
+  for (const Frame& frame : recording()) waited = std::max(waited, waiting.step(frame).seconds.at("revisit"));
+  std::printf("longest revisit within a frame: %.2f ms in the background, %.2f ms at once\n", 1e3 * revisits, 1e3 * waited);
+  EXPECT_LT(revisits, 0.5 * waited);
+}
+
+TEST(Background, IsGivenUpByAReset) {
+  const std::vector<Frame> frames = recording();
+  Estimator estimator(box_settings(kPulled), bar_mesh());
+  estimator.work_in_background();
+  step_with_loads(estimator, {frames.begin(), frames.begin() + 40}, {});
+  estimator.reset();
+  EXPECT_EQ(estimator.estimate().state, EstimateState::no_data);
+  const StepResult last = step_with_loads(estimator, frames, std::chrono::milliseconds(5));
+  EXPECT_TRUE(holds(last.estimate.parameters.front(), kTruth));
+}
+
+}  // namespace
+}  // namespace tissue_stiffness
