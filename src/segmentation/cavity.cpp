@@ -59,7 +59,7 @@ Segmentation CavitySegmenter::segment(const cv::Mat& image, double stamp) {
     return {{}, "no dark pool inside a bright wall"};
 
   Eigen::Matrix2Xd outline = (path.points.array() + 0.5) / scale - 0.5;
-  outline = resample(smooth_closed(resample(outline, spacing), 2.0), spacing);
+  outline = resample(smooth_keeping_bends(resample(outline, spacing), 2.0), spacing);
   const double radius = mean_radius(outline);
   const WallEdges edges = wall_edges(grey, outline, outward_normals(outline, 4.0), radius);
   const double found =

@@ -40,7 +40,7 @@ Eigen::VectorXd radii_of(const Eigen::Matrix2Xd& outline, const Eigen::Vector2d&
   for (int k = 1; k < 2 * rays; ++k) {
     if (radii(k % rays) == 0.0) radii(k % rays) = radii((k - 1) % rays);
   }
-  return smooth_closed(radii, 3.0).transpose();
+  return smooth_keeping_bends(radii, 3.0).transpose();
 }
 
 }  // namespace

@@ -89,6 +89,11 @@ Eigen::MatrixXd smooth_closed(const Eigen::MatrixXd& rows, double sigma) {
   return result / total;
 }
 
+Eigen::MatrixXd smooth_keeping_bends(const Eigen::MatrixXd& rows, double sigma) {
+  const Eigen::MatrixXd smooth = smooth_closed(rows, sigma);
+  return smooth + smooth_closed(rows - smooth, sigma);
+}
+
 Eigen::Matrix2Xd outward_normals(const Eigen::Matrix2Xd& points, double sigma) {
   const Eigen::Matrix2Xd smooth = smooth_closed(points, sigma);
   const double sign = signed_area(points) >= 0.0 ? 1.0 : -1.0;

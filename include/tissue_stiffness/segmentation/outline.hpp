@@ -27,6 +27,10 @@ Eigen::Matrix2Xd resample(const Eigen::Matrix2Xd& points, double spacing);
 /// Gaussian smoothing along a closed sequence; `sigma` in points. Works on each row.
 Eigen::MatrixXd smooth_closed(const Eigen::MatrixXd& rows, double sigma);
 
+/// The same with what the smoothing took off smoothed and put back: repeated, it does not shrink a curve's bends frame by
+/// frame.
+Eigen::MatrixXd smooth_keeping_bends(const Eigen::MatrixXd& rows, double sigma);
+
 /// Unit normals that point out of the enclosed area, from tangents smoothed over `sigma` points.
 Eigen::Matrix2Xd outward_normals(const Eigen::Matrix2Xd& points, double sigma);
 
