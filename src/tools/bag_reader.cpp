@@ -113,7 +113,8 @@ void BagReader::read_static_poses() {
 }
 
 void BagReader::add_poses(const rosbag::MessageInstance& message, bool is_static) {
-  for (geometry_msgs::TransformStamped pose : read_as<tf2_msgs::TFMessage>(message, file_)->transforms) {
+  const auto read = read_as<tf2_msgs::TFMessage>(message, file_);  // held: the loop would not keep it alive
+  for (geometry_msgs::TransformStamped pose : read->transforms) {
     to_isometry(pose.transform, message.getTopic() + ": " + pose.child_frame_id);  // tf2 only logs what is wrong
     pose.header.frame_id = plain(pose.header.frame_id);
     pose.child_frame_id = plain(pose.child_frame_id);

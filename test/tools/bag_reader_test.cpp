@@ -2,6 +2,7 @@
 
 #include <geometry_msgs/WrenchStamped.h>
 #include <std_msgs/String.h>
+#include <tf2_msgs/TFMessage.h>
 
 #include "tissue_stiffness/tools/recording_writer.hpp"
 #include "tissue_stiffness/types/error.hpp"
@@ -134,6 +135,39 @@ TEST_F(BagReaderTest, SkipsAFrameWhoseSensorHasNoPose) {
   ASSERT_TRUE(instant);
   EXPECT_TRUE(instant->frame.observations.empty());
   EXPECT_TRUE(says(instant->reason, {"unknown_sensor", "model"}));
+}
+
+TEST_F(BagReaderTest, FollowsASensorThatMoves) {
+  {
+    RecordingWriter writer(path("one.bag"));
+    for (int i = 0; i < 20; ++i) write_vertex(writer, 0.05 * i, 1.0);
+  }
+  {
+    rosbag::Bag one(path("one.bag")), bag(path("recording.bag"), rosbag::bagmode::Write);
+    int number = 0;
+    for (const rosbag::MessageInstance& message : rosbag::View(one)) {
+      tf2_msgs::TFMessage poses;
+      poses.transforms.resize(2);  // another frame's beside it, as on a real robot
+      for (geometry_msgs::TransformStamped& pose : poses.transforms) {
+        pose.header.stamp = at(0.05 * number);
+        pose.header.frame_id = "model";
+        pose.child_frame_id = &pose == &poses.transforms[0] ? "the_probe_at_the_end_of_the_arm" : "arm";
+        pose.transform.rotation.w = 1.0;
+        pose.transform.translation.x = 0.01 * number;
+      }
+      sensor_msgs::PointCloud2 cloud = *message.instantiate<sensor_msgs::PointCloud2>();
+      cloud.header.frame_id = "the_probe_at_the_end_of_the_arm";
+      bag.write("/tf", at(0.05 * number), poses);
+      bag.write("/tissue/vertices", at(0.05 * number++), cloud);
+    }
+  }
+  BagReader reader = open();
+  for (int i = 0; i < 20; ++i) {
+    const auto instant = reader.next();
+    ASSERT_TRUE(instant);
+    ASSERT_EQ(instant->frame.observations.size(), 1U) << instant->reason;
+    EXPECT_NEAR(instant->frame.observations[0].points(0, 0), 1.0 + 0.01 * i, 1e-6);
+  }
 }
 
 TEST_F(BagReaderTest, RefusesWhatIsNoBag) {
