@@ -23,6 +23,17 @@ Eigen::VectorXd rest_prediction(const FitProblem& problem, const Frame& frame, c
 
 }  // namespace
 
+FreeFit fit_frame(const FitProblem& problem, const Frame& frame, const Eigen::VectorXd& theta,
+                  const Eigen::VectorXd& displacement) {
+  const Prediction p = predict_frame(problem.model, problem.operators, frame, theta, displacement);
+  const Eigen::ArrayXd e = ((p.measured - p.predicted).cwiseQuotient(p.sigma)).array();
+  const Eigen::ArrayXd weights = row_weights(p).array();
+  const Eigen::ArrayXd motion = ((p.measured - rest_prediction(problem, frame, theta)).cwiseQuotient(p.sigma)).array();
+  return {(weights > 0.0).select(weights * e.square(), 0.0).sum(),
+          (weights > 0.0 && motion.isFinite()).select(weights * motion.square(), 0.0).sum(),
+          static_cast<double>((weights > 0.0).count())};
+}
+
 FreeFit free_fit(const FitProblem& problem, const Eigen::VectorXd& w) {
   const Eigen::VectorXd theta = problem.model.theta(w);
   const double delay = problem.model.delay(theta);
@@ -31,13 +42,10 @@ FreeFit free_fit(const FitProblem& problem, const Eigen::VectorXd& w) {
   for (const Frame& frame : problem.frames) {
     problem.checkpoint();
     run->advance(frame.time - delay);
-    const Prediction p = predict_frame(problem.model, problem.operators, frame, theta, run->displacement());
-    const Eigen::ArrayXd e = ((p.measured - p.predicted).cwiseQuotient(p.sigma)).array();
-    const Eigen::ArrayXd weights = row_weights(p).array();
-    fit.cost += (weights > 0.0).select(weights * e.square(), 0.0).sum();
-    const Eigen::ArrayXd motion = ((p.measured - rest_prediction(problem, frame, theta)).cwiseQuotient(p.sigma)).array();
-    fit.motion += (weights > 0.0 && motion.isFinite()).select(weights * motion.square(), 0.0).sum();
-    fit.rows += static_cast<double>((weights > 0.0).count());
+    const FreeFit of_frame = fit_frame(problem, frame, theta, run->displacement());
+    fit.cost += of_frame.cost;
+    fit.motion += of_frame.motion;
+    fit.rows += of_frame.rows;
   }
   return fit;
 }

@@ -11,11 +11,17 @@ Prediction predict_at_rest(const Model& model, const std::vector<std::unique_ptr
                        Eigen::VectorXd::Zero(model.fem().dof_count()));
 }
 
-std::vector<Misfit> free_run(const FreeRunProblem& problem, const Eigen::VectorXd& theta, const FreeFrameVisitor& visit) {
+std::vector<Misfit> free_run(const FreeRunProblem& problem, Eigen::VectorXd theta, const FreeFrameVisitor& visit,
+                             const std::vector<Turn>& turns) {
   const Model& model = problem.model;
   std::vector<Misfit> misfits;
-  const auto run = problem.forward.begin(theta, problem.start);
+  auto run = problem.forward.begin(theta, problem.start);
+  auto turn = turns.begin();
   for (const Frame& frame : problem.frames) {
+    for (; turn != turns.end() && turn->time <= frame.time - model.delay(theta); ++turn) {
+      run->advance(turn->time);
+      run = problem.forward.resume(theta = turn->theta, *run);
+    }
     run->advance(frame.time - model.delay(theta));
     const Eigen::VectorXd u = run->displacement();
     const Prediction p = predict_frame(model, problem.operators, frame, theta, u);

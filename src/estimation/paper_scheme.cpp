@@ -36,7 +36,7 @@ class PaperScheme : public Scheme {
             " Newmark steps a frame"};
   }
   std::vector<Misfit> free_run(const FreeFrameVisitor& visit) override {
-    return compare_free_run(frames_, model_->theta(filter_.mean()), visit);
+    return compare_free_run(frames_, {start()}, model_->theta(filter_.mean()), visit);
   }
   Eigen::MatrixXd parameter_covariance() const override { return filter_.covariance(); }
 

@@ -8,8 +8,8 @@
 
 namespace tissue_stiffness {
 
-Revisit::Revisit(const Track& track, std::vector<Frame> frames) : frames_(std::move(frames)) {
-  outcome_.track = track.twin();
+Revisit::Revisit(const Track& track, std::vector<Frame> frames, std::optional<ChangeQuestion> change)
+    : frames_(std::move(frames)), change_(std::move(change)), start_(track.twin()) {
   work_ = aside([this] { run(); });
 }
 
@@ -28,11 +28,23 @@ std::vector<Frame> Revisit::arrived() {
   return std::exchange(later_, {});
 }
 
+Revisit::Outcome Revisit::look(const Track& track, const std::vector<Frame>& frames,
+                               const std::optional<ChangeQuestion>& change, const Track::Checkpoint& checkpoint) {
+  Outcome out{track.twin(), false, 0, change};
+  if (!change) {
+    out.moved = out.track->look(frames, checkpoint);
+  } else if (auto changed = track.changed(frames, *change, checkpoint, out.first)) {
+    out.track = std::move(changed);
+    out.moved = true;
+  }
+  return out;
+}
+
 void Revisit::run() {
   const auto checkpoint = [this] {
     if (given_up_) throw NumericalError("given up");
   };
-  outcome_.moved = outcome_.track->look(frames_, checkpoint);
+  outcome_ = look(*start_, frames_, change_, checkpoint);
   if (!outcome_.moved) return;
   for (std::vector<Frame> more = arrived(); !more.empty(); more = arrived()) {
     for (const Frame& frame : more) {

@@ -154,10 +154,11 @@ Prediction Scheme::at_rest(const Frame& frame) const {
   return predict_at_rest(*model_, operators_, frame);
 }
 
-std::vector<Misfit> Scheme::compare_free_run(const std::vector<Frame>& frames, const Eigen::VectorXd& theta,
-                                             const FreeFrameVisitor& visit) {
+std::vector<Misfit> Scheme::compare_free_run(const std::vector<Frame>& frames, const RunStart& start,
+                                             const Eigen::VectorXd& theta, const FreeFrameVisitor& visit,
+                                             const std::vector<Turn>& turns) {
   forward_->focus({});
-  auto misfits = tissue_stiffness::free_run({*model_, *forward_, operators_, frames, {start()}}, theta, visit);
+  auto misfits = tissue_stiffness::free_run({*model_, *forward_, operators_, frames, start}, theta, visit, turns);
   seen_nodes_.clear();  // the next frame sets the focus again
   return misfits;
 }

@@ -29,6 +29,7 @@ constexpr std::size_t kCorrectFrom = 16;    // frames before which a misfit is n
 constexpr std::size_t kFirstBasisLook = 4;  // frames
 constexpr double kBasisShare = 0.1;         // of the noise: what the reduced basis may leave out
 constexpr int kMostGrowths = 4;             // of the basis at once, by half each
+constexpr double kChangedSpread = 0.05;     // prior standard deviations, of the sigma points after a change
 constexpr double kGrowthHelps = 0.9;        // of the error: what a growth leaves, if it is worth another
 
 }  // namespace
@@ -44,6 +45,7 @@ Track::Track(const Model& model, const Operators& operators, std::shared_ptr<For
 std::unique_ptr<Track> Track::twin() const {
   auto out = std::make_unique<Track>(model_, operators_, forward_, filter_, start_);
   out->force_ = force_;
+  out->doubt_ = doubt_;
   out->notes_ = notes_;
   return out;
 }
@@ -68,6 +70,12 @@ AnchoredFilter::Innovation Track::absorb(const Frame& frame) {
   if (corrected_) return corrected_->absorb(frame, filter_);
   ensemble_->advance(frame.time);
   return absorb(frame, ensemble_->predict(frame));
+}
+
+Eigen::MatrixXd Track::covariance() const {
+  Eigen::MatrixXd sum = filter_.covariance();
+  if (doubt_.size() > 0) sum += doubt_ * doubt_.transpose();
+  return sum;
 }
 
 bool Track::bent() const {
@@ -126,6 +134,26 @@ bool Track::look_at(const std::vector<Frame>& frames, const Checkpoint& checkpoi
     moved = true;
   }
   return moved;
+}
+
+std::unique_ptr<Track> Track::changed(const std::vector<Frame>& frames, const ChangeQuestion& question,
+                                      const Checkpoint& checkpoint, std::size_t& first) const {
+  try {
+    const auto change = find_change(problem(frames, checkpoint), question);
+    if (!change) return nullptr;
+    Eigen::MatrixXd prior = question.covariance;
+    prior.diagonal() += drifted(question, change->from.time - start_.time);
+    auto out = std::make_unique<Track>(model_, operators_, forward_, AnchoredFilter(question.w, prior), change->from);
+    const std::vector<Frame> later(frames.begin() + static_cast<std::ptrdiff_t>(change->first), frames.end());
+    const Eigen::VectorXd spread = prior.diagonal().cwiseSqrt().cwiseMin(kChangedSpread * model_.prior_std());
+    out->replay(out->problem(later, checkpoint), change->w, spread);
+    out->doubt_ = change->doubt;
+    out->look(later, checkpoint);
+    first = change->first;
+    return out;
+  } catch (const NumericalError&) {
+    return nullptr;
+  }
 }
 
 FitProblem Track::problem(const std::vector<Frame>& frames, const Checkpoint& checkpoint) const {

@@ -8,6 +8,7 @@
 #include "tissue_stiffness/estimation/compare.hpp"
 #include "tissue_stiffness/estimation/initial_velocity.hpp"
 #include "tissue_stiffness/estimation/mesh_error.hpp"
+#include "tissue_stiffness/estimation/past.hpp"
 #include "tissue_stiffness/estimation/posterior.hpp"
 #include "tissue_stiffness/estimation/revisit.hpp"
 #include "tissue_stiffness/estimation/scheme.hpp"
@@ -36,8 +37,10 @@ class UnscentedScheme : public Scheme {
 
   std::vector<Misfit> free_run(const FreeFrameVisitor& visit) override {
     stop();
+    if (frames_.empty()) return {};
     const Eigen::VectorXd theta = model_->theta(track_->filter().mean());
-    return frames_.empty() ? std::vector<Misfit>{} : compare_free_run(frames_, theta, visit);
+    if (past_.empty()) return compare_free_run(frames_, track_->start(), theta, visit);
+    return compare_free_run(past_.all_frames(frames_), {start()}, past_.theta(), visit, past_.turns(theta));
   }
   std::optional<double> basis_error() const override { return track_->basis_error(); }
   Eigen::MatrixXd parameter_covariance() const override { return track_->filter().covariance(); }
@@ -61,7 +64,9 @@ class UnscentedScheme : public Scheme {
     shift_.resize(0);
     last_study_ = 0;
     complete_ = true;
+    past_ = {};
     validity_.reset();
+    watch_.restart();
   }
 
  private:
@@ -119,27 +124,42 @@ class UnscentedScheme : public Scheme {
   void keep(const Frame& frame) {
     if (complete_) frames_.push_back(frame);
     if (revisit_) revisit_->add(frame);
-    if (frames_.size() <= kWindow) return;
-    complete_ = false;
-    frames_.clear();
+    if (frames_.size() + past_.frame_count() <= kWindow) return;
+    if (past_.empty()) {
+      complete_ = false;
+      frames_.clear();
+    }
+    past_ = {};
   }
 
-  // Looks at the whole recording again, where that is due; in the background when a node runs. True if the runs changed.
+  // Looks at the recording again, where that is due, or for a change; in the background when a node runs. True if the runs
+  // changed.
   bool revisit() {
-    if (revisit_ || !complete_ || !track_->wants_look(frames_.size())) return false;
-    if (hurried()) {
-      revisit_ = std::make_unique<Revisit>(*track_, frames_);
-      return false;
+    if (revisit_ || !complete_) return false;
+    if (std::optional<ChangeQuestion> again = past_.closer(frames_.size())) {
+      return look_back(past_.track(), past_.frames_since_its_start(frames_), std::move(again));
     }
-    auto twin = track_->twin();
-    const bool moved = twin->look(frames_, [] {});
-    return adopt({std::move(twin), moved});
+    std::optional<ChangeQuestion> question = track_->corrected() ? std::nullopt : watch_.due();
+    const bool calm = !watch_.suspicious() || watch_.searched();
+    if (!question && !(calm && track_->wants_look(frames_.size()))) return false;
+    return look_back(*track_, frames_, std::move(question));
+  }
+
+  bool look_back(const Track& track, const std::vector<Frame>& frames, std::optional<ChangeQuestion> question) {
+    if (!hurried()) return adopt(Revisit::look(track, frames, question, [] {}));
+    revisit_ = std::make_unique<Revisit>(track, frames, std::move(question));
+    return false;
   }
 
   bool adopt(Revisit::Outcome outcome) {
     if (!outcome.moved) {
-      track_->take_notes(*outcome.track);
+      if (!outcome.change) track_->take_notes(*outcome.track);
       return false;
+    }
+    if (outcome.change) {
+      past_.turn(*track_, *outcome.track, outcome.first, *outcome.change, frames_);
+      validity_.reset();
+      if (!outcome.change->near) watch_.go_on();
     }
     track_ = std::move(outcome.track);
     forward_ = track_->forward();
@@ -163,21 +183,23 @@ class UnscentedScheme : public Scheme {
     result.misfit.dof = innovation.dof;
     const Eigen::VectorXd shift = shift_.size() > 0 ? shift_ : Eigen::VectorXd::Zero(w.size());
     const double doubt = kShiftDoubt * kShiftDoubt;
-    estimate_ = summarise(model_->free_parameters(), w - shift, filter.covariance() + doubt * shift * shift.transpose());
+    estimate_ = summarise(model_->free_parameters(), w - shift, track_->covariance() + doubt * shift * shift.transpose());
     estimate_.time = frame.time;
     validity_.add(result.misfit);
+    watch_.add(result.misfit.rms_sigma * result.misfit.rms_sigma, filter);
     estimate_.state = state(result.misfit);
     result.estimate = estimate_;
   }
 
   EstimateState state(const Misfit& misfit) const {
     if (misfit.count == 0) return EstimateState::no_data;
+    if (watch_.suspicious() && !watch_.searched()) return EstimateState::drifting;
     if (misfit.rms_sigma > kInvalidSigmas) return EstimateState::model_invalid;
     for (std::size_t i = 0; i < estimate_.parameters.size(); ++i) {
       const ParameterEstimate& p = estimate_.parameters[i];
       const bool positive = model_->free_parameters()[i].prior.kind == Quantity::Kind::log_normal;
       const double scale = positive ? std::abs(p.mean) : model_->free_parameters()[i].prior.spread;
-      if (p.std > kConverged * scale) return EstimateState::converging;
+      if (p.std > kConverged * scale) return track_->start().motion ? EstimateState::drifting : EstimateState::converging;
     }
     return validity_.invalid() ? EstimateState::model_invalid : EstimateState::converged;
   }
@@ -198,7 +220,9 @@ class UnscentedScheme : public Scheme {
         unstudied_ = error.what();
       }
     }
-    if (study_.valid() || !unstudied_.empty() || frames_.size() < std::max(kFirstMeshStudy, 2 * last_study_)) return;
+    if (study_.valid() || !unstudied_.empty() || track_->start().motion ||
+        frames_.size() < std::max(kFirstMeshStudy, 2 * last_study_))
+      return;
     last_study_ = frames_.size();
     const AnchoredFilter& filter = track_->filter();
     MeshError::Question question{
@@ -215,7 +239,9 @@ class UnscentedScheme : public Scheme {
   std::shared_ptr<Track> track_;
   Validity validity_;
   std::vector<Frame> frames_, waiting_;
-  bool complete_ = true;  ///< every frame since the start is in frames_
+  Past past_;
+  ChangeWatch watch_{model_->drift()};
+  bool complete_ = true;              ///< every frame since the start is in frames_
   std::unique_ptr<Revisit> revisit_;  ///< under way
 
   std::string unstudied_;                  ///< why the mesh's error is not assessed; empty: it is

@@ -93,7 +93,8 @@ Newmark::Newmark(const DynamicSystem& system, double spectral_radius, double tol
     : Newmark(std::vector<const DynamicSystem*>{&system}, spectral_radius, tolerance) {}
 
 void Newmark::initialise(std::vector<DynamicState>& states) const {
-  tbb::parallel_for(std::size_t{0}, states.size(), [&](std::size_t i) { find_acceleration(*columns_[i].system, states[i]); });
+  tbb::parallel_for(std::size_t{0}, states.size(),
+                    [&](std::size_t i) { find_acceleration(*columns_[i].system, states[i]); });
 }
 
 void Newmark::initialise(DynamicState& state) const {

@@ -190,6 +190,12 @@ Eigen::VectorXd Model::prior_std() const {
   return s;
 }
 
+Eigen::VectorXd Model::drift() const {
+  Eigen::VectorXd d(static_cast<Eigen::Index>(free_.size()));
+  for (std::size_t i = 0; i < free_.size(); ++i) d[static_cast<Eigen::Index>(i)] = free_[i].prior.drift;
+  return d;
+}
+
 void Model::set_first_stamp(double time) {
   first_stamp_ = time;
   for (auto& course : courses_) course.second->shift(time);

@@ -31,10 +31,9 @@ std::string range_text(double lower, double upper, const std::string& unit) {
 
 void require_keys(const Value& value, const std::string& first, const std::string& second, const std::string& allowed) {
   const std::vector<std::string> keys = value.keys();
-  for (const std::string& key : keys) {
-    if (key != first && key != second) throw InputError(value.path(), value.shown(), allowed);
-  }
-  if (keys.size() != 2) throw InputError(value.path(), value.shown(), allowed);
+  const auto known = [&](const std::string& key) { return key == first || key == second || key == "drift"; };
+  const bool complete = value.has(first) && value.has(second);
+  if (!complete || !std::all_of(keys.begin(), keys.end(), known)) throw InputError(value.path(), value.shown(), allowed);
 }
 
 }  // namespace
@@ -87,7 +86,8 @@ Eigen::Vector3d Value::as_vector3(const std::string& unit) const {
 }
 
 Quantity Value::as_quantity(double lower, double upper, const std::string& unit) const {
-  const std::string allowed = range_text(lower, upper, unit) + ", {prior, factor} or {mean, std}";
+  const std::string allowed =
+      range_text(lower, upper, unit) + ", {prior, factor} or {mean, std}, with `drift` when it changes";
   read_ = true;
   Quantity quantity;
   if (type_ == Type::map && has("prior")) {
@@ -106,6 +106,7 @@ Quantity Value::as_quantity(double lower, double upper, const std::string& unit)
   } else {
     throw InputError(path_, shown(), allowed);
   }
+  if (quantity.estimated()) quantity.drift = number_or("drift", 0.0, 0.0, infinity, "");
   return quantity;
 }
 

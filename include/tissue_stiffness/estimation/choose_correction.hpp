@@ -27,6 +27,9 @@ struct FreeFit {
   double rows = 0.0;
 };
 FreeFit free_fit(const FitProblem& problem, const Eigen::VectorXd& w);
+/// The same of one frame, the body displaced as given (3n).
+FreeFit fit_frame(const FitProblem& problem, const Frame& frame, const Eigen::VectorXd& theta,
+                  const Eigen::VectorXd& displacement);
 
 /// Where corrected runs explain the recording best, and by how much they are to be corrected.
 struct Correction {

@@ -24,6 +24,12 @@ struct FreeFrame {
 };
 using FreeFrameVisitor = std::function<void(const FreeFrame&)>;
 
+/// From this time on the parameters are others.
+struct Turn {
+  double time = 0.0;  ///< [s]
+  Eigen::VectorXd theta;
+};
+
 /// A model with what it needs to be run beside a recording.
 struct FreeRunProblem {
   const Model& model;
@@ -33,9 +39,10 @@ struct FreeRunProblem {
   RunStart start;
 };
 
-/// Runs the model at `theta` from rest and compares it with every frame: one misfit a frame. `visit`, where there is one,
-/// sees each. Throws NumericalError when the run diverges.
-std::vector<Misfit> free_run(const FreeRunProblem& problem, const Eigen::VectorXd& theta, const FreeFrameVisitor& visit);
+/// Runs the model at `theta`, and after each of `turns` at its parameters, and compares it with every frame: one misfit a
+/// frame. `visit`, where there is one, sees each. Throws NumericalError when the run diverges.
+std::vector<Misfit> free_run(const FreeRunProblem& problem, Eigen::VectorXd theta, const FreeFrameVisitor& visit,
+                             const std::vector<Turn>& turns = {});
 
 /// The frame's prediction for a body that has not moved.
 Prediction predict_at_rest(const Model& model, const std::vector<std::unique_ptr<ObservationOperator>>& operators,

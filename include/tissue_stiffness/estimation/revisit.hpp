@@ -4,6 +4,7 @@
 #include <future>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "tissue_stiffness/estimation/track.hpp"
@@ -13,8 +14,8 @@ namespace tissue_stiffness {
 /// A look at the recording so far, beside the frames that keep coming.
 class Revisit {
  public:
-  /// Begins at once, with copies.
-  Revisit(const Track& track, std::vector<Frame> frames);
+  /// Begins at once, with copies; asked a question it looks for a change of the parameters, and for nothing else.
+  Revisit(const Track& track, std::vector<Frame> frames, std::optional<ChangeQuestion> change);
   /// Gives up.
   ~Revisit();
   Revisit(const Revisit&) = delete;
@@ -23,18 +24,27 @@ class Revisit {
   /// A frame that came meanwhile: a track that moved goes through it, too.
   void add(const Frame& frame);
   bool finished() const;
+  /// What came of a look.
   struct Outcome {
     std::unique_ptr<Track> track;
-    bool moved = false;  ///< false: only its notes are new
+    bool moved = false;                    ///< false: only its notes are new
+    std::size_t first = 0;                 ///< frame that the track begins with; 0 unless the parameters changed
+    std::optional<ChangeQuestion> change;  ///< what it was asked
   };
   /// Waits for the end; a track that moved is at the last frame added. Throws NumericalError when it cannot follow.
   Outcome take();
+
+  /// The look itself, at once.
+  static Outcome look(const Track& track, const std::vector<Frame>& frames, const std::optional<ChangeQuestion>& change,
+                      const Track::Checkpoint& checkpoint);
 
  private:
   void run();
   std::vector<Frame> arrived();
 
   std::vector<Frame> frames_;
+  std::optional<ChangeQuestion> change_;
+  std::unique_ptr<Track> start_;
   Outcome outcome_;
   std::mutex mutex_;
   std::vector<Frame> later_;  ///< arrived, and not yet gone through

@@ -51,8 +51,9 @@ class Scheme {
   double start() const { return first_stamp_.value_or(0.0) + model_->settings().time.start; }
   Prediction at_rest(const Frame& frame) const;
   /// The free run at `theta` over the frames, compared with each.
-  std::vector<Misfit> compare_free_run(const std::vector<Frame>& frames, const Eigen::VectorXd& theta,
-                                       const FreeFrameVisitor& visit);
+  std::vector<Misfit> compare_free_run(const std::vector<Frame>& frames, const RunStart& start,
+                                       const Eigen::VectorXd& theta, const FreeFrameVisitor& visit,
+                                       const std::vector<Turn>& turns = {});
 
   std::unique_ptr<Model> model_;
   std::shared_ptr<ForwardModel> forward_;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "tissue_stiffness/estimation/change.hpp"
 #include "tissue_stiffness/estimation/choose_correction.hpp"
 #include "tissue_stiffness/estimation/corrected_runs.hpp"
 #include "tissue_stiffness/estimation/ensemble.hpp"
@@ -26,8 +27,11 @@ class Track {
   std::unique_ptr<Track> twin() const;
 
   const AnchoredFilter& filter() const { return filter_; }
+  /// Of the parameters: the filter's, and what a change that began the track leaves open.
+  Eigen::MatrixXd covariance() const;
   const std::shared_ptr<ForwardModel>& forward() const { return forward_; }
   const RunStart& start() const { return start_; }
+  Eigen::VectorXd theta(const Eigen::VectorXd& w) const { return model_.theta(w); }
   /// What the reduced basis leaves out of the surface's motion [m] (basis_error.hpp), as of the last look at it.
   std::optional<double> basis_error() const { return notes_.basis_error; }
   /// The runs are corrected towards the frames, because the model lacks physics.
@@ -50,6 +54,11 @@ class Track {
   /// when its time has come. True if the runs changed: they are then at the last frame. False, too, when runs on the way
   /// diverge or the checkpoint throws a NumericalError: this track must then not be used.
   bool look(const std::vector<Frame>& frames, const Checkpoint& checkpoint);
+  /// A track that goes on from where the parameters changed, where they did: its prior is what the question knew of them
+  /// before, with `covariance`, widened by their drift; it is at the last frame. Null where no change is found, and where
+  /// runs diverge or the checkpoint throws a NumericalError. `first`: frame that it began with.
+  std::unique_ptr<Track> changed(const std::vector<Frame>& frames, const ChangeQuestion& question,
+                                 const Checkpoint& checkpoint, std::size_t& first) const;
   /// Of a twin whose look changed nothing: not to be repeated.
   void take_notes(const Track& other) { notes_ = other.notes_; }
 
@@ -84,6 +93,7 @@ class Track {
   std::unique_ptr<Ensemble> ensemble_;
   std::optional<double> force_;               ///< that corrects the runs (StateCorrection)
   std::unique_ptr<CorrectedRuns> corrected_;  ///< beside the free ones
+  Eigen::VectorXd doubt_;                     ///< from a change that began it; empty: from rest
   Notes notes_;
 };
 

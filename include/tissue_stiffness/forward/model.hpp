@@ -61,6 +61,8 @@ class Model {
   /// Prior in the filter's coordinates.
   Eigen::VectorXd prior_mean() const;
   Eigen::VectorXd prior_std() const;
+  /// By how much each coordinate may have changed after a second, 1 sigma; 0 for what is constant.
+  Eigen::VectorXd drift() const;
   /// Replaces the prior of the initial velocity (`initial: {velocity: from_frames}`), mean and std [m/s].
   void set_velocity_prior(const Eigen::Vector3d& mean, double std);
   /// Back to the prior before any frame.
