@@ -5,7 +5,7 @@ import os
 
 from common import Place
 
-EXPERIMENTS = ('heart', 'echo')
+EXPERIMENTS = ('heart', 'echo', 'failures')
 
 
 def main():
