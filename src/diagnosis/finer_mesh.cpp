@@ -18,7 +18,7 @@ FinerMesh finer_mesh(const Fitted& base) {
   if (!model.settings().mesh.discretisation_error || model.nonlinear() || !MeshError::why_not(model.mesh()).empty()) {
     return out;
   }
-  const TetMesh mesh = finer(model.mesh());
+  const TetMesh mesh = finer(model.mesh(), model.settings().mesh);
   const Study fine(model.settings(), mesh, refine(model.regions(), model.mesh(), mesh), base.study->recording());
   const BatchFit fit = fine.fit(base.fit.w, kSpread * model.prior_std());
   const Study::Rows rows = fine.rows(fit.w);

@@ -5,11 +5,15 @@
 #include "tissue_stiffness/forward/reduced_model.hpp"
 #include "tissue_stiffness/meshing/bend_boundary.hpp"
 #include "tissue_stiffness/meshing/refine.hpp"
+#include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
-constexpr int kMostIterations = 6;
+constexpr int kMostIterations = 12;
+constexpr int kMostCuts = 4;
+constexpr double kSettled = 0.1;      // of the shift
+constexpr double kNegligible = 1e-5;  // prior standard deviations
 constexpr double kLongestStep = 0.1;  // prior standard deviations at once
 constexpr int kMostNodes = 6000;      // refined eightfold: what still factorises in seconds and within 2 GB
 
@@ -18,9 +22,32 @@ void drive(const MeshError::Question& question, Model& model) {
   model.set_first_stamp(question.first_stamp);
 }
 
+// Gauss-Newton from w on, with steps that are cut while they do not lower the cost.
+template <typename Run>
+AnchoredFilter fit(const Run& run, AnchoredFilter filter, const MeshError::Question& q) {
+  run(filter, q.w);
+  const Eigen::VectorXd limit = kLongestStep * q.prior_std;
+  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+    const AnchoredFilter before = filter;
+    Eigen::VectorXd step = (before.mean() - before.anchor()).cwiseMax(-limit).cwiseMin(limit);
+    const auto settled = [&](const Eigen::VectorXd& at) {
+      return (step.array().abs() < kSettled * (at - q.w).array().abs() + kNegligible * q.prior_std.array()).all();
+    };
+    if (settled(before.mean())) return before;
+    bool better = false;
+    for (int cut = 0; cut < kMostCuts && !better; ++cut, step *= 0.3) {
+      run(filter, before.anchor() + step);
+      better = filter.cost() < before.cost();
+    }
+    if (!better) return before;
+  }
+  throw NumericalError("the fit to a finer mesh does not settle");
+}
+
 }  // namespace
 
-TetMesh finer(const TetMesh& mesh) {
+TetMesh finer(const TetMesh& mesh, const MeshSettings& settings) {
+  if (settings.faceted) return refine(mesh);
   TetMesh smooth = mesh;
   smooth_boundary(smooth);
   return refine(smooth);
@@ -33,7 +60,7 @@ struct MeshError::Studies {
 
   Studies(const ModelSettings& settings, const TetMesh& mesh)
       : coarse(settings, mesh),
-        fine(settings, finer(mesh), refine(coarse.regions(), mesh, finer(mesh))),
+        fine(settings, finer(mesh, settings.mesh), refine(coarse.regions(), mesh, finer(mesh, settings.mesh))),
         coarse_runs(coarse),
         fine_runs(fine),
         operators(make_observation_operators(coarse)) {}
@@ -47,7 +74,7 @@ MeshError::MeshError(const ModelSettings& settings, const TetMesh& mesh)
     : studies_(std::make_unique<Studies>(settings, mesh)) {}
 MeshError::~MeshError() = default;
 
-Eigen::VectorXd MeshError::shift(const Question& q) {
+MeshError::Answer MeshError::study(const Question& q) {
   Studies& s = *studies_;
   drive(q, s.coarse);
   drive(q, s.fine);
@@ -60,11 +87,9 @@ Eigen::VectorXd MeshError::shift(const Question& q) {
     const Eigen::VectorXd u = run->displacement().head(s.coarse.fem().dof_count());
     truth.push_back(predict_frame(s.coarse, s.operators, frame, theta, u));
   }
-  AnchoredFilter filter(q.w, q.prior_std.cwiseAbs2().asDiagonal());
-  Ensemble ensemble(s.coarse, s.coarse_runs, s.operators);
-  Eigen::VectorXd fit = q.w;
-  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
-    filter.move_anchor(fit, q.spread);
+  const auto run_coarse = [&](AnchoredFilter& filter, const Eigen::VectorXd& anchor) {
+    filter.move_anchor(anchor, q.spread);
+    Ensemble ensemble(s.coarse, s.coarse_runs, s.operators);
     ensemble.restart(filter.sigma_points(), {q.start});
     for (std::size_t k = 0; k < q.frames.size(); ++k) {
       ensemble.advance(q.frames[k].time);
@@ -72,12 +97,9 @@ Eigen::VectorXd MeshError::shift(const Question& q) {
       const Eigen::VectorXd& sigma = truth[k].sigma;
       filter.update(truth[k].predicted, rows, sigma.cwiseAbs2(), Eigen::VectorXd::Ones(sigma.size()));
     }
-    const Eigen::VectorXd limit = kLongestStep * q.prior_std;
-    const Eigen::VectorXd step = (filter.mean() - fit).cwiseMax(-limit).cwiseMin(limit);
-    fit += step;
-    if ((step.array().abs() < 0.1 * (fit - q.w).array().abs()).all()) break;
-  }
-  return fit - q.w;
+  };
+  const AnchoredFilter filter = fit(run_coarse, AnchoredFilter(q.w, q.prior_std.cwiseAbs2().asDiagonal()), q);
+  return {filter.mean() - q.w, filter.mean_square()};
 }
 
 }  // namespace tissue_stiffness

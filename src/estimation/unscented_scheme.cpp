@@ -23,6 +23,7 @@ constexpr std::size_t kWindow = 4000;        // frames kept for replay; later on
 constexpr std::size_t kFirstMeshStudy = 16;  // frames
 constexpr double kConverged = 0.05;          // relative standard deviation
 constexpr double kShiftDoubt = 0.5;          // of the mesh's effect, once it is corrected for
+constexpr double kTelling = 0.1;             // mean square of a mesh's misfit in sigmas that a recording would show
 constexpr double kInvalidSigmas = 10.0;      // rms error over noise at which the model says nothing about the body
 
 class UnscentedScheme : public Scheme {
@@ -210,12 +211,20 @@ class UnscentedScheme : public Scheme {
     return MeshError::why_not(model_->mesh());
   }
 
+  // A mesh as wrong as the study makes it would leave a misfit; where the recording shows less, the mesh is less wrong. (A
+  // body may really have the facets that the finer mesh bends.)
+  Eigen::VectorXd believed(const MeshError::Answer& answer) const {
+    const double seen = track_->filter().misfit_scale() - 1.0;
+    if (answer.left < kTelling || seen >= answer.left) return answer.shift;
+    return std::sqrt(std::max(seen, kTelling) / answer.left) * answer.shift;
+  }
+
   // What the mesh does to the estimate, asked anew whenever the recording has doubled; in the background when a node runs.
   void study_mesh() {
     if (study_.valid() && (!background() || study_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)) {
       try {
         study_.get();
-        shift_ = found_shift_;
+        shift_ = believed(studied_);
       } catch (const std::exception& error) {
         unstudied_ = error.what();
       }
@@ -230,7 +239,7 @@ class UnscentedScheme : public Scheme {
     for (const auto& [topic, course] : model_->courses()) question.courses.emplace(topic, *course);
     const auto study = [this, question = std::move(question)] {
       if (mesh_error_ == nullptr) mesh_error_ = std::make_unique<MeshError>(model_->settings(), model_->mesh());
-      found_shift_ = mesh_error_->shift(question);
+      studied_ = mesh_error_->study(question);
     };
     study_ = background() ? aside(study) : std::async(std::launch::async, study);
     if (!background()) study_mesh();
@@ -246,7 +255,7 @@ class UnscentedScheme : public Scheme {
 
   std::string unstudied_;                  ///< why the mesh's error is not assessed; empty: it is
   std::unique_ptr<MeshError> mesh_error_;  ///< the study's own; only its thread touches it
-  Eigen::VectorXd found_shift_;            ///< the same
+  MeshError::Answer studied_;              ///< the same
   Eigen::VectorXd shift_;                  ///< estimate less truth because of the mesh; empty: not known yet
   std::size_t last_study_ = 0;
   std::future<void> study_;  ///< last: its thread uses the members above

@@ -79,7 +79,7 @@ AnchoredFilter::Innovation AnchoredFilter::update(const Eigen::VectorXd& y, cons
 }
 
 double AnchoredFilter::misfit_scale() const {
-  return rows_ > 0 ? std::max(1.0, data_cost_ / rows_) : 1.0;
+  return std::max(1.0, mean_square());
 }
 
 Eigen::MatrixXd AnchoredFilter::total_information() const {

@@ -95,6 +95,7 @@ MeshSettings read_mesh(const Value& map, const std::string& directory) {
     mesh.max_edge_length = read_number(map, key("mesh.max_edge_length"));
   }
   mesh.order = read_integer(map, key("mesh.order"));
+  mesh.faceted = read_choice(map, key("mesh.boundary")) == "faceted";
   mesh.discretisation_error = read_boolean(map, key("mesh.discretisation_error"));
   return mesh;
 }

@@ -58,7 +58,7 @@ TEST(Value, ReadsNumbersAsPeopleWriteThem) {
 }
 
 TEST(Value, QuantitiesAreKnownLogNormalOrNormal) {
-  const Value root = parse_yaml("a: 3\nb: {prior: 30e3, factor: 3}\nc: {mean: -1, std: 0.5}\n", "m");
+  const Value root = parse_yaml("a: 3\nb: {prior: 30e3, factor: 3}\nc: {mean: -1, std: 0.5, drift: 0.2}\n", "m");
   const Quantity a = root.at("a").as_quantity(-infinity, infinity, "Pa");
   const Quantity b = root.at("b").as_quantity(0.0, infinity, "Pa");
   const Quantity c = root.at("c").as_quantity(-infinity, infinity, "Pa");
@@ -70,6 +70,8 @@ TEST(Value, QuantitiesAreKnownLogNormalOrNormal) {
   EXPECT_EQ(c.kind, Quantity::Kind::normal);
   EXPECT_EQ(c.value, -1.0);
   EXPECT_EQ(c.spread, 0.5);
+  EXPECT_EQ(b.drift, 0.0);
+  EXPECT_EQ(c.drift, 0.2);
   EXPECT_NO_THROW(root.require_all_read());
 }
 
@@ -82,12 +84,15 @@ TEST(Value, ConversionsSayWhatIsAllowed) {
   EXPECT_EQ(read("0.7", number), "m.yaml:1: x: found 0.7; allowed: a number from 0 to 0.5 [Pa]");
   EXPECT_EQ(read("stiff", number), "m.yaml:1: x: found `stiff`; allowed: a number from 0 to 0.5 [Pa]");
   EXPECT_EQ(read("-1", quantity), "m.yaml:1: x: found -1; allowed: a number > 0 [Pa]");
-  EXPECT_EQ(read("[1]", quantity), "m.yaml:1: x: found [1]; allowed: a number > 0 [Pa], {prior, factor} or {mean, std}");
+  EXPECT_EQ(read("[1]", quantity),
+            "m.yaml:1: x: found [1]; allowed: a number > 0 [Pa], {prior, factor} or {mean, std}, "
+            "with `drift` when it changes");
   expect_contains(read("{prior: 1}", quantity), {"m.yaml:1: x: found {prior: 1}", "{prior, factor}"});
   expect_contains(read("{prior: 1, std: 1}", quantity), {"found {prior: 1, std: 1}", "{mean, std}"});
   expect_contains(read("{}", quantity), {"found {}", "{mean, std}"});
   expect_contains(read("{prior: 0, factor: 2}", quantity), {"m.yaml:1: x.prior: found 0", "> 0 [Pa]"});
   expect_contains(read("{prior: 1, factor: 1}", quantity), {"m.yaml:1: x.factor: found 1", "> 1"});
+  expect_contains(read("{prior: 1, factor: 2, drift: -1}", quantity), {"m.yaml:1: x.drift: found -1", ">= 0"});
   expect_contains(read("{mean: 1, std: 0}", quantity), {"m.yaml:1: x.std: found 0", "> 0"});
   expect_contains(read("1.5", [](const Value& v) { v.as_integer(1, 2); }), {"found 1.5", "whole number from 1 to 2"});
   expect_contains(read("1", [](const Value& v) { v.as_boolean(); }), {"found 1", "true or false"});

@@ -13,12 +13,13 @@
 
 namespace tissue_stiffness {
 
-/// The same body with every tetrahedron cut into eight and flat facets bent to the smooth surface they stand for.
+/// The same body with every tetrahedron cut into eight, and flat facets bent to the smooth surface that they stand for
+/// unless the settings say that they are the body's own.
 /// Nodes keep their numbers.
-TetMesh finer(const TetMesh& mesh);
+TetMesh finer(const TetMesh& mesh, const MeshSettings& settings);
 
 /// What the mesh does to the parameters. The model runs once more on a mesh with every tetrahedron cut into eight and flat
-/// facets bent to the smooth surface they stand for; fitted to that run, the estimator's own mesh would be off by `shift`.
+/// facets bent to the smooth surface they stand for; fitted to that run, the estimator's own mesh would be off by a shift.
 /// Linear models of moderate size only: `why_not` says what stands against it.
 class MeshError {
  public:
@@ -41,9 +42,15 @@ class MeshError {
     double first_stamp = 0.0;   ///< of the recording [s]
     std::map<std::string, Course> courses;
   };
-  /// Estimate less truth in filter coordinates if the finer mesh were the truth: the fit of the coarse model to the fine
-  /// run.
-  Eigen::VectorXd shift(const Question& question);
+  struct Answer {
+    /// Estimate less truth in filter coordinates if the finer mesh were the truth: the fit of the coarse model to the fine
+    /// run.
+    Eigen::VectorXd shift;
+    /// Mean square error over sigma that this fit leaves: with such a mesh a recording cannot be explained any better.
+    double left = 0.0;
+  };
+  /// Throws NumericalError when the fit does not settle.
+  Answer study(const Question& question);
 
  private:
   struct Studies;

@@ -45,6 +45,8 @@ class AnchoredFilter {
   /// Mean square of error over sigma at the anchor, at least 1: a model that cannot explain the data must not be sure of
   /// its parameters (the reduced chi-square of Press et al. 2007, sec. 15.1).
   double misfit_scale() const;
+  /// The same without the bound.
+  double mean_square() const { return rows_ > 0 ? data_cost_ / rows_ : 0.0; }
   /// Log-posterior's quadratic part at the anchor so far: data cost plus the prior's.
   double cost() const;
 

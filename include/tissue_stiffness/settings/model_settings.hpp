@@ -18,6 +18,7 @@ struct MeshSettings {
   double scale = 1.0;                ///< file unit -> m
   double max_edge_length = 0.0;      ///< [m]; 0: as the surface is
   int order = 2;                     ///< 2: 10-node tetrahedra, 1: 4-node
+  bool faceted = false;              ///< the body has the mesh's facets; else they stand for a smooth surface
   bool discretisation_error = true;  ///< find out what the mesh does to the estimate, correct it, widen the interval
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< revolve: direction of the axis of revolution in `model`
   double depth = 0.0;                               ///< extrude: thickness along the viewing direction [m]

@@ -9,8 +9,8 @@
 namespace tissue_stiffness {
 
 /// A number of the model file: known, or estimated with a prior. `{prior: m, factor: f}` is log-normal with median m and
-/// 1-sigma factor f > 1; `{mean: m, std: s}` is normal. With `drift: d` beside them it may change while the body moves, like
-/// a random walk: after t seconds the log of the former, the value of the latter, has moved by d sqrt(t) (1 sigma).
+/// 1-sigma factor f > 1; `{mean: m, std: s}` is normal. With `drift: d` beside them it may change while the body moves,
+/// like a random walk: after t seconds the log of the former, the value of the latter, has moved by d sqrt(t) (1 sigma).
 struct Quantity {
   enum class Kind { known, log_normal, normal };
   Kind kind = Kind::known;

@@ -1,0 +1,107 @@
+"""Regional moduli: three in the ratios 1 : 3 : 0.5, and the ten slices of Optimus' cylinder, each simulated on a mesh of eight
+times as many elements and in time steps, then estimated. Prints the tables of doc/regional.md."""
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+
+import yaml
+
+from cylinder import cylinder, volume, write_vtk
+
+SLICES = [3500, 4000, 1000, 6000, 2000, 7000, 2500, 8000, 3000, 1500]  # Pa
+OPTIMUS = [3254, 4808, 1010, 6791, 1998, 8056, 2611, 46699, 5828, 969]  # what it ends at, from 4000 +- 1000
+LAYERS = 40
+THIRDS = [4000, 12000, 2000]
+TITLES = {'thirds': 'Three moduli', 'slices': "Optimus' ten slices"}
+
+
+class Body:
+    """A cylinder in slices of equal length, both ends clamped, gravity across it switched on at rest."""
+
+    def __init__(self, moduli, layers, rings=2, radius=0.02, length=0.3, mass=0.2):
+        self.moduli = moduli
+        self.nodes, self.tets, self.line = cylinder(radius, length, layers, rings)
+        density = mass / volume(self.nodes, self.tets)
+        big, step = 1.0, length / len(moduli)
+        self.regions = {}
+        for i in range(len(moduli)):
+            box = {'min': [i * step - 1e-6, -big, -big], 'max': [(i + 1) * step + 1e-6, big, big]}
+            self.regions['slice_%d' % (i + 1)] = {'box': box}
+        self.regions['left'] = {'box': {'min': [-big] * 3, 'max': [1e-9, big, big]}}
+        self.regions['right'] = {'box': {'min': [length - 1e-9, -big, -big], 'max': [big] * 3}}
+        self.others = [{'inertia': {'density': density}}, {'gravity': {'acceleration': [0, 0, -9.81]}},
+                       {'fixed': {'region': 'left'}}, {'fixed': {'region': 'right'}}]
+
+    def model(self, moduli, noise):
+        effects = self.others + [
+            {'elasticity': {'law': 'linear', 'young_modulus': modulus, 'poisson_ratio': 0.45, 'region': 'slice_%d' % (i + 1)}}
+            for i, modulus in enumerate(moduli)]
+        return {'mesh': {'file': 'mesh.vtk', 'boundary': 'faceted'}, 'regions': self.regions, 'effects': effects,
+                'observations': [{'vertices': {'topic': '/line', 'noise': noise}}]}
+
+    def run(self, folder, prior, noise, duration):
+        write_vtk(os.path.join(folder, 'mesh.vtk'), self.nodes, self.tets)
+        scene = self.model([float(e) for e in self.moduli], noise)
+        scene['simulation'] = {'duration': duration, 'rate': 100, 'step': 0.001, 'refine': 1, 'seed': 1,
+                               'sensors': {'/line': {'ids': [int(i) for i in self.line]}}}
+        files = {'scene.yaml': scene, 'model.yaml': self.model([prior] * len(self.moduli), noise)}
+        for name, content in files.items():
+            with open(os.path.join(folder, name), 'w') as file:
+                yaml.safe_dump(content, file, sort_keys=False)
+        tool('simulate', os.path.join(folder, 'scene.yaml'), '--output', os.path.join(folder, 'line.bag'))
+        start = time.time()
+        tool('estimate', os.path.join(folder, 'model.yaml'), os.path.join(folder, 'line.bag'), '--output', folder)
+        with open(os.path.join(folder, 'results.json')) as file:
+            results = json.load(file)
+        print('%d vertices, %d frames, estimated in %.0f s, rms error %.2f of the noise\n' % (
+            len(self.nodes), results['frames'], time.time() - start, results['rms_error'] / noise))
+        return results
+
+
+def tool(name, *arguments):
+    subprocess.run([os.path.join(TOOLS, name), *arguments, '--quiet'], check=True)
+
+
+def table(results, truth, peer=None):
+    print('| slice | truth [Pa] | ours [Pa] | error | 95 % interval | identifiable |' + (' Optimus [Pa] |' if peer else ''))
+    print('|---|---|---|---|---|---|' + ('---|' if peer else ''))
+    held, worst = 0, 0.0
+    for i, modulus in enumerate(truth):
+        name = 'elasticity%s.young_modulus' % ('' if i == 0 else '#%d' % (i + 1))
+        p = results['parameters'][name]
+        low, high = p['interval95']
+        error = 100 * (p['mean'] / modulus - 1)
+        held += low <= modulus <= high
+        worst = max(worst, abs(error))
+        print('| %d | %d | %.0f | %+.1f %% | %.0f to %.0f | %s |' % (
+            i + 1, modulus, p['mean'], error, low, high, results['identifiable'][name]['verdict'])
+            + (' %d (%+.0f %%) |' % (peer[i], 100 * (peer[i] / modulus - 1)) if peer else ''))
+    print('\n%d of %d intervals hold the truth; the largest error is %.1f %%.\n' % (held, len(truth), worst))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('root')
+    parser.add_argument('which', nargs='*', default=['thirds', 'slices'], help='thirds, slices (default: both)')
+    parser.add_argument('--keep', help='folder for the recordings')
+    options = parser.parse_args()
+    global TOOLS
+    TOOLS = os.path.join(options.root, 'build', 'devel', 'lib', 'tissue_stiffness')
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = options.keep or temporary
+        os.makedirs(folder, exist_ok=True)
+        for which in options.which:
+            moduli = THIRDS if which == 'thirds' else SLICES
+            body = Body(moduli, LAYERS)
+            print('## %s\n' % TITLES[which], flush=True)
+            results = body.run(folder, {'prior': 4000.0, 'factor': 2.0}, 5e-4, 3.0)
+            table(results, moduli, OPTIMUS if which == 'slices' else None)
+            sys.stdout.flush()
+
+
+if __name__ == '__main__':
+    main()
