@@ -13,7 +13,9 @@ constexpr double kBaseSpread = 0.05;   // prior standard deviations, of the base
 constexpr double kAddedSpread = 0.25;  // and of the added ones
 constexpr double kLeastFactor = 1.02;  // of a log-normal prior in the proposed model file
 constexpr double kPromise = 0.1;       // of the structured part: what quick runs have to explain before a full one
-constexpr double kPriorWidth = 5.0;    // posterior standard deviations
+constexpr double kPriorWidth = 5.0;    // posterior standard deviations, of the proposed priors
+constexpr double kRoom = 0.5;          // of the distance to a parameter's bound: the most that they have
+constexpr double kLeastShare = 1e-3;   // of the proposal's prior: the least
 
 struct Start {
   Eigen::VectorXd w, spread;
@@ -78,6 +80,11 @@ std::size_t find_quantity(const std::string& entry, const std::string& key) {
   return std::string::npos;
 }
 
+// A prior that reaches beyond the parameter's bounds would have sigma points where no body can be.
+double within_bounds(double width, const FreeParameter& p, double value) {
+  return std::min(width, kRoom * std::min(value - p.lower, p.upper - value));
+}
+
 // "name: {key: value, ...}" with every estimated parameter's quantity replaced by its fit.
 std::string fitted_entry(const Study& study, const Study& base, const BatchFit& fit, const Candidate& way) {
   std::string out = way.proposal.refine;
@@ -93,13 +100,14 @@ std::string fitted_entry(const Study& study, const Study& base, const BatchFit& 
     if (at == std::string::npos) continue;  // second and third components are written with the first
     if (vector) {
       const Eigen::Vector3d mean = fit.w.segment<3>(k);
-      out.replace(at, out.find('}', at) + 1 - at, name + ": " + normal(mean, std::max(width, 1e-3 * p.prior.spread)));
+      out.replace(at, out.find('}', at) + 1 - at,
+                  name + ": " + normal(mean, std::max(width, kLeastShare * p.prior.spread)));
       continue;
     }
     const bool positive = p.prior.kind == Quantity::Kind::log_normal;
     const std::string quantity =
         positive ? log_normal(p.to_value(fit.w[k]), std::max(std::exp(std::min(width, 3.0)), kLeastFactor))
-                 : normal(p.to_value(fit.w[k]), std::max(width, 1e-3 * p.prior.spread));
+                 : normal(p.to_value(fit.w[k]), std::max(within_bounds(width, p, fit.w[k]), kLeastShare * p.prior.spread));
     out.replace(at, out.find('}', at) + 1 - at, key + ": " + quantity);
   }
   return out;
