@@ -95,7 +95,11 @@ class Look {
   std::vector<std::string> set() const;
   void describe_all(std::vector<MissingEffect>& out) const;
   MissingEffect describe(const Ranked& r) const;
-  bool leaves_more_than_noise() const { return refits_.empty() || refits_.front().cost > kExplained * kExplained * rows_; }
+  /// Sum of squares that is no more than noise and what the mesh itself does.
+  double unavoidable() const { return (1.0 + floor_ * floor_) * rows_; }
+  bool leaves_more_than_noise() const {
+    return refits_.empty() || refits_.front().cost > kExplained * kExplained * unavoidable();
+  }
   bool noise() const { return cost_ < kAdequate * kAdequate * rows_; }
   bool explained() const {
     if (refits_.empty()) return false;
@@ -264,9 +268,12 @@ std::vector<std::string> Look::set() const {
   if (refits_.empty()) return set;
   const double variance = std::max(1.0, refits_.front().cost / rows_);
   const double best = evidence(refits_.front(), rows_, variance);
+  const double by_a_finer_mesh = kRemainder * floor_ * floor_ * rows_;
   for (const Refit& r : refits_) {
     const bool larger = r.effects.size() > refits_.front().effects.size();
-    if (larger || best - evidence(r, rows_, variance) >= kSameEvidence) continue;
+    const bool alike =
+        best - evidence(r, rows_, variance) < kSameEvidence || r.cost - refits_.front().cost < by_a_finer_mesh;
+    if (larger || !alike) continue;
     for (const std::string& effect : r.effects) {
       if (std::find(set.begin(), set.end(), effect) == set.end()) set.push_back(effect);
     }
