@@ -1,4 +1,4 @@
-"""Experiment 3: a real echo cine (outlines, area, long axis, relative stiffness) and real cine MRI against experts' points."""
+"""A real echo cine (outlines, area, long axis, relative stiffness) and real cine MRI against experts' points."""
 import os
 import subprocess
 
@@ -152,7 +152,8 @@ def read_mri(work, shared):
     """Paths of the inverted, enlarged region in every phase, and the map from the scanner's frame to its pixels."""
     import glob
     import pydicom
-    slices = [pydicom.dcmread(name) for name in glob.glob(os.path.join(shared, 'data', 'heart_bivme', 'cine_mri', SERIES, '*.dcm'))]
+    names = glob.glob(os.path.join(shared, 'data', 'heart_bivme', 'cine_mri', SERIES, '*.dcm'))
+    slices = [pydicom.dcmread(name) for name in names]
     slices.sort(key=lambda image: float(image.TriggerTime))
     head = slices[0]
     corner = np.array(head.ImagePositionPatient, float)
@@ -175,7 +176,8 @@ def compare(ours, theirs):
     """Mean distance between two closed curves, both ways [pixel], and Dice's overlap of what they enclose."""
     def dense(points):
         closed = np.vstack([points, points[:1]])
-        return np.concatenate([a + (b - a) * np.linspace(0, 1, 20, endpoint=False)[:, None] for a, b in zip(closed, closed[1:])])
+        steps = np.linspace(0, 1, 20, endpoint=False)[:, None]
+        return np.concatenate([a + (b - a) * steps for a, b in zip(closed, closed[1:])])
     a, b = dense(ours), dense(theirs)
     gaps = np.linalg.norm(a[:, None] - b[None], axis=2)
     masks = []
@@ -183,7 +185,8 @@ def compare(ours, theirs):
         mask = np.zeros((2 * HALF * ZOOM,) * 2, np.uint8)
         cv2.fillPoly(mask, [np.round(points).astype(np.int32)], 1)
         masks.append(mask.astype(bool))
-    return 0.5 * (gaps.min(axis=0).mean() + gaps.min(axis=1).mean()), 2 * (masks[0] & masks[1]).sum() / sum(m.sum() for m in masks)
+    apart = 0.5 * (gaps.min(axis=0).mean() + gaps.min(axis=1).mean())
+    return apart, 2 * (masks[0] & masks[1]).sum() / sum(m.sum() for m in masks)
 
 
 def cine_mri(work, shared):
@@ -207,7 +210,8 @@ def cine_mri(work, shared):
     publish(work.root, 'mri', table(['figure', 'median', 'worst', 'best'], [
         ['mean distance of the outlines [mm]', '%.2f' % np.median(apart), '%.2f' % apart.max(), '%.2f' % apart.min()],
         ['Dice', '%.3f' % np.median(dice), '%.3f' % dice.min(), '%.3f' % dice.max()]]) +
-            '\nOutlines in %d of %d phases. End-diastolic area: ours %.1f, theirs %.1f cm²; end-systolic: %.1f and %.1f cm².\n' %
+            '\nOutlines in %d of %d phases. End-diastolic area: ours %.1f, theirs %.1f cm²; end-systolic: %.1f and %.1f '
+            'cm².\n' %
             (len(kept), len(paths), sizes[0][0], sizes[0][1], min(s[0] for s in sizes), min(s[1] for s in sizes)))
 
 

@@ -1,4 +1,4 @@
-"""Experiment 4: the paper's own list of error sources, each made, measured, and shown to `diagnose`."""
+"""The paper's own list of error sources, each made, measured, and shown to `diagnose`."""
 import json
 import os
 
@@ -72,7 +72,8 @@ def velocities(bench, times, frames):
         model['effects'][1]['elasticity']['young_modulus'] = narrow
         theirs = bench.fit('paper_every_%d' % stride, model, bag)
         ours = bench.fit('ours_every_%d' % stride, bench.model(), bag)
-        rows.append(['%.0f' % (1e3 * stride / RATE), '%d' % len(times[::stride]), percent(theirs['off']), percent(ours['off']), ours['E']])
+        rows.append(['%.0f' % (1e3 * stride / RATE), '%d' % len(times[::stride]), percent(theirs['off']),
+                     percent(ours['off']), ours['E']])
     publish(bench.work.root, 'velocities', table(['between samples [ms]', 'samples', 'error of their scheme', 'error of ours',
                                                   'ours [kPa]'], rows))
 
@@ -87,7 +88,8 @@ def sensitivity(bench):
         rows.append(['%.1f mm' % largest, row['E'], percent(row['off']), '%.1f %%' % (100 * row['std'])])
     few = bench.bag('few', *bench.truth('few'), points=slice(None, None, 50))
     row = bench.fit('few', bench.model(), few)
-    rows.append(['as the first, %d vertices seen' % len(bench.ids[::50]), row['E'], percent(row['off']), '%.1f %%' % (100 * row['std'])])
+    rows.append(['as the first, %d vertices seen' % len(bench.ids[::50]), row['E'], percent(row['off']),
+                 '%.1f %%' % (100 * row['std'])])
     publish(bench.work.root, 'sensitivity', table(['largest motion', 'E [kPa]', 'error', 'standard deviation'], rows))
 
 
@@ -99,7 +101,8 @@ def hidden(bench, times, frames):
     slow = [{'viscoelasticity': {'gamma': 0.3, 'tau': 0.08}}]
     cases = [('nothing', 'nothing', bench.model(), bench.bag('nothing', times, frames)),
              ('support', 'the base gives way', bench.model(), bench.bag('support', *bench.truth('support', cushion))),
-             ('relaxing', 'the muscle relaxes (viscoelasticity)', bench.model(), bench.bag('relaxing', *bench.truth('relaxing', slow))),
+             ('relaxing', 'the muscle relaxes (viscoelasticity)', bench.model(),
+              bench.bag('relaxing', *bench.truth('relaxing', slow))),
              ('late', 'the recording starts in mid-beat, at speed', bench.model(onset=begun), late),
              ('begun', 'the same, `time: {start: %g}`' % begun, bench.model(onset=begun, time={'start': begun}), late),
              ('contraction', 'the contraction is %.0f %% weaker than assumed' % (100 * (1 - 1 / OFF)), bench.model(share=OFF),
@@ -107,10 +110,11 @@ def hidden(bench, times, frames):
     rows = []
     for name, label, model, bag in cases:
         plain, found = bench.fit(name, model, bag), bench.diagnose(name, model, bag)
-        rows.append([label, percent(plain['off']), '%.2f' % plain['rms'], found['verdict'] + (': ' + found['set'] if found['set'] else ''),
+        rows.append([label, percent(plain['off']), '%.2f' % plain['rms'],
+                     found['verdict'] + (': ' + found['set'] if found['set'] else ''),
                      found['added'] or '-', percent(found['off']), '%.2f' % found['rms']])
-    publish(bench.work.root, 'failures', table(['what the model has wrong', 'error of E', 'rms error / noise', '`diagnose --auto`', 'added',
-                                                'error of E then', 'held-out error / noise then'], rows))
+    publish(bench.work.root, 'failures', table(['what the model has wrong', 'error of E', 'rms error / noise',
+                                                '`diagnose --auto`', 'added', 'error of E then', 'held-out error / noise then'], rows))
 
 
 def main(place):

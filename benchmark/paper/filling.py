@@ -1,5 +1,5 @@
-"""How stiff the echo's ventricle is at the end of its filling, over an assumed rise of pressure: from rest in diastasis, when the
-first rush of blood is over, to the largest outline after the atrium's beat. A body of revolution of the first outline."""
+"""How stiff the echo's ventricle is at the end of its filling, over an assumed rise of pressure: from rest in diastasis,
+when the first rush of blood is over, to the largest outline after the atrium's beat. A body of revolution of the first outline."""
 import cv2
 import geometry_msgs.msg
 import numpy as np
@@ -116,7 +116,8 @@ def model(inner_vertices, peak, duration, work, seed):
     return {'mesh': {'file': 'ventricle.obj'},
             'regions': {'cavity': {'vertices': inner_vertices}, 'base': {'box': {'min': [-1, -1, -1e-7], 'max': [1, 1, 1]}}},
             'effects': [{'inertia': {'density': 1060.0}},
-                        {'elasticity': {'law': 'linear', 'young_modulus': {'prior': 10e3, 'factor': 5.0}, 'poisson_ratio': 0.45}},
+                        {'elasticity': {'law': 'linear', 'young_modulus': {'prior': 10e3, 'factor': 5.0},
+                                        'poisson_ratio': 0.45}},
                         {'fixed': {'region': 'base'}}, {'pressure': {'region': 'cavity', 'course': {'file': course}}}],
             'observations': [{'contour': {'image': IMAGE, 'camera_info': INFO, 'noise': NOISE, 'projection': 'slice',
                                           'region': 'cavity', 'segmentation': {'kind': 'cavity', 'seed': seed}}}]}

@@ -1,4 +1,4 @@
-"""Experiment 1, the paper's table 1 and figure 6: Young's modulus of a beating heart from its surfaces."""
+"""The paper's table 1 and figure 6: Young's modulus of a beating heart from its surfaces."""
 import os
 
 import numpy as np
@@ -23,7 +23,8 @@ BASE = {'base': {'box': {'min': [-1, -1, -1e-7], 'max': [1, 1, 1]}}}
 SEEN = [{'vertices': {'topic': TOPIC, 'noise': NOISE}}]
 PUBLISHED = {
     'E': '37±2 76±3 93±4 134±7 167±10', 'error': '7.5 5 7 4.3 7.2', 'std': '1.41 2 3.2 7.5 10.2',
-    'distance': '0.2±0.1 0.3±0.1 0.3±0.1 0.5±0.2 0.7±0.2', 'tracking': '1.3 2.0 2.0 3.3 4.7', 'force': '8-37 17-80 17-85 25-110 30-170'}
+    'distance': '0.2±0.1 0.3±0.1 0.3±0.1 0.5±0.2 0.7±0.2', 'tracking': '1.3 2.0 2.0 3.3 4.7',
+    'force': '8-37 17-80 17-85 25-110 30-170'}
 
 
 def effects(young_modulus, stress):
@@ -180,7 +181,8 @@ def pictures(heart, rows, path):
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.5, 3.4))
     row = rows[0]
     truth = 1e3 * row['truth']
-    for label, name, colour in (('paper_keys', 'their scheme, two samples a beat', '#c0504d'), ('ours', 'ours, the whole beat', '#1f5fa8')):
+    for label, name, colour in (('paper_keys', 'their scheme, two samples a beat', '#c0504d'),
+                                ('ours', 'ours, the whole beat', '#1f5fa8')):
         values = np.concatenate([[1e3 * row['start'][0]], means(row[label]['tracked'])])
         kept = np.unique(np.round(np.linspace(0, len(values) - 1, min(len(values), 13))).astype(int))
         apart = [heart.distance(float(values[k]), truth, row['reference'])[0] for k in kept]
@@ -204,8 +206,8 @@ def pictures(heart, rows, path):
 
 def about(heart, rows):
     worst = max(abs(off(row, label)) for row in rows for label in ('ours', 'low', 'high'))
-    return ('%d tracked vertices, 0.2 mm of noise; largest motion %.1f mm. Ours: largest error %.2f %%, largest surface distance '
-            '%.3f mm, any start.\n\n' % (len(heart.ids), rows[0]['largest'], worst,
+    return ('%d tracked vertices, 0.2 mm of noise; largest motion %.1f mm. Ours: largest error %.2f %%, largest surface '
+            'distance %.3f mm, any start.\n\n' % (len(heart.ids), rows[0]['largest'], worst,
                                          max(row[label]['distance'][0] for row in rows for label in ('ours', 'low', 'high'))))
 
 
