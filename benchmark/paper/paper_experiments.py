@@ -5,7 +5,7 @@ import os
 
 from common import Place
 
-EXPERIMENTS = ('heart', 'echo', 'failures')
+EXPERIMENTS = ('heart', 'echo', 'balls', 'failures')
 
 
 def main():
