@@ -19,9 +19,6 @@ constexpr int kPieces = 6;                                         // each into
 constexpr double kShortest = 1.0;                                  // [s] that a change may have built up for, at least
 constexpr double kEvidence = 20.0;                                 // fall of the cost that a change must bring
 constexpr double kExplains = 0.8;                                  // of the excess
-constexpr int kFewest = 8;                                         // frames before which nothing is suspected
-constexpr double kRecent = 4.0, kAverage = 15.0;                   // frames that the averages remember
-constexpr double kRise = 1.5;                                      // of the misfit that is suspicious
 
 /// A free run's motion at some instants, to go on from.
 struct Instant {
@@ -33,7 +30,7 @@ struct Instant {
 struct Guess {
   Instant at;
   Eigen::VectorXd w;
-  double cost = 0.0;  ///< of the frames from `frames_` on, the change's own included
+  double cost = 0.0;  ///< of the frames after the first instant looked at, and of the change itself
 };
 
 class Search {
@@ -216,46 +213,6 @@ std::optional<Change> find_change(const FitProblem& problem, const ChangeQuestio
 
 Eigen::VectorXd drifted(const ChangeQuestion& question, double span) {
   return std::max(kShortest, span) * question.drift.cwiseAbs2();
-}
-
-void ChangeWatch::add(double square, const AnchoredFilter& filter) {
-  if ((drift_.array() <= 0.0).all()) return;
-  ++frames_;
-  recent_ += (square - recent_) / std::min<double>(frames_, kRecent);
-  average_ += (square - average_) / std::min<double>(frames_, kAverage);
-  const bool settled = frames_ > kFewest;
-  least_ = settled && least_ > 0.0 ? std::min(least_, average_) : (settled ? average_ : least_);
-  if (risen()) {
-    ++suspicious_;
-    return;
-  }
-  suspicious_ = 0;
-  next_ = kSearchEvery;
-  steady_ = ChangeQuestion{filter.mean(), filter.covariance(), drift_, usual(), {}};
-}
-
-bool ChangeWatch::risen() const {
-  return (frames_ > kFewest || least_ > 0.0) && recent_ > kRise * usual();
-}
-
-double ChangeWatch::usual() const {
-  return std::max(1.0, least_);
-}
-
-std::optional<ChangeQuestion> ChangeWatch::due() {
-  if (!steady_ || suspicious_ < next_) return std::nullopt;
-  next_ = suspicious_ + std::max(kSearchEvery, suspicious_ / 2);
-  return steady_;
-}
-
-void ChangeWatch::restart() {
-  *this = ChangeWatch(Eigen::VectorXd(drift_));
-}
-
-void ChangeWatch::go_on() {
-  const double least = least_;
-  restart();
-  least_ = least;
 }
 
 }  // namespace tissue_stiffness

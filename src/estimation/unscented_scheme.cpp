@@ -5,6 +5,7 @@
 #include <future>
 
 #include "tissue_stiffness/estimation/aside.hpp"
+#include "tissue_stiffness/estimation/change_watch.hpp"
 #include "tissue_stiffness/estimation/compare.hpp"
 #include "tissue_stiffness/estimation/initial_velocity.hpp"
 #include "tissue_stiffness/estimation/mesh_error.hpp"
