@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """Images through the nodelets give what they give through the nodes, and what the nodelets hand on is one process's."""
+import math
 import os
 import subprocess
 import sys
@@ -69,11 +70,10 @@ class NodeletsTest(unittest.TestCase):
         nodelets = {e.header.stamp: e for e in self.nodelets.estimates}
         shared = sorted(set(nodes) & set(nodelets))
         self.assertGreaterEqual(len(shared), FRAMES - 1)
-        # Which frame first sees another look at the past is a matter of timing; what it comes to is not.
+        # Which frame first sees another look at the past is a matter of timing; half a second later it still shows a little.
         one, other = nodes[shared[-1]], nodelets[shared[-1]]
-        std = one.covariance[0] ** 0.5
-        self.assertAlmostEqual(one.mean[0], other.mean[0], delta=0.5 * std)
-        self.assertAlmostEqual(other.covariance[0] ** 0.5, std, delta=0.5 * std)
+        self.assertAlmostEqual(one.mean[0] / other.mean[0], 1.0, delta=0.005)
+        self.assertAlmostEqual(math.log(one.covariance[0] / other.covariance[0]), 0.0, delta=math.log(4.0))
         self.assertEqual(one.state, other.state)
 
     def test_the_nodelets_are_one_process(self):
