@@ -7,8 +7,7 @@
 namespace tissue_stiffness {
 
 AnchoredFilter::AnchoredFilter(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance)
-    : prior_mean_(mean),
-      prior_information_(covariance.ldlt().solve(Eigen::MatrixXd::Identity(mean.size(), mean.size()))) {
+    : prior_mean_(mean), prior_information_(covariance.ldlt().solve(Eigen::MatrixXd::Identity(mean.size(), mean.size()))) {
   move_anchor(mean, covariance.diagonal().cwiseSqrt());
 }
 
@@ -87,8 +86,8 @@ Eigen::MatrixXd AnchoredFilter::total_information() const {
 }
 
 Eigen::VectorXd AnchoredFilter::mean() const {
-  return anchor_ + total_information().ldlt().solve(gradient_ / misfit_scale() +
-                                                    prior_information_ * (prior_mean_ - anchor_));
+  return anchor_ +
+         total_information().ldlt().solve(gradient_ / misfit_scale() + prior_information_ * (prior_mean_ - anchor_));
 }
 
 Eigen::MatrixXd AnchoredFilter::covariance() const {

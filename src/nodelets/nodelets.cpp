@@ -1,9 +1,9 @@
 // The segmentation and the estimator as nodelets: in one process with the camera's driver, images and outlines pass between
 // them as pointers.
 #include <nodelet/nodelet.h>
-#include <pluginlib/class_list_macros.hpp>
 
 #include <memory>
+#include <pluginlib/class_list_macros.hpp>
 
 #include "tissue_stiffness/nodes/estimator_node.hpp"
 #include "tissue_stiffness/nodes/segmentation_node.hpp"
