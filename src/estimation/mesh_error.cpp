@@ -22,9 +22,9 @@ void drive(const MeshError::Question& question, Model& model) {
   model.set_first_stamp(question.first_stamp);
 }
 
-// Gauss-Newton from w on, with steps that are cut while they do not lower the cost.
+// Gauss-Newton from w on, with steps that are cut while they do not lower the cost; where none does, that is the end.
 template <typename Run>
-AnchoredFilter fit(const Run& run, AnchoredFilter filter, const MeshError::Question& q) {
+MeshError::Answer fit(const Run& run, AnchoredFilter filter, const MeshError::Question& q) {
   run(filter, q.w);
   const Eigen::VectorXd limit = kLongestStep * q.prior_std;
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
@@ -33,13 +33,13 @@ AnchoredFilter fit(const Run& run, AnchoredFilter filter, const MeshError::Quest
     const auto settled = [&](const Eigen::VectorXd& at) {
       return (step.array().abs() < kSettled * (at - q.w).array().abs() + kNegligible * q.prior_std.array()).all();
     };
-    if (settled(before.mean())) return before;
+    if (settled(before.mean())) return {before.mean() - q.w, before.mean_square()};
     bool better = false;
     for (int cut = 0; cut < kMostCuts && !better; ++cut, step *= 0.3) {
       run(filter, before.anchor() + step);
       better = filter.cost() < before.cost();
     }
-    if (!better) return before;
+    if (!better) return {before.anchor() - q.w, before.mean_square()};
   }
   throw NumericalError("the fit to a finer mesh does not settle");
 }
@@ -58,9 +58,10 @@ struct MeshError::Studies {
   ReducedModel coarse_runs, fine_runs;
   std::vector<std::unique_ptr<ObservationOperator>> operators;
 
-  Studies(const ModelSettings& settings, const TetMesh& mesh)
+  Studies(const ModelSettings& settings, const TetMesh& mesh) : Studies(settings, mesh, finer(mesh, settings.mesh)) {}
+  Studies(const ModelSettings& settings, const TetMesh& mesh, const TetMesh& refined)
       : coarse(settings, mesh),
-        fine(settings, finer(mesh, settings.mesh), refine(coarse.regions(), mesh, finer(mesh, settings.mesh))),
+        fine(settings, refined, refine(coarse.regions(), mesh, refined)),
         coarse_runs(coarse),
         fine_runs(fine),
         operators(make_observation_operators(coarse)) {}
@@ -98,8 +99,7 @@ MeshError::Answer MeshError::study(const Question& q) {
       filter.update(truth[k].predicted, rows, sigma.cwiseAbs2(), Eigen::VectorXd::Ones(sigma.size()));
     }
   };
-  const AnchoredFilter filter = fit(run_coarse, AnchoredFilter(q.w, q.prior_std.cwiseAbs2().asDiagonal()), q);
-  return {filter.mean() - q.w, filter.mean_square()};
+  return fit(run_coarse, AnchoredFilter(q.w, q.prior_std.cwiseAbs2().asDiagonal()), q);
 }
 
 }  // namespace tissue_stiffness
