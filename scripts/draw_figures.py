@@ -3,11 +3,9 @@ import json
 import os
 import sys
 
-import matplotlib
 import yaml
 
-matplotlib.use('Agg')
-import matplotlib.pyplot as plt  # noqa: E402
+from figures import plt, save
 
 INK, ERROR, GOOD, FLOOR = '#333333', '#c8664f', '#2c7fb8', '#999999'
 MODULUS = 'elasticity.young_modulus'
@@ -51,8 +49,7 @@ def draw(diagnosis, truth, path):
     where.set_xlim(0, 100)
     for axis in (error, modulus, where):
         clean(axis)
-    figure.tight_layout()
-    figure.savefig(path, dpi=110)
+    save(figure, path, 110)
 
 
 def main():

@@ -1,6 +1,5 @@
 """The latency of the chain: see scripts/measure_latency."""
 import argparse
-import itertools
 import os
 import subprocess
 import tempfile
@@ -15,6 +14,7 @@ from sensor_msgs.msg import CameraInfo, Image
 from tf2_msgs.msg import TFMessage
 
 import measure_performance
+from meshes import box, write_vtk
 from tissue_stiffness.msg import StiffnessEstimate
 
 RATE = 30.0  # Hz
@@ -39,35 +39,9 @@ simulation:
 """
 
 
-def write_block(path):
-    """0.03 x 0.03 x 0.06 m in 3 x 3 x 10 cells of six tetrahedra (Kuhn's): 1,029 nodes with those on the edges."""
-    cells, size = (3, 3, 10), (0.03, 0.03, 0.06)
-
-    def number(corner):
-        return corner[0] + (cells[0] + 1) * (corner[1] + (cells[1] + 1) * corner[2])
-
-    points = [(size[0] * (i / cells[0] - 0.5), size[1] * (j / cells[1] - 0.5), size[2] * k / cells[2])
-              for k in range(cells[2] + 1) for j in range(cells[1] + 1) for i in range(cells[0] + 1)]
-    tets = []
-    for cell in itertools.product(*map(range, cells)):
-        for path_of_axes in itertools.permutations(range(3)):
-            corner, tet = list(cell), [number(cell)]
-            for axis in path_of_axes:
-                corner[axis] += 1
-                tet.append(number(corner))
-            odd = path_of_axes in ((0, 2, 1), (1, 0, 2), (2, 1, 0))
-            tets.append(tet[:2] + tet[:1:-1] if odd else tet)
-    with open(path, 'w') as file:
-        file.write('# vtk DataFile Version 3.0\nblock\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS %d double\n' % len(points))
-        file.writelines('%r %r %r\n' % point for point in points)
-        file.write('CELLS %d %d\n' % (len(tets), 5 * len(tets)))
-        file.writelines('4 %d %d %d %d\n' % tuple(tet) for tet in tets)
-        file.write('CELL_TYPES %d\n' % len(tets) + '10\n' * len(tets))
-
-
 def write_scene(folder, seconds):
     mesh, scene, model = (os.path.join(folder, name) for name in ('block.vtk', 'scene.yaml', 'model.yaml'))
-    write_block(mesh)
+    write_vtk(mesh, *box((0.03, 0.03, 0.06), (3, 3, 10), (-0.015, -0.015, 0.0)))  # 1,029 nodes with those on the edges
     with open(scene, 'w') as file:
         file.write(SCENE.format(mesh=mesh, modulus='6e3') + SENSOR.format(seconds=seconds, rate=RATE))
     with open(model, 'w') as file:

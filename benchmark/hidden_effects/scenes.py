@@ -1,35 +1,9 @@
 """Scenes of the study, and what is hidden in them. A truth never is the estimator's own model: it runs on a mesh of eight
 times as many elements, in time steps instead of modes, and most hidden effects take another form than the library's."""
-import itertools
 
 STEP = 0.001      # s
 RATE = 30.0       # frames/s
 NOISE = 1e-4      # m
-
-
-def box_mesh(path, size, cells):
-    """Legacy VTK of a box, six tetrahedra a cell, all around the cell's main diagonal."""
-    counts = [n + 1 for n in cells]
-    index = {}
-    points = []
-    for k, j, i in itertools.product(*(range(n) for n in reversed(counts))):
-        index[i, j, k] = len(points)
-        points.append('%.9g %.9g %.9g' % (size[0] * i / cells[0], size[1] * j / cells[1], size[2] * k / cells[2]))
-    tets = []
-    for k, j, i in itertools.product(*(range(n) for n in reversed(cells))):
-        for order in itertools.permutations(range(3)):
-            corner, corners = [i, j, k], [index[i, j, k]]
-            for axis in order:
-                corner[axis] += 1
-                corners.append(index[tuple(corner)])
-            inversions = sum(a > b for a, b in itertools.combinations(order, 2))
-            tets.append(corners if inversions % 2 == 0 else [corners[0], corners[2], corners[1], corners[3]])
-    with open(path, 'w') as file:
-        file.write('# vtk DataFile Version 3.0\nbox\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS %d double\n' % len(points))
-        file.write('\n'.join(points))
-        file.write('\nCELLS %d %d\n' % (len(tets), 5 * len(tets)))
-        file.write('\n'.join('4 %d %d %d %d' % tuple(tet) for tet in tets))
-        file.write('\nCELL_TYPES %d\n%s\n' % (len(tets), '\n'.join(['10'] * len(tets))))
 
 
 def elasticity(modulus, poisson=0.45, **more):

@@ -12,7 +12,9 @@ import rosbag
 import sensor_msgs.point_cloud2 as point_cloud2
 import yaml
 
-from scenes import NOISE, RATE, STEP, box_mesh, scenes
+from figures import plt, save
+from meshes import box, write_vtk
+from scenes import NOISE, RATE, STEP, scenes
 
 DURATION = 1.6    # s
 MISFITS = (0.03, 0.1, 0.3)   # of the motion
@@ -90,7 +92,7 @@ def draw(task):
     modulus = scene.modulus * rng.uniform(0.7, 1.4)
     row = {'number': number, 'scene': scene_name, 'hidden': hidden, 'misfit': misfit, 'memory': memory, 'absent': absent}
     try:
-        box_mesh(os.path.join(folder, 'mesh.vtk'), scene.size, scene.cells)
+        write_vtk(os.path.join(folder, 'mesh.vtk'), *box(scene.size, scene.cells))
         switch = hidden in ('none', 'geometric_nonlinearity')
         strength = 0.0 if switch else strength_for(arguments, folder, scene, modulus, hidden, misfit)
         bag = simulate(arguments, folder, scene, modulus, hidden, strength, NOISE, memory, number + 1)
@@ -179,9 +181,6 @@ def confusion_table(names, found, counts):
 
 
 def picture(names, found, counts, path):
-    import matplotlib
-    matplotlib.use('Agg')
-    import matplotlib.pyplot as plt
     figure, axis = plt.subplots(figsize=(1.5 + 0.7 * len(found), 1.2 + 0.45 * len(names)))
     shares = [[count / max(1, sum(row)) for count in row] for row in counts]
     axis.imshow(shares, cmap='Blues', vmin=0, vmax=1, aspect='auto')
@@ -193,8 +192,7 @@ def picture(names, found, counts, path):
     axis.set_yticks(range(len(names)), [name.replace('_', ' ') for name in names])
     axis.set_xlabel('found first')
     axis.set_ylabel('hidden')
-    figure.tight_layout()
-    figure.savefig(path, dpi=110)
+    save(figure, path, 110)
 
 
 def main():

@@ -7,6 +7,7 @@ import numpy as np
 import rosbag
 
 from common import Workshop, publish, table
+from figures import plt, save
 from filling import relative_stiffness
 
 SEED = (200, 110)    # pixel, in the ventricle of the first frame
@@ -93,20 +94,13 @@ def contact_sheet(path, images, curves, labels, columns, zoom, box, colours, gai
 
 
 def curves_picture(path, times, areas, lengths):
-    import matplotlib
-    matplotlib.use('Agg')
-    import matplotlib.pyplot as plt
     figure, axes = plt.subplots(1, 2, figsize=(8.5, 2.8))
     for axis, values, name in zip(axes, (areas, lengths), ('area [cm²]', 'long axis [mm]')):
         axis.plot(1e3 * np.array(times), values, 'o-', ms=3, color='#1f5fa8')
         axis.set_xlabel('time [ms]')
         axis.set_ylabel(name)
         axis.set_ylim(bottom=0)
-        for side in ('top', 'right'):
-            axis.spines[side].set_visible(False)
-    figure.tight_layout()
-    figure.savefig(path, dpi=90)
-    plt.close(figure)
+    save(figure, path, bare=axes)
 
 
 def echo_cine(work, shared):

@@ -7,6 +7,7 @@ from scipy.spatial import cKDTree
 
 from biventricle import biventricle, cavity_volume, write_obj
 from common import MODULUS, TOPIC, Workshop, modulus, publish, read_cloud, table, write_vertices
+from figures import plt, save
 
 MODULI = (40, 80, 100, 140, 180)  # kPa
 STARTS = ((20, 10), (40, 10), (50, 10), (70, 20), (90, 20))  # kPa
@@ -175,9 +176,6 @@ def means(course):
 
 def pictures(heart, rows, path):
     """Their figure 6: distance of the surfaces and E against the iteration."""
-    import matplotlib
-    matplotlib.use('Agg')
-    import matplotlib.pyplot as plt
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.5, 3.4))
     row = rows[0]
     truth = 1e3 * row['truth']
@@ -197,11 +195,7 @@ def pictures(heart, rows, path):
     right.set_ylabel('E [kPa]; dotted: the truth')
     for axis in (left, right):
         axis.set_xlabel('frames used')
-        for side in ('top', 'right'):
-            axis.spines[side].set_visible(False)
-    figure.tight_layout()
-    figure.savefig(path, dpi=90)
-    plt.close(figure)
+    save(figure, path, bare=(left, right))
 
 
 def about(heart, rows):

@@ -45,12 +45,3 @@ def cylinder(radius, length, layers, rings):
 def volume(nodes, tets):
     a, b, c, d = (nodes[tets[:, i]] for i in range(4))
     return float(np.einsum('ij,ij->i', np.cross(b - a, c - a), d - a).sum()) / 6
-
-
-def write_vtk(path, nodes, tets):
-    with open(path, 'w') as file:
-        file.write('# vtk DataFile Version 3.0\ncylinder\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS %d double\n' % len(nodes))
-        file.write('\n'.join('%.9g %.9g %.9g' % tuple(node) for node in nodes))
-        file.write('\nCELLS %d %d\n' % (len(tets), 5 * len(tets)))
-        file.write('\n'.join('4 %d %d %d %d' % tuple(tet) for tet in tets))
-        file.write('\nCELL_TYPES %d\n%s\n' % (len(tets), '\n'.join(['10'] * len(tets))))

@@ -10,7 +10,8 @@ import time
 
 import yaml
 
-from cylinder import cylinder, volume, write_vtk
+from cylinder import cylinder, volume
+from meshes import write_vtk
 
 SLICES = [3500, 4000, 1000, 6000, 2000, 7000, 2500, 8000, 3000, 1500]  # Pa
 OPTIMUS = [3254, 4808, 1010, 6791, 1998, 8056, 2611, 46699, 5828, 969]  # what it ends at, from 4000 +- 1000

@@ -1,0 +1,31 @@
+"""Tetrahedral meshes of boxes, and the file that they go into."""
+import itertools
+
+
+def box(size, cells, corner=(0.0, 0.0, 0.0)):
+    """Nodes and tetrahedra of a box: six a cell, all around the cell's main diagonal (Kuhn's)."""
+    def number(place):
+        return place[0] + (cells[0] + 1) * (place[1] + (cells[1] + 1) * place[2])
+
+    nodes = [tuple(corner[d] + size[d] * (i, j, k)[d] / cells[d] for d in range(3))
+             for k in range(cells[2] + 1) for j in range(cells[1] + 1) for i in range(cells[0] + 1)]
+    tets = []
+    for cell in itertools.product(*map(range, cells)):
+        for order in itertools.permutations(range(3)):
+            place, tet = list(cell), [number(cell)]
+            for axis in order:
+                place[axis] += 1
+                tet.append(number(place))
+            inversions = sum(a > b for a, b in itertools.combinations(order, 2))
+            tets.append(tet if inversions % 2 == 0 else [tet[0], tet[2], tet[1], tet[3]])
+    return nodes, tets
+
+
+def write_vtk(path, nodes, tets):
+    """Legacy VTK, ASCII."""
+    with open(path, 'w') as file:
+        file.write('# vtk DataFile Version 3.0\nmesh\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS %d double\n' % len(nodes))
+        file.writelines('%.9g %.9g %.9g\n' % tuple(node) for node in nodes)
+        file.write('CELLS %d %d\n' % (len(tets), 5 * len(tets)))
+        file.writelines('4 %d %d %d %d\n' % tuple(tet) for tet in tets)
+        file.write('CELL_TYPES %d\n' % len(tets) + '10\n' * len(tets))
