@@ -12,12 +12,14 @@ constexpr int kNiceness = 10;
 
 }  // namespace
 
+void beside(const std::function<void()>& work) {
+  setpriority(PRIO_PROCESS, 0, kNiceness);  // Linux: of this thread alone
+  tbb::task_arena one_core(1);
+  one_core.execute(work);
+}
+
 std::future<void> aside(std::function<void()> work) {
-  return std::async(std::launch::async, [work = std::move(work)] {
-    setpriority(PRIO_PROCESS, 0, kNiceness);  // Linux: of this thread alone
-    tbb::task_arena one_core(1);
-    one_core.execute(work);
-  });
+  return std::async(std::launch::async, [work = std::move(work)] { beside(work); });
 }
 
 }  // namespace tissue_stiffness

@@ -1,11 +1,9 @@
 #include "tissue_stiffness/nodes/model_check.hpp"
 
-#include <sys/resource.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 
 #include "tissue_stiffness/diagnosis/diagnose.hpp"
+#include "tissue_stiffness/estimation/aside.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
@@ -16,7 +14,6 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t kMostFrames = 200;    // a check looks at; more are thinned
 constexpr std::size_t kMostLoads = 500000;  // 40 minutes at 200 Hz
 constexpr std::size_t kFewestFrames = 24;   // for a check that nobody asked for
-constexpr int kNiceness = 10;
 
 std::vector<Frame> thinned(const std::deque<Frame>& frames) {
   const std::size_t count = std::min(frames.size(), kMostFrames);
@@ -136,8 +133,6 @@ ModelCheck::Outcome ModelCheck::carry_out(Job& job) const {
 }
 
 void ModelCheck::run() {
-  setpriority(PRIO_PROCESS, 0, kNiceness);  // Linux: of this thread alone; without the right to it the check is just faster
-  tbb::task_arena one_core(1);
   std::unique_lock<std::mutex> lock(mutex_);
   while (!stopped_) {
     if (!due()) {
@@ -150,7 +145,8 @@ void ModelCheck::run() {
     const double stamp = job.recording.frames.empty() ? 0.0 : job.recording.frames.back().time;
     lock.unlock();
     const auto begin = Clock::now();
-    Outcome outcome = one_core.execute([&] { return carry_out(job); });
+    Outcome outcome;
+    beside([&] { outcome = carry_out(job); });
     const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
     if (outcome.diagnosis && !given_up_) report_(*outcome.diagnosis, stamp);
     lock.lock();
