@@ -1,7 +1,6 @@
 # The rviz panel, where rviz is: a plugin of its own, which nothing else links.
 find_package(Qt5 QUIET COMPONENTS Widgets Test)
 find_package(rviz QUIET)
-find_package(pluginlib QUIET)
 
 set(TISSUE_STIFFNESS_RVIZ FALSE)
 if(Qt5_FOUND AND rviz_FOUND AND pluginlib_FOUND)

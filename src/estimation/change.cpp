@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tissue_stiffness/estimation/coordinate_scan.hpp"
 #include "tissue_stiffness/forward/for_each_index.hpp"
 
 namespace tissue_stiffness {
@@ -36,12 +37,15 @@ struct Guess {
 class Search {
  public:
   Search(const FitProblem& problem, const ChangeQuestion& question)
-      : problem_(problem), question_(question), theta_(problem.model.theta(question.w)) {}
+      : problem_(problem),
+        question_(question),
+        scanned_std_((problem.model.drift().array() > 0.0).select(problem.model.prior_std(), 0.0)),
+        theta_(problem.model.theta(question.w)) {}
 
   std::optional<Change> operator()() {
     std::vector<Instant> instants = first_look();
     if (instants.empty()) return std::nullopt;
-    run_before(instants.front().first);
+    run_before(instants.front());
     Guess best = best_of(instants, question_.w, true);
     for (int cut = 0; cut < kCuts; ++cut) {
       instants = closer(instants, best);
@@ -86,11 +90,11 @@ class Search {
   }
 
   // Without a change, from the first instant on: what a later change leaves before it, and altogether.
-  void run_before(std::size_t first) {
-    first_ = first;
+  void run_before(const Instant& at) {
+    first_ = at.first;
     before_.assign(1, 0.0);
-    const auto run = problem_.forward.begin(theta_, problem_.start);
-    for (std::size_t k = first; k < problem_.frames.size(); ++k) {
+    const auto run = problem_.forward.resume(theta_, *at.from.motion);
+    for (std::size_t k = first_; k < problem_.frames.size(); ++k) {
       const FreeFit fit = frame_fit(*run, k, theta_);
       before_.push_back(before_.back() + fit.cost);
       rows_ += fit.rows;
@@ -109,36 +113,36 @@ class Search {
     const auto run = problem_.forward.resume(theta, *at.from.motion);
     double cost = before_[at.first - first_];
     for (std::size_t k = at.first; k < problem_.frames.size(); ++k) cost += frame_fit(*run, k, theta).cost;
-    const Eigen::VectorXd variance = drifted(question_, at.from.time - problem_.start.time);
+    const Eigen::VectorXd variance = drifted(problem_.model, at.from.time - problem_.start.time);
     for (Eigen::Index i = 0; i < w.size(); ++i) {
       if (variance[i] > 0.0) cost += std::pow(w[i] - question_.w[i], 2) / variance[i];
     }
     return cost;
   }
 
-  bool drifts(Eigen::Index i) const { return question_.drift[i] > 0.0; }
-
   // Where the cost is least along the drifting coordinates from `w` on; looks far first if asked to.
   Guess guess(const Instant& at, const Eigen::VectorXd& w, bool far) const {
-    const Eigen::VectorXd std = problem_.model.prior_std();
-    Guess best{at, w, cost_after(at, w)};
+    const auto cost_of = [&](const Eigen::VectorXd& x) { return cost_after(at, x); };
+    Guess best{at, w, 0.0};
+    if (far) {
+      const ScanResult found = scan_coordinates(cost_of, w, w, scanned_std_, kPoints, kReach);
+      best.w = found.best;
+      best.cost = found.lowest;
+    } else {
+      best.cost = cost_of(w);
+    }
     const auto attempt = [&](Eigen::Index i, double value) {
       Guess next{at, best.w, 0.0};
       next.w[i] = value;
-      next.cost = cost_after(at, next.w);
+      next.cost = cost_of(next.w);
       const double cost = next.cost;
       if (cost < best.cost) best = std::move(next);
       return cost;
     };
-    for (Eigen::Index i = 0; i < w.size(); ++i) {
-      for (int k = -kPoints; far && drifts(i) && k <= kPoints; ++k) {
-        if (k != 0) attempt(i, w[i] + kReach * std[i] * k / kPoints);
-      }
-    }
     for (const double width : far ? std::vector<double>{0.1, 0.03, kWidth} : std::vector<double>{kWidth}) {
       for (Eigen::Index i = 0; i < w.size(); ++i) {
-        if (!drifts(i)) continue;
-        const double h = width * std[i], middle = best.w[i], cost = best.cost;
+        if (scanned_std_[i] == 0.0) continue;
+        const double h = width * scanned_std_[i], middle = best.w[i], cost = best.cost;
         const double low = attempt(i, middle - h), high = attempt(i, middle + h);
         const double bend = low + high - 2.0 * cost;
         if (bend > 0.0) attempt(i, middle + h * std::clamp(0.5 * (low - high) / bend, -4.0, 4.0));
@@ -198,6 +202,7 @@ class Search {
 
   const FitProblem& problem_;
   const ChangeQuestion& question_;
+  Eigen::VectorXd scanned_std_;  ///< the prior's; 0 where nothing drifts
   Eigen::VectorXd theta_;
   std::vector<Guess> seen_;
   std::size_t first_ = 0;
@@ -211,8 +216,8 @@ std::optional<Change> find_change(const FitProblem& problem, const ChangeQuestio
   return Search(problem, question)();
 }
 
-Eigen::VectorXd drifted(const ChangeQuestion& question, double span) {
-  return std::max(kShortest, span) * question.drift.cwiseAbs2();
+Eigen::VectorXd drifted(const Model& model, double span) {
+  return std::max(kShortest, span) * model.drift().cwiseAbs2();
 }
 
 }  // namespace tissue_stiffness

@@ -12,7 +12,7 @@ constexpr double kRise = 1.5;                     // of the misfit that is suspi
 }  // namespace
 
 void ChangeWatch::add(double square, const AnchoredFilter& filter) {
-  if ((drift_.array() <= 0.0).all()) return;
+  if (!drifts_) return;
   ++frames_;
   recent_ += (square - recent_) / std::min<double>(frames_, kRecent);
   average_ += (square - average_) / std::min<double>(frames_, kAverage);
@@ -23,7 +23,7 @@ void ChangeWatch::add(double square, const AnchoredFilter& filter) {
   }
   suspicious_ = 0;
   next_ = kSearchEvery;
-  steady_ = ChangeQuestion{filter.mean(), filter.covariance(), drift_, usual(), {}};
+  steady_ = ChangeQuestion{filter.mean(), filter.covariance(), usual(), {}};
 }
 
 bool ChangeWatch::risen() const {
@@ -41,7 +41,7 @@ std::optional<ChangeQuestion> ChangeWatch::due() {
 }
 
 void ChangeWatch::restart() {
-  *this = ChangeWatch(Eigen::VectorXd(drift_));
+  *this = ChangeWatch(drifts_);
 }
 
 void ChangeWatch::go_on() {

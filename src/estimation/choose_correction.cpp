@@ -16,9 +16,21 @@ constexpr double kReplaced = 4.0;  // times the free run's misfit, beyond which 
 constexpr double kLevels[] = {0.3, 0.1, 0.03, 0.01};  // of the modal forces at work
 constexpr double kSearchLevel = 0.1;
 
-Eigen::VectorXd rest_prediction(const FitProblem& problem, const Frame& frame, const Eigen::VectorXd& theta) {
-  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(problem.model.fem().dof_count());
-  return predict_frame(problem.model, problem.operators, frame, theta, rest).predicted;
+using Visit = std::function<void(const Frame&, const Eigen::VectorXd& theta, const Eigen::VectorXd& displacement)>;
+
+void run_freely(const FitProblem& problem, const Eigen::VectorXd& w, const Visit& visit) {
+  const Eigen::VectorXd theta = problem.model.theta(w);
+  const double delay = problem.model.delay(theta);
+  const auto run = problem.forward.begin(theta, problem.start);
+  for (const Frame& frame : problem.frames) {
+    problem.checkpoint();
+    run->advance(frame.time - delay);
+    visit(frame, theta, run->displacement());
+  }
+}
+
+Eigen::ArrayXd errors(const Prediction& p) {
+  return ((p.measured - p.predicted).cwiseQuotient(p.sigma)).array();
 }
 
 }  // namespace
@@ -26,28 +38,31 @@ Eigen::VectorXd rest_prediction(const FitProblem& problem, const Frame& frame, c
 FreeFit fit_frame(const FitProblem& problem, const Frame& frame, const Eigen::VectorXd& theta,
                   const Eigen::VectorXd& displacement) {
   const Prediction p = predict_frame(problem.model, problem.operators, frame, theta, displacement);
-  const Eigen::ArrayXd e = ((p.measured - p.predicted).cwiseQuotient(p.sigma)).array();
   const Eigen::ArrayXd weights = row_weights(p).array();
-  const Eigen::ArrayXd motion = ((p.measured - rest_prediction(problem, frame, theta)).cwiseQuotient(p.sigma)).array();
-  return {(weights > 0.0).select(weights * e.square(), 0.0).sum(),
-          (weights > 0.0 && motion.isFinite()).select(weights * motion.square(), 0.0).sum(),
-          static_cast<double>((weights > 0.0).count())};
+  return {(weights > 0.0).select(weights * errors(p).square(), 0.0).sum(), static_cast<double>((weights > 0.0).count())};
 }
 
 FreeFit free_fit(const FitProblem& problem, const Eigen::VectorXd& w) {
-  const Eigen::VectorXd theta = problem.model.theta(w);
-  const double delay = problem.model.delay(theta);
-  const auto run = problem.forward.begin(theta, problem.start);
   FreeFit fit;
-  for (const Frame& frame : problem.frames) {
-    problem.checkpoint();
-    run->advance(frame.time - delay);
-    const FreeFit of_frame = fit_frame(problem, frame, theta, run->displacement());
-    fit.cost += of_frame.cost;
-    fit.motion += of_frame.motion;
-    fit.rows += of_frame.rows;
-  }
+  run_freely(problem, w, [&](const Frame& frame, const Eigen::VectorXd& theta, const Eigen::VectorXd& displacement) {
+    const FreeFit now = fit_frame(problem, frame, theta, displacement);
+    fit.cost += now.cost;
+    fit.rows += now.rows;
+  });
   return fit;
+}
+
+double motion_cost(const FitProblem& problem, const Eigen::VectorXd& w) {
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(problem.model.fem().dof_count());
+  double cost = 0.0;
+  run_freely(problem, w, [&](const Frame& frame, const Eigen::VectorXd& theta, const Eigen::VectorXd& displacement) {
+    const auto predict = [&](const Eigen::VectorXd& u) {
+      return predict_frame(problem.model, problem.operators, frame, theta, u);
+    };
+    const Eigen::ArrayXd weights = row_weights(predict(displacement)).array(), motion = errors(predict(rest));
+    cost += (weights > 0.0 && motion.isFinite()).select(weights * motion.square(), 0.0).sum();
+  });
+  return cost;
 }
 
 std::optional<Correction> choose_correction(const FitProblem& problem, const Eigen::VectorXd& w) {

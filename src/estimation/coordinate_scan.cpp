@@ -9,6 +9,7 @@ ScanResult scan_coordinates(const std::function<double(const Eigen::VectorXd&)>&
   ScanResult result{start, Eigen::VectorXd::Zero(start.size()), cost(start), false};
   for (Eigen::Index i = 0; i < start.size(); ++i) {
     const double step = reach / points * prior_std[i];
+    if (step == 0.0) continue;
     const auto place = [&](int k) {
       Eigen::VectorXd w = result.best;
       w[i] = prior_mean[i] + (k - points) * step;

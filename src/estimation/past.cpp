@@ -24,7 +24,7 @@ void Past::turn(const Track& now, const Track& next, std::size_t first, const Ch
     const Eigen::VectorXd before = now.theta(question.w);
     (turns_.empty() ? theta_ : turns_.back().theta) = before;
   }
-  turns_.push_back({next.start().time, next.theta(next.filter().mean())});
+  turns_.push_back({next.start().time, {}});
   const auto end = frames.begin() + static_cast<std::ptrdiff_t>(first);
   frames_.insert(frames_.end(), frames.begin(), end);
   frames.erase(frames.begin(), end);
@@ -37,16 +37,18 @@ std::optional<ChangeQuestion> Past::closer(std::size_t count) {
   return question_;
 }
 
-std::vector<Frame> Past::frames_since_its_start(const std::vector<Frame>& frames) const {
-  std::vector<Frame> out(frames_.begin() + static_cast<std::ptrdiff_t>(begin_), frames_.end());
+std::vector<Frame> Past::frames_from(std::size_t first, const std::vector<Frame>& frames) const {
+  std::vector<Frame> out(frames_.begin() + static_cast<std::ptrdiff_t>(first), frames_.end());
   out.insert(out.end(), frames.begin(), frames.end());
   return out;
 }
 
+std::vector<Frame> Past::frames_since_its_start(const std::vector<Frame>& frames) const {
+  return frames_from(begin_, frames);
+}
+
 std::vector<Frame> Past::all_frames(const std::vector<Frame>& frames) const {
-  std::vector<Frame> out = frames_;
-  out.insert(out.end(), frames.begin(), frames.end());
-  return out;
+  return frames_from(0, frames);
 }
 
 std::vector<Turn> Past::turns(const Eigen::VectorXd& theta) const {

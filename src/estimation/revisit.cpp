@@ -9,7 +9,7 @@
 namespace tissue_stiffness {
 
 Revisit::Revisit(const Track& track, std::vector<Frame> frames, std::optional<ChangeQuestion> change)
-    : frames_(std::move(frames)), change_(std::move(change)), start_(track.twin()) {
+    : frames_(std::move(frames)), outcome_{track.twin(), false, 0, std::move(change)} {
   work_ = aside([this] { run(); });
 }
 
@@ -28,12 +28,12 @@ std::vector<Frame> Revisit::arrived() {
   return std::exchange(later_, {});
 }
 
-Revisit::Outcome Revisit::look(const Track& track, const std::vector<Frame>& frames,
-                               const std::optional<ChangeQuestion>& change, const Track::Checkpoint& checkpoint) {
-  Outcome out{track.twin(), false, 0, change};
-  if (!change) {
+Revisit::Outcome Revisit::look(std::unique_ptr<Track> twin, const std::vector<Frame>& frames,
+                               std::optional<ChangeQuestion> change, const Track::Checkpoint& checkpoint) {
+  Outcome out{std::move(twin), false, 0, std::move(change)};
+  if (!out.change) {
     out.moved = out.track->look(frames, checkpoint);
-  } else if (auto changed = track.changed(frames, *change, checkpoint, out.first)) {
+  } else if (auto changed = out.track->changed(frames, *out.change, checkpoint, out.first)) {
     out.track = std::move(changed);
     out.moved = true;
   }
@@ -44,7 +44,7 @@ void Revisit::run() {
   const auto checkpoint = [this] {
     if (given_up_) throw NumericalError("given up");
   };
-  outcome_ = look(*start_, frames_, change_, checkpoint);
+  outcome_ = look(std::move(outcome_.track), frames_, std::move(outcome_.change), checkpoint);
   if (!outcome_.moved) return;
   for (std::vector<Frame> more = arrived(); !more.empty(); more = arrived()) {
     for (const Frame& frame : more) {

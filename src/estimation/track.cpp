@@ -142,7 +142,7 @@ std::unique_ptr<Track> Track::changed(const std::vector<Frame>& frames, const Ch
     const auto change = find_change(problem(frames, checkpoint), question);
     if (!change) return nullptr;
     Eigen::MatrixXd prior = question.covariance;
-    prior.diagonal() += drifted(question, change->from.time - start_.time);
+    prior.diagonal() += drifted(model_, change->from.time - start_.time);
     auto out = std::make_unique<Track>(model_, operators_, forward_, AnchoredFilter(question.w, prior), change->from);
     const std::vector<Frame> later(frames.begin() + static_cast<std::ptrdiff_t>(change->first), frames.end());
     const Eigen::VectorXd spread = prior.diagonal().cwiseSqrt().cwiseMin(kChangedSpread * model_.prior_std());
@@ -204,7 +204,7 @@ bool Track::correct(const FitProblem& problem) {
   notes_.corrected = problem.frames.size();
   const Eigen::VectorXd w = filter_.mean();
   const FreeFit free = free_fit(problem, w);
-  const bool lacking = free.cost > kScanMisfit * free.rows && free.cost > kUnexplained * free.motion;
+  const bool lacking = free.cost > kScanMisfit * free.rows && free.cost > kUnexplained * motion_cost(problem, w);
   const auto correction = lacking ? choose_correction(problem, w) : std::nullopt;
   if (!correction) {
     if (!force_) return false;

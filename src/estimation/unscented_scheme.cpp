@@ -148,7 +148,7 @@ class UnscentedScheme : public Scheme {
   }
 
   bool look_back(const Track& track, const std::vector<Frame>& frames, std::optional<ChangeQuestion> question) {
-    if (!hurried()) return adopt(Revisit::look(track, frames, question, [] {}));
+    if (!hurried()) return adopt(Revisit::look(track.twin(), frames, std::move(question), [] {}));
     revisit_ = std::make_unique<Revisit>(track, frames, std::move(question));
     return false;
   }
@@ -250,7 +250,7 @@ class UnscentedScheme : public Scheme {
   Validity validity_;
   std::vector<Frame> frames_, waiting_;
   Past past_;
-  ChangeWatch watch_{model_->drift()};
+  ChangeWatch watch_{(model_->drift().array() > 0.0).any()};
   bool complete_ = true;              ///< every frame since the start is in frames_
   std::unique_ptr<Revisit> revisit_;  ///< under way
 

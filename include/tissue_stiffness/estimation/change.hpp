@@ -20,13 +20,12 @@ struct Change {
 struct ChangeQuestion {
   Eigen::VectorXd w;           ///< parameters before it, filter coordinates
   Eigen::MatrixXd covariance;  ///< their posterior then
-  Eigen::VectorXd drift;       ///< standard deviation of each after a second; 0 where it is constant
   double misfit = 1.0;         ///< mean square error over sigma before it
   std::optional<double> near;  ///< about when [s]; empty: somewhen in the last frames
 };
 
 /// How far the parameters may have drifted over `span` [s], variance of each; of a second at least.
-Eigen::VectorXd drifted(const ChangeQuestion& question, double span);
+Eigen::VectorXd drifted(const Model& model, double span);
 
 /// The change that explains the last frames: looks back from the newest over instants and, at each, along every
 /// drifting coordinate, for where the sum of squared errors over sigma and of the change over its own standard deviation is

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
 
 #include "tissue_stiffness/estimation/change.hpp"
@@ -11,8 +10,8 @@ namespace tissue_stiffness {
 /// Watches the misfit for a rise above what it was at its best, which says that a drifting parameter may have changed.
 class ChangeWatch {
  public:
-  /// drift: see ChangeQuestion; all zero: nothing is ever suspected.
-  explicit ChangeWatch(const Eigen::VectorXd& drift) : drift_(drift) {}
+  /// drifts: some parameter does; otherwise nothing is ever suspected.
+  explicit ChangeWatch(bool drifts) : drifts_(drifts) {}
 
   /// Mean square error over sigma of a frame, and the filter after it.
   void add(double square, const AnchoredFilter& filter);
@@ -30,7 +29,7 @@ class ChangeWatch {
   bool risen() const;
   double usual() const;
 
-  Eigen::VectorXd drift_;
+  bool drifts_;
   int frames_ = 0;
   double recent_ = 0.0, average_ = 0.0;  ///< of the misfit, over a few frames and over more
   double least_ = 0.0;                   ///< that the latter was

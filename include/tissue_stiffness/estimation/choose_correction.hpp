@@ -22,11 +22,11 @@ struct FitProblem {
 
 /// Sum over rows of the square error of the free run, in sigmas, each row's growing slower beyond the robust limit.
 struct FreeFit {
-  double cost = 0.0;
-  double motion = 0.0;  ///< the same of a body that stays at rest
-  double rows = 0.0;
+  double cost = 0.0, rows = 0.0;
 };
 FreeFit free_fit(const FitProblem& problem, const Eigen::VectorXd& w);
+/// The motion's own: the sum of the square distances from a body that stays at rest, weighted as in the fit.
+double motion_cost(const FitProblem& problem, const Eigen::VectorXd& w);
 /// The same of one frame, the body displaced as given (3n).
 FreeFit fit_frame(const FitProblem& problem, const Frame& frame, const Eigen::VectorXd& theta,
                   const Eigen::VectorXd& displacement);

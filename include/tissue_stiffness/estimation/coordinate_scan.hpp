@@ -14,7 +14,8 @@ struct ScanResult {
 };
 
 /// Looks along each coordinate in turn, `points` to either side of the prior's mean, `reach` of its standard deviations
-/// far: the fit of a run that rings has local minima, and a descent finds the nearest one only.
+/// far: the fit of a run that rings has local minima, and a descent finds the nearest one only. A coordinate whose standard
+/// deviation is 0 stays.
 ScanResult scan_coordinates(const std::function<double(const Eigen::VectorXd&)>& cost, const Eigen::VectorXd& start,
                             const Eigen::VectorXd& prior_mean, const Eigen::VectorXd& prior_std, int points,
                             double reach = 2.5);

@@ -19,8 +19,6 @@ class Ensemble {
 
   /// A fresh trajectory for each column of `sigma_points` (filter coordinates).
   void restart(const Eigen::MatrixXd& sigma_points, const RunStart& start);
-  bool started() const { return runs_ != nullptr; }
-  void clear() { runs_ = nullptr; }
 
   /// All trajectories to `time`, in parallel. Throws NumericalError when one diverges.
   void advance(double time);

@@ -33,9 +33,11 @@ class Past {
   std::vector<Turn> turns(const Eigen::VectorXd& theta) const;
 
  private:
+  std::vector<Frame> frames_from(std::size_t first, const std::vector<Frame>& frames) const;
+
   std::vector<Frame> frames_;
-  Eigen::VectorXd theta_;  ///< at the start
-  std::vector<Turn> turns_;
+  Eigen::VectorXd theta_;               ///< at the start
+  std::vector<Turn> turns_;             ///< the last one's theta is not kept: today's track knows it
   std::shared_ptr<const Track> track_;  ///< before the last change, as it began
   std::size_t begin_ = 0;               ///< its first frame
   ChangeQuestion question_;             ///< that found the last change

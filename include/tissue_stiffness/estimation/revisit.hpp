@@ -34,8 +34,8 @@ class Revisit {
   /// Waits for the end; a track that moved is at the last frame added. Throws NumericalError when it cannot follow.
   Outcome take();
 
-  /// The look itself, at once.
-  static Outcome look(const Track& track, const std::vector<Frame>& frames, const std::optional<ChangeQuestion>& change,
+  /// The look itself, at once; with a twin of the track that goes on.
+  static Outcome look(std::unique_ptr<Track> twin, const std::vector<Frame>& frames, std::optional<ChangeQuestion> change,
                       const Track::Checkpoint& checkpoint);
 
  private:
@@ -43,9 +43,7 @@ class Revisit {
   std::vector<Frame> arrived();
 
   std::vector<Frame> frames_;
-  std::optional<ChangeQuestion> change_;
-  std::unique_ptr<Track> start_;
-  Outcome outcome_;
+  Outcome outcome_;  ///< before the end: what the look begins with
   std::mutex mutex_;
   std::vector<Frame> later_;  ///< arrived, and not yet gone through
   std::atomic<bool> given_up_{false};
