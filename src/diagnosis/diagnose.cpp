@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tissue_stiffness/diagnosis/finding.hpp"
+#include "tissue_stiffness/diagnosis/missing_force.hpp"
 #include "tissue_stiffness/diagnosis/residual_views.hpp"
 #include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/types/error.hpp"
@@ -72,6 +73,20 @@ void describe_residual(const Fitted& model, double floor, Diagnosis& out) {
   out.metres = {total, sigma, floor * sigma, std::sqrt(std::max(0.0, total * total - sigma * sigma))};
 }
 
+// The model's parameters as the best explanation has them: without it they make up for what is missing.
+Eigen::VectorXd believed(const Fitted& model, const Finding& finding) {
+  Eigen::VectorXd w = model.fit.w;
+  if (finding.verdict != "missing") return w;
+  const auto& free = model.study->model().free_parameters();
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    const auto value = finding.refits.front().parameters.find(free[i].name);
+    if (value != finding.refits.front().parameters.end()) {
+      w[static_cast<Eigen::Index>(i)] = free[i].to_coordinate(value->second);
+    }
+  }
+  return w;
+}
+
 }  // namespace
 
 Diagnosis diagnose(const ModelSettings& settings, const TetMesh& mesh, const Recording& recording,
@@ -87,6 +102,10 @@ Diagnosis diagnose(const ModelSettings& settings, const TetMesh& mesh, const Rec
   Fitted model = fit_model(settings, mesh, recording);
   out.steps.push_back(step_of(model, recording, {}));
   Finding finding = look(model, {}, options);
+  if (finding.verdict == "missing" || finding.verdict == "unexplained") {
+    options.progress("the force that is missing");
+    out.force = missing_force(*model.study, believed(model, finding));
+  }
   describe_residual(model, finding.floor, out);
   out.verdict = out.final_verdict = finding.verdict;
   out.set = finding.set;

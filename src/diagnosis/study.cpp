@@ -107,6 +107,36 @@ Study::Rows Study::rows(const Eigen::VectorXd& w) const {
   return out;
 }
 
+Eigen::MatrixXd Study::rows_along(const Eigen::VectorXd& w, const Eigen::MatrixXd& shapes, const Rows& rows) const {
+  const FitProblem all = problem(quick(), recording_.frames);
+  const Eigen::VectorXd theta = model_.theta(w);
+  const auto run = quick().begin(theta, all.start);
+  Eigen::MatrixXd out(rows.error.size(), shapes.cols());
+  for (std::size_t k = 0; k < all.frames.size(); ++k) {
+    recording_.checkpoint();
+    run->advance(all.frames[k].time);
+    const Eigen::VectorXd u = run->displacement();
+    const Prediction there = predict_frame(model_, operators_, all.frames[k], theta, u);
+    out.middleRows(rows.offsets[k], rows.offsets[k + 1] - rows.offsets[k]) =
+        predict_along(model_, operators_, all.frames[k], theta, u, there, shapes);
+  }
+  for (Eigen::Index r = 0; r < out.rows(); ++r) {
+    if (rows.used[r] > 0.0 && out.row(r).allFinite()) {
+      out.row(r) *= rows.used[r] / rows.sigma[r];
+    } else {
+      out.row(r).setZero();
+    }
+  }
+  return out;
+}
+
+std::shared_ptr<const ReducedModel> Study::reduced() const {
+  if (auto linear = std::dynamic_pointer_cast<const ReducedModel>(forward_)) return linear;
+  BasisOptions options;
+  options.nonlinear = BasisOptions::Nonlinear::left_out;
+  return std::make_shared<ReducedModel>(model_, options);
+}
+
 BatchFit Study::fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread) const {
   return quick_ ? fit_from_run_to_run(start, spread) : quick_fit(start, spread);
 }

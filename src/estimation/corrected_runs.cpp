@@ -8,14 +8,8 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kProbe = 1e-4;  // of the body's size: modal displacement that the sensors' sensitivity is read from
-
 int mode_count(const ReducedTrajectory& run) {
   return static_cast<int>(std::min<Eigen::Index>(StateCorrection::most_modes, run.frequencies().size()));
-}
-
-double body_size(const TetMesh& mesh) {
-  return (mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff()).norm();
 }
 
 }  // namespace
@@ -40,17 +34,8 @@ void CorrectedRuns::advance(double time) {
   time_ = std::max(time, time_);
 }
 
-Eigen::MatrixXd CorrectedRuns::sensitivity(const Frame& frame, const Prediction& central) {
-  Eigen::MatrixXd h(central.predicted.size(), shapes_.cols());
-  const Eigen::VectorXd u = ensemble_.displacements().col(0);
-  for (Eigen::Index i = 0; i < shapes_.cols(); ++i) {
-    const double largest = shapes_.col(i).cwiseAbs().maxCoeff();
-    const double probe = kProbe * body_size(model_.mesh()) / std::max(largest, 1e-300);
-    h.col(i) =
-        (predict_frame(model_, operators_, frame, theta_, u + probe * shapes_.col(i)).predicted - central.predicted) /
-        probe;
-  }
-  return h;
+Eigen::MatrixXd CorrectedRuns::sensitivity(const Frame& frame, const Prediction& central) const {
+  return predict_along(model_, operators_, frame, theta_, ensemble_.displacements().col(0), central, shapes_);
 }
 
 void CorrectedRuns::correct(const Eigen::MatrixXd& step) {

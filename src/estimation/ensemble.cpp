@@ -1,8 +1,15 @@
 #include "tissue_stiffness/estimation/ensemble.hpp"
 
+#include <algorithm>
+
 #include "tissue_stiffness/forward/for_each_index.hpp"
 
 namespace tissue_stiffness {
+namespace {
+
+constexpr double kProbe = 1e-4;  // of the body's size: displacement that the sensors' sensitivity is read from
+
+}  // namespace
 
 void Ensemble::restart(const Eigen::MatrixXd& sigma_points, const RunStart& start) {
   theta_.clear();
@@ -46,6 +53,21 @@ Prediction predict_frame(const Model& model, const std::vector<std::unique_ptr<O
     if (!named) parts.back().predicted.array() += seen.outward;
   }
   return concatenate(parts);
+}
+
+Eigen::MatrixXd predict_along(const Model& model, const std::vector<std::unique_ptr<ObservationOperator>>& operators,
+                              const Frame& frame, const Eigen::VectorXd& theta, const Eigen::VectorXd& displacement,
+                              const Prediction& there, const Eigen::MatrixXd& shapes) {
+  const Eigen::Matrix3Xd& nodes = model.mesh().nodes;
+  const double size = (nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff()).norm();
+  Eigen::MatrixXd out(there.predicted.size(), shapes.cols());
+  for_each_index(static_cast<std::size_t>(shapes.cols()), [&](std::size_t index) {
+    const auto i = static_cast<Eigen::Index>(index);
+    const double probe = kProbe * size / std::max(shapes.col(i).cwiseAbs().maxCoeff(), 1e-300);
+    const Prediction moved = predict_frame(model, operators, frame, theta, displacement + probe * shapes.col(i));
+    out.col(i) = (moved.predicted - there.predicted) / probe;
+  });
+  return out;
 }
 
 }  // namespace tissue_stiffness

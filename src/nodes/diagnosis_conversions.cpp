@@ -36,6 +36,7 @@ DiagnosisMessage to_message(const Diagnosis& diagnosis, const std_msgs::Header& 
   for (const MissingEffect& effect : diagnosis.candidates) out.candidates.push_back(to_message(effect));
   out.where = diagnosis.where;
   out.when = diagnosis.when;
+  out.missing_force = diagnosis.force.words;
   out.next_experiment = diagnosis.next_experiment;
   const DiagnosisStep& given = diagnosis.steps.front();
   out.held_out_rms = given.held_out_rms;

@@ -38,10 +38,10 @@ std::string verdict_badge(const std::string& verdict) {
   return "<span class=\"badge " + colour + "\">" + text + "</span>";
 }
 
-/// Young's moduli of a step: "19.0 kPa".
-std::string moduli(const DiagnosisStep& step) {
+/// Young's moduli among parameters: "19.0 kPa".
+std::string moduli(const std::map<std::string, double>& parameters) {
   std::string text;
-  for (const auto& [name, value] : step.parameters) {
+  for (const auto& [name, value] : parameters) {
     if (name.find(".young_modulus") == std::string::npos) continue;
     const ShownUnit unit = shown_unit(value, "Pa");
     text += (text.empty() ? "" : ", ") + short_number(unit.scale * value, 4) + " " + unit.name;
@@ -51,7 +51,7 @@ std::string moduli(const DiagnosisStep& step) {
 
 /// A Young's modulus as the answer: the estimator's with its interval where it was asked, else the fit's.
 std::string modulus_answer(const std::string& name, const Diagnosis& d) {
-  std::string text = moduli(d.steps.back()), interval, comma;
+  std::string text = moduli(d.steps.back().parameters), interval, comma;
   for (const ParameterEstimate& p : d.estimate.parameters) {
     if (p.name.find(".young_modulus") == std::string::npos) continue;
     const ShownUnit unit = shown_unit(p.mean, p.unit);
@@ -74,7 +74,7 @@ std::string answer(const Diagnosis& d) {
   const DiagnosisStep &first = d.steps.front(), &last = d.steps.back();
   if (d.steps.size() > 1) {
     text += modulus_answer("Young's modulus, with " + effect_list(d.final_effects), d) +
-            paragraph("The given model says " + moduli(first) + ". With " + effect_list(d.final_effects) +
+            paragraph("The given model says " + moduli(first.parameters) + ". With " + effect_list(d.final_effects) +
                       " the held-out error falls from " + millimetres(first.held_out_rms) + " to " +
                       millimetres(last.held_out_rms) + "; the noise is " + millimetres(last.noise_floor) +
                       ". Then: " + d.final_verdict + ".");
@@ -89,15 +89,22 @@ std::string part(const std::string& name, double metres, double sigmas) {
          " sigma</small></dd></div>";
 }
 
+std::string force_paragraph(const MissingForce& force) {
+  if (force.time.empty()) return "";
+  return "<p><b>What would make up for it:</b> at " + escape_html(moduli(force.parameters)) + ", a force of " +
+         escape_html(force.words) + ". It explains " + percent(force.explained) +
+         " of the squared error there. The arrows above show it.</p>";
+}
+
 std::string fails(const Diagnosis& d) {
   const ErrorParts &m = d.metres, &s = d.sigmas;
   return section("fails", "Where and when the given model fails",
                  "<dl class=\"facts\">" + part("Error, rms", m.total, s.total) + part("of it noise", m.noise, s.noise) +
                      part("beyond noise", m.structured, s.structured) + part("of the mesh", m.numerical, s.numerical) +
                      "</dl><p><b>Where:</b> " + escape_html(d.where) + ".</p><p><b>When:</b> " + escape_html(d.when) +
-                     ".</p>" + chart_place("residual-time") + "<div class=\"grid\">" + chart_place("residual-node") +
-                     chart_place("residual-amplitude") + chart_place("residual-frequency") + chart_place("residual-phase") +
-                     "</div>");
+                     ".</p>" + force_paragraph(d.force) + chart_place("residual-time") + "<div class=\"grid\">" +
+                     chart_place("residual-node") + chart_place("residual-amplitude") + chart_place("residual-frequency") +
+                     chart_place("residual-phase") + "</div>");
 }
 
 /// A refit may even come out worse than the model as given.
@@ -188,7 +195,7 @@ std::string staircase(const Diagnosis& d) {
     const std::string name = added.empty() ? "as given" : "+ " + effect_list(added);
     rows += "<tr><td>" + escape_html(name) + "</td><td class=\"n\">" + millimetres(step.held_out_rms) +
             "</td><td class=\"n\">" + millimetres(step.train_rms) + "</td><td class=\"n\">" +
-            millimetres(step.noise_floor) + "</td><td class=\"n\">" + escape_html(moduli(step)) + "</td></tr>";
+            millimetres(step.noise_floor) + "</td><td class=\"n\">" + escape_html(moduli(step.parameters)) + "</td></tr>";
   }
   return section("staircase", "The error, step by step",
                  "<div id=\"steps\"></div><div class=\"scroll\"><table><thead><tr><th>model</th><th class=\"n\">held-out "
@@ -206,7 +213,7 @@ std::string diagnosis_html(const Diagnosis& d, const DiagnosisTexts& texts, cons
   page.heading = "What does the model miss?";
   page.subheading = short_path(texts.model) + " · " + short_path(texts.recording);
   page.body =
-      answer(d) + player(showing) + fails(d) + ranking(d) + staircase(d) +
+      answer(d) + player(showing, !d.force.time.empty()) + fails(d) + ranking(d) + staircase(d) +
       section(
           "model", "",
           file_details("The given model", texts.model_text, "", !proposed) +
@@ -214,7 +221,8 @@ std::string diagnosis_html(const Diagnosis& d, const DiagnosisTexts& texts, cons
                         : "")) +
       section("timings", "", "<p>The diagnosis took " + escape_html(short_number(d.seconds, 3)) + " s.</p>") +
       colophon(texts.command_line, texts.versions);
-  page.data = "{\"diagnosis\":" + diagnosis_json(d) + ",\"showing\":" + showing_json(showing) + "}";
+  page.data = "{\"diagnosis\":" + diagnosis_json(d) + ",\"arrows\":" + arrows_json(d.force) +
+              ",\"showing\":" + showing_json(showing) + "}";
   return page.html();
 }
 

@@ -54,6 +54,24 @@ json residual_json(const ResidualViews& r) {
       {"phase_rms", numbers(r.phase_rms)}};
 }
 
+json force_json(const MissingForce& f) {
+  if (f.time.empty()) return nullptr;
+  json total = json::array();
+  for (const Eigen::Vector3d& v : f.total) total.push_back({number(v.x()), number(v.y()), number(v.z())});
+  Eigen::VectorXd square = Eigen::VectorXd::Zero(f.places.cols());
+  for (const Eigen::Matrix3Xd& at : f.at_nodes) square += at.colwise().squaredNorm().transpose();
+  std::vector<double> rms;
+  for (const double s : square) rms.push_back(std::sqrt(s / static_cast<double>(f.at_nodes.size())));
+  return {{"words", f.words},
+          {"parameters", numbers(f.parameters)},
+          {"explained", number(f.explained)},
+          {"follows", numbers(f.follows)},
+          {"time", numbers(f.time)},
+          {"total", total},
+          {"nodes", f.nodes},
+          {"node_rms", numbers(rms)}};
+}
+
 }  // namespace
 
 std::string diagnosis_json(const Diagnosis& d) {
@@ -79,6 +97,7 @@ std::string diagnosis_json(const Diagnosis& d) {
                      {"when", d.when},
                      {"how_much", {{"metres", parts_json(d.metres)}, {"sigmas", parts_json(d.sigmas)}}},
                      {"residual", residual_json(d.residual)},
+                     {"missing_force", force_json(d.force)},
                      {"steps", steps},
                      {"next_experiment", d.next_experiment},
                      {"final", final},

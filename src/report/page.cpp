@@ -58,14 +58,17 @@ std::string model_choice(const std::vector<Replay>& replays) {
 }
 
 /// The surface in three dimensions with its controls.
-std::string surface_place() {
+std::string surface_place(bool arrows) {
   return "<div id=\"surface\"></div><div id=\"colour-bar\"></div><div class=\"controls\">" +
          choice("colour", "Misfit in", {{"error", "mm"}, {"sigmas", "sigma"}}) +
          choice("span", "of", {{"frame", "this frame"}, {"all", "all frames"}}) +
          "<label class=\"slider\" title=\"Displacement, magnified\">motion ×<output id=\"magnify-value\">1</output>"
          "<input type=\"range\" id=\"magnify\" min=\"0\" max=\"5\" step=\"1\" value=\"0\"></label>"
          "<label class=\"tick\"><input type=\"checkbox\" id=\"measured\" checked> measured points</label>"
-         "<label class=\"tick\"><input type=\"checkbox\" id=\"glass\"> glass where nothing was measured</label>"
+         "<label class=\"tick\"><input type=\"checkbox\" id=\"glass\"> glass where nothing was measured</label>" +
+         std::string(arrows ? "<label class=\"tick\"><input type=\"checkbox\" id=\"arrows\" checked> missing force "
+                              "<output id=\"arrow-scale\"></output></label>"
+                            : "") +
          "<label class=\"tick\"><input type=\"checkbox\" id=\"turn\"> turn</label>"
          "<button type=\"button\" id=\"view\">Reset view</button></div>";
 }
@@ -100,7 +103,7 @@ std::string chart_place(const std::string& id) {
   return "<div class=\"chart\" data-chart=\"" + id + "\"></div>";
 }
 
-std::string player(const Showing& showing) {
+std::string player(const Showing& showing, bool arrows) {
   if (showing.replays.empty()) return "";
   std::set<int> cameras;
   for (const Picture& p : showing.pictures) cameras.insert(p.source);
@@ -119,7 +122,7 @@ std::string player(const Showing& showing) {
       "<input type=\"range\" id=\"scrub\" min=\"0\" value=\"0\" step=\"any\" aria-label=\"Time\">"
       "<output id=\"clock\"></output><select id=\"speed\" aria-label=\"Speed\"></select></div>";
   return section("replay", "Model against measurement",
-                 model_choice(showing.replays) + "<div class=\"stages\"><div class=\"stage\">" + surface_place() +
+                 model_choice(showing.replays) + "<div class=\"stages\"><div class=\"stage\">" + surface_place(arrows) +
                      "</div><div class=\"stage\">" + (showing.pictures.empty() ? "" : picture) + motion + "</div></div>" +
                      bar);
 }

@@ -17,6 +17,7 @@ constexpr double kShades = 254.0;           // of an 8-bit one
 constexpr std::uint8_t kNothingSeen = 255;  // stands for NaN
 constexpr double kOutlineStep = 0.1;        // [pixel]
 constexpr Eigen::Index kMostOutlinePoints = 240;
+constexpr std::size_t kMostArrowFrames = 120;
 
 std::string base64(const std::string& bytes) {
   static const char* const letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -134,6 +135,18 @@ json replay_json(const Replay& replay) {
 }
 
 }  // namespace
+
+std::string arrows_json(const MissingForce& force) {
+  if (force.time.empty()) return "null";
+  std::vector<double> time, field;
+  const std::size_t stride = 1 + force.time.size() / kMostArrowFrames;
+  for (std::size_t k = 0; k < force.time.size(); k += stride) {
+    time.push_back(force.time[k]);
+    const Eigen::Matrix3Xd& at = force.at_nodes[k];
+    field.insert(field.end(), at.data(), at.data() + at.size());
+  }
+  return json({{"time", clock(time)}, {"places", shorts(flat(force.places))}, {"field", shorts(field)}}).dump();
+}
 
 std::string showing_json(const Showing& showing) {
   json replays = json::array(), pictures = json::array();

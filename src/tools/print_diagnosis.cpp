@@ -31,6 +31,7 @@ void print_diagnosis(const Diagnosis& d, const Paint& paint, std::ostream& out) 
   out << paint.bold(diagnosis_sentence(d)) << "\nwhere         " << d.where << "\nwhen          " << d.when << "\n";
   out << line("error         %s%.3f mm rms: noise %.3f, beyond noise %.3f, of the mesh %.3f\n", "", 1e3 * d.metres.total,
               1e3 * d.metres.noise, 1e3 * d.metres.structured, 1e3 * d.metres.numerical);
+  if (!d.force.words.empty()) out << "missing force " << d.force.words << "\n";
   out << paint.bold("candidate                 explains   held-out [mm]   log evidence          p") << "\n";
   for (std::size_t i = 0; i < d.candidates.size() && i < kShown; ++i) {
     const MissingEffect& c = d.candidates[i];

@@ -42,6 +42,8 @@ class Study {
   /// The free run at w. Of a nonlinear model it is off by as much as quick runs were at the last full run of a fit, here or
   /// in the study that was borrowed from.
   Rows rows(const Eigen::VectorXd& w) const;
+  /// d rows / d amplitude of each of `shapes` (3n x count) as a further displacement of the free run at w, N x count.
+  Eigen::MatrixXd rows_along(const Eigen::VectorXd& w, const Eigen::MatrixXd& shapes, const Rows& rows) const;
   /// Fits the training frames.
   BatchFit fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread) const;
   /// The same without full runs.
@@ -55,6 +57,9 @@ class Study {
   /// that rings may need them in another minimum.
   Eigen::VectorXd scan_near(const Eigen::VectorXd& start, const std::vector<Eigen::Index>& coordinates) const;
 
+  /// What is linear in the model, in a reduced basis.
+  std::shared_ptr<const ReducedModel> reduced() const;
+
   /// Index of a free parameter by name; -1 when there is none.
   Eigen::Index index(const std::string& parameter) const;
 
@@ -66,7 +71,7 @@ class Study {
   const Recording& recording_;
   std::vector<Frame> training_;
   mutable Model model_;
-  std::unique_ptr<ForwardModel> forward_;
+  std::shared_ptr<ForwardModel> forward_;
   std::unique_ptr<ForwardModel> quick_;              ///< null: forward_ is quick
   mutable std::unique_ptr<AnchoredModel> anchored_;  ///< to the last full run; null: none yet
   std::vector<std::unique_ptr<ObservationOperator>> operators_;

@@ -24,7 +24,7 @@ class CorrectedRuns {
   double deviance(const std::vector<Frame>& frames, const Eigen::VectorXd& w, double start);
 
  private:
-  Eigen::MatrixXd sensitivity(const Frame& frame, const Prediction& central);
+  Eigen::MatrixXd sensitivity(const Frame& frame, const Prediction& central) const;
   void advance(double time);
   void correct(const Eigen::MatrixXd& step);
   ReducedTrajectory& run(std::size_t i);

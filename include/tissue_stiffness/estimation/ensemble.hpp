@@ -50,4 +50,10 @@ class Ensemble {
 Prediction predict_frame(const Model& model, const std::vector<std::unique_ptr<ObservationOperator>>& operators,
                          const Frame& frame, const Eigen::VectorXd& theta, const Eigen::VectorXd& displacement);
 
+/// d predicted rows / d amplitude of each of `shapes` (3n x count) about a displacement, rows x count; `there`: the
+/// prediction at the displacement itself.
+Eigen::MatrixXd predict_along(const Model& model, const std::vector<std::unique_ptr<ObservationOperator>>& operators,
+                              const Frame& frame, const Eigen::VectorXd& theta, const Eigen::VectorXd& displacement,
+                              const Prediction& there, const Eigen::MatrixXd& shapes);
+
 }  // namespace tissue_stiffness

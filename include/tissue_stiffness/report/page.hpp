@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "tissue_stiffness/types/diagnosis.hpp"
 #include "tissue_stiffness/types/replay.hpp"
 
 namespace tissue_stiffness {
@@ -27,8 +28,8 @@ std::string short_path(const std::string& file);
 /// The place of a chart, which the page's script fills: `id` is known to it.
 std::string chart_place(const std::string& id);
 
-/// Card in which model and measurement move; nothing without a replay.
-std::string player(const Showing& showing);
+/// Card in which model and measurement move; nothing without a replay. `arrows`: with the missing force.
+std::string player(const Showing& showing, bool arrows = false);
 
 /// A text file to fold out. Lines that `before` lacks are marked when it is not empty.
 std::string file_details(const std::string& summary, const std::string& text, const std::string& before, bool open);
@@ -38,5 +39,7 @@ std::string colophon(const std::string& command_line, const std::vector<std::pai
 
 /// {first_stamp, replays, pictures}. Rounded: positions to 1/64000 of their range, misfits to 1/254 of the root of theirs.
 std::string showing_json(const Showing& showing);
+/// {time, places, field}, thinned and rounded alike; null where nothing is missing.
+std::string arrows_json(const MissingForce& force);
 
 }  // namespace tissue_stiffness

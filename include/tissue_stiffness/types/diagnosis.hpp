@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <limits>
 #include <map>
 #include <string>
@@ -51,6 +52,20 @@ struct ResidualViews {
   std::vector<double> phase, phase_rms;          ///< of the motion's strongest frequency [rad]; empty as above
 };
 
+/// What would have to act on the body, beside what the model knows, for its free run to be the recording: the smoothest
+/// such force in the body's lowest modes.
+struct MissingForce {
+  std::vector<double> time;            ///< [s] since the first stamp, of each frame but the first; empty: none is needed
+  std::vector<Eigen::Vector3d> total;  ///< on the whole body [N]
+  std::vector<int> nodes;              ///< mesh nodes spread over the surface
+  Eigen::Matrix3Xd places;             ///< of those, at rest [m]
+  std::vector<Eigen::Matrix3Xd> at_nodes;    ///< force per mass there, of each frame since the one before [N/kg]
+  std::map<std::string, double> parameters;  ///< that it is missing with, by name
+  double explained = 0.0;                    ///< share of the sum of squares of the residual with them
+  std::map<std::string, double> follows;  ///< share of its static work by a force proportional to each part of the motion
+  std::string words;
+};
+
 /// Which physics a model misses. `verdict`: adequate, missing, numerics, unexplained.
 struct Diagnosis {
   std::string verdict;
@@ -59,6 +74,7 @@ struct Diagnosis {
   std::string where, when;
   ErrorParts metres, sigmas;
   ResidualViews residual;  ///< of the given model
+  MissingForce force;      ///< the same
   std::vector<DiagnosisStep> steps;
   std::string next_experiment;
   std::string final_verdict;

@@ -45,6 +45,66 @@ function neighbours(rest, triangles, everMeasured) {
   });
 }
 
+// The missing force: from where it acts, a shaft and a head.
+class Arrows {
+  constructor(scene, rest, size) {
+    const { time, places, field } = page.arrows;
+    this.time = time;
+    this.places = shorts(places);
+    this.field = shorts(field);
+    this.count = this.places.length / 3;
+    this.longest = 0.22 * size;
+    const strengths = Float64Array.from({ length: this.field.length / 3 }, (x, i) => Math.hypot(...this.field.slice(3 * i, 3 * i + 3)));
+    this.most = quantile(strengths, 0.98) || 1;
+    // Each moves with the surface's nearest vertex.
+    this.vertex = Array.from({ length: this.count }, (x, i) => {
+      let best = 0, least = Infinity;
+      for (let v = 0; v < rest.length / 3; ++v) {
+        const far = [0, 1, 2].reduce((sum, a) => sum + (rest[3 * v + a] - this.places[3 * i + a]) ** 2, 0);
+        if (far < least) { least = far; best = v; }
+      }
+      return best;
+    });
+    const corners = 7, faces = [0, 1, 2, 0, 2, 1, 0, 1, 5, 1, 2, 5, 2, 0, 5, 3, 4, 5, 4, 3, 6, 3, 5, 6, 5, 4, 6];
+    const index = [];
+    for (let i = 0; i < this.count; ++i) for (const f of faces) index.push(corners * i + f);
+    this.geometry = new THREE.BufferGeometry();
+    this.geometry.setIndex(index);
+    this.geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(3 * corners * this.count), 3));
+    this.mesh = new THREE.Mesh(this.geometry, new THREE.MeshLambertMaterial({ side: THREE.DoubleSide }));
+    this.mesh.frustumCulled = false;
+    scene.add(this.mesh);
+    $("arrow-scale").textContent = "(longest: " + shortNumber(this.most, 2) + " N/kg)";
+  }
+
+  show(time, surface) {
+    this.mesh.visible = $("arrows").checked && player.replay === replays[0];
+    if (!this.mesh.visible) return;
+    const k = nearest(this.time, time), out = this.geometry.attributes.position.array;
+    for (let i = 0; i < this.count; ++i) {
+      const f = [0, 1, 2].map((a) => this.field[3 * (k * this.count + i) + a]);
+      const strength = Math.hypot(...f) || 1e-30, v = this.vertex[i];
+      const length = this.longest * Math.min(1.5, strength / this.most), width = 0.09 * this.longest * Math.min(1, Math.sqrt(strength / this.most));
+      const along = f.map((x) => x / strength), from = [0, 1, 2].map((a) => surface[3 * v + a]);
+      const other = Math.abs(along[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0];
+      const side = new THREE.Vector3(...along).cross(new THREE.Vector3(...other)).normalize();
+      const up = new THREE.Vector3(...along).cross(side);
+      const corner = (c, far, wide, turn) => {
+        const s = wide * Math.cos(turn), u = wide * Math.sin(turn);
+        for (let a = 0; a < 3; ++a) out[21 * i + 3 * c + a] = from[a] + far * along[a] + s * side.getComponent(a) + u * up.getComponent(a);
+      };
+      const third = (2 * Math.PI) / 3;
+      for (let c = 0; c < 3; ++c) {
+        corner(c, 0, 0.35 * width, c * third);
+        corner(3 + c, 0.62 * length, width, c * third);
+      }
+      corner(6, length, 0, 0);
+    }
+    this.geometry.attributes.position.needsUpdate = true;
+    this.geometry.computeVertexNormals();
+  }
+}
+
 class SurfaceView {
   constructor(host, renderer) {
     this.host = host;
@@ -106,6 +166,8 @@ class SurfaceView {
     this.dots = new THREE.Points(this.points, new THREE.PointsMaterial({ size: 5 * Math.min(2, devicePixelRatio) / 2 + 2, sizeAttenuation: false }));
     this.dots.frustumCulled = false;
     this.scene.add(this.dots);
+    const [low, high] = this.restBox;
+    if (page.arrows) this.arrows = new Arrows(this.scene, rest, Math.hypot(...low.map((l, a) => high[a] - l)));
   }
 
   addBox(rest) {
@@ -159,6 +221,7 @@ class SurfaceView {
     this.sun.position.copy(this.camera.position);
     this.box.material.color.set(colour("edge"));
     this.dots.material.color.set(colour("text"));
+    if (this.arrows) this.arrows.mesh.material.color.set(colour("force"));
     this.renderer.render(this.scene, this.camera);
   }
 
@@ -176,6 +239,7 @@ class SurfaceView {
     this.geometry.computeBoundingSphere();
     this.paint(s, at.share > 0.5 ? next / 3 : from / 3);
     this.placeDots(time, magnify);
+    if (this.arrows) this.arrows.show(time, position);
     this.render();
   }
 
@@ -251,6 +315,7 @@ function startSurface() {
     again();
   });
   $("glass").addEventListener("change", again);
+  if ($("arrows")) $("arrows").addEventListener("change", again);
   $("turn").addEventListener("change", () => view.turn($("turn").checked));
   $("view").addEventListener("click", () => view.resetView());
 }

@@ -59,6 +59,7 @@ async function useSurface(page) {
   await changesSurface(page, "magnifying", () => page.locator("#magnify").fill("3"));
   assert.equal(await page.textContent("#magnify-value"), "10");
   await page.locator("#magnify").fill("0");
+  if (await page.locator("#arrows").count()) await changesSurface(page, "hiding the missing force", () => page.click("#arrows"));
   const glass = await page.isChecked("#glass");
   await page.click("#glass");
   assert.equal(await page.isChecked("#glass"), !glass);
@@ -118,7 +119,7 @@ async function useRest(page) {
   assert.equal(await ground(), light);
 }
 
-const used = new Set(["play", "scrub", "speed", "colour", "span", "model", "measured", "magnify", "glass", "turn", "view",
+const used = new Set(["play", "scrub", "speed", "colour", "span", "model", "measured", "magnify", "glass", "arrows", "turn", "view",
   "track", "component", "theme", "camera"]);
 
 // Both outlines are on the picture, and it plays.

@@ -55,6 +55,8 @@ export async function checkDiagnosis(page, folder) {
   assert.deepEqual((await embedded(page)).diagnosis, file, "the page's data are diagnosis.json");
   const [name] = Object.keys(file.final.parameters).filter((n) => n.endsWith("young_modulus"));
   await checkModulus(page, file.final.parameters[name]);
+  assert.equal(await page.locator("#arrows").count(), file.missing_force ? 1 : 0, "arrows where a force is missing");
+  if (file.missing_force) assert.ok((await page.textContent("#fails")).includes(file.missing_force.words));
   const rows = await page.locator("#staircase tbody tr").all();
   assert.equal(rows.length, file.steps.length);
   for (const [i, step] of file.steps.entries()) {

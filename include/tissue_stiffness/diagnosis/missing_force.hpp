@@ -1,0 +1,15 @@
+#pragma once
+
+#include "tissue_stiffness/diagnosis/study.hpp"
+#include "tissue_stiffness/types/diagnosis.hpp"
+
+namespace tissue_stiffness {
+
+/// The equivalent missing force of a model with parameters w. Each of the lowest modes obeys
+///   q'' + d q' + omega^2 q = f,
+/// f a random walk in steps at the frames, smoothed from the free run's residual, which is taken as linear in q
+/// (force_smoother.hpp); the force per mass at a place is the modes' shapes there times f [N/kg]. Empty where no force is
+/// likelier than noise. What is not linear in the model acts as it does in the free run.
+MissingForce missing_force(const Study& study, const Eigen::VectorXd& w);
+
+}  // namespace tissue_stiffness

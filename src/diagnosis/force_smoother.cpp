@@ -1,0 +1,135 @@
+#include "tissue_stiffness/diagnosis/force_smoother.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "tissue_stiffness/forward/for_each_index.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr double kLevels[] = {1.0, 0.3, 0.1, 0.03, 0.01};  // of the forces that move the modes
+constexpr double kWalks[] = {0.0, 0.03, 0.1, 0.3, 1.0};    // of the level: step from frame to frame
+constexpr double kModeLikelier = 10.0;                     // fall of the deviance that the force on a mode must bring
+constexpr std::pair<double, double> kNoChange{1, 1};
+// of the common level and of its step, for a mode of its own
+constexpr std::pair<double, double> kOwn[] = {{0, 0}, {0.3, 0.3}, {3, 3}, {1, 0}, {1, 0.1}, {1, 0.3}, {1, 3}, {1, 10}};
+constexpr double kRegular = 1e-12;  // relative, keeps a covariance invertible
+
+/// The state, x = (q, v, f), after a transition.
+Eigen::MatrixXd after(const ModalTransition& t, const Eigen::MatrixXd& x) {
+  const Eigen::Index m = t.qq.size();
+  const auto q = x.topRows(m).array(), v = x.middleRows(m, m).array(), f = x.bottomRows(m).array();
+  Eigen::MatrixXd out(x.rows(), x.cols());
+  out.topRows(m) = (q.colwise() * t.qq + v.colwise() * t.qv + f.colwise() * t.qf).matrix();
+  out.middleRows(m, m) = (q.colwise() * t.vq + v.colwise() * t.vv + f.colwise() * t.vf).matrix();
+  out.bottomRows(m) = f.matrix();
+  return out;
+}
+
+}  // namespace
+
+ModalTransition::ModalTransition(ModalStep step, double span, Eigen::Index modes, Eigen::Index all) {
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(all), one = Eigen::VectorXd::Ones(all);
+  const auto respond = [&](int unit, const Eigen::VectorXd& force, Eigen::ArrayXd& q, Eigen::ArrayXd& v) {
+    Eigen::MatrixXd state = Eigen::MatrixXd::Zero(all, step.states());
+    if (unit >= 0) state.col(unit).setOnes();
+    step.advance(span, force, force, state);
+    q = state.col(0).head(modes).array();
+    v = state.col(1).head(modes).array();
+  };
+  respond(0, none, qq, vq);
+  respond(1, none, qv, vv);
+  respond(-1, one, qf, vf);
+}
+
+SmoothedForce smooth_force(const std::vector<ModalTransition>& transitions, const std::vector<FrameEvidence>& evidence,
+                           const ForcePrior& prior) {
+  const Eigen::Index m = prior.level.size(), size = 3 * m;
+  std::vector<Eigen::VectorXd> predicted, filtered;  // the latter smoothed in the end
+  std::vector<Eigen::MatrixXd> predicted_p, filtered_p;
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(size);
+  Eigen::MatrixXd p = Eigen::MatrixXd::Zero(size, size);
+  p.diagonal().tail(m) = prior.level.cwiseAbs2();
+  SmoothedForce out;
+  for (std::size_t k = 0; k < evidence.size(); ++k) {
+    x = after(transitions[k], x);
+    p = after(transitions[k], after(transitions[k], p).transpose());
+    p.diagonal().tail(m) += prior.walk.cwiseAbs2();
+    predicted.push_back(x);
+    predicted_p.push_back(p);
+    // By information = L L^T: the gain needs no more than I + L^T P L.
+    const Eigen::LDLT<Eigen::MatrixXd> factor(evidence[k].information);
+    Eigen::MatrixXd l = factor.matrixL();
+    l = factor.transpositionsP().transpose() * (l * factor.vectorD().cwiseMax(0.0).cwiseSqrt().asDiagonal()).eval();
+    const Eigen::MatrixXd pl = p.leftCols(m) * l;
+    const Eigen::MatrixXd s = Eigen::MatrixXd::Identity(m, m) + l.transpose() * pl.topRows(m);
+    const Eigen::LLT<Eigen::MatrixXd> solver(s);
+    const Eigen::VectorXd q = x.head(m);
+    const Eigen::VectorXd innovation = evidence[k].seen - evidence[k].information * q;
+    const Eigen::VectorXd there = p.leftCols(m) * innovation;
+    const Eigen::VectorXd step = there - pl * solver.solve(l.transpose() * there.head(m));
+    out.deviance += evidence[k].square - 2.0 * evidence[k].seen.dot(q) + q.dot(evidence[k].information * q) -
+                    innovation.dot(step.head(m)) + 2.0 * Eigen::MatrixXd(solver.matrixL()).diagonal().array().log().sum();
+    x += step;
+    p -= pl * solver.solve(pl.transpose());
+    p = 0.5 * (p + p.transpose()).eval();
+    filtered.push_back(x);
+    filtered_p.push_back(p);
+  }
+  for (std::size_t k = evidence.size() - 1; k-- > 0;) {
+    // G = P F^T (P-)^-1, in the scale of the states.
+    const Eigen::VectorXd unit = predicted_p[k + 1].diagonal().cwiseMax(1e-300).cwiseSqrt();
+    Eigen::MatrixXd ahead = unit.cwiseInverse().asDiagonal() * predicted_p[k + 1] * unit.cwiseInverse().asDiagonal();
+    ahead.diagonal().array() += kRegular;
+    const Eigen::VectorXd behind = filtered[k + 1] - predicted[k + 1];
+    const Eigen::VectorXd scaled = unit.cwiseInverse().asDiagonal() * behind;
+    const Eigen::VectorXd solved = unit.cwiseInverse().asDiagonal() * ahead.ldlt().solve(scaled);
+    filtered[k] += after(transitions[k + 1], filtered_p[k]).transpose() * solved;
+  }
+  for (const Eigen::VectorXd& state : filtered) {
+    out.displacement.emplace_back(state.head(m));
+    out.force.emplace_back(state.tail(m));
+  }
+  return out;
+}
+
+ForcePrior likeliest_force_prior(const std::vector<ModalTransition>& transitions,
+                                 const std::vector<FrameEvidence>& evidence, double scale) {
+  const Eigen::Index m = evidence.front().seen.size();
+  const auto deviances = [&](const std::vector<ForcePrior>& priors) {
+    std::vector<double> out(priors.size());
+    for_each_index(priors.size(), [&](std::size_t i) { out[i] = smooth_force(transitions, evidence, priors[i]).deviance; });
+    return out;
+  };
+  std::vector<ForcePrior> common, own;
+  for (const double level : kLevels) {
+    for (const double walk : kWalks)
+      common.push_back({Eigen::VectorXd::Constant(m, level * scale), Eigen::VectorXd::Constant(m, walk * level * scale)});
+  }
+  std::vector<double> deviance = deviances(common);
+  const auto lowest = std::min_element(deviance.begin(), deviance.end());
+  ForcePrior best = common[static_cast<std::size_t>(lowest - deviance.begin())];
+  const double reference = *lowest;
+  for (Eigen::Index i = 0; i < m; ++i) {
+    for (const auto& [level, walk] : kOwn) {
+      own.push_back(best);
+      own.back().level[i] *= level;
+      own.back().walk[i] *= walk;
+    }
+  }
+  deviance = deviances(own);
+  for (Eigen::Index i = 0; i < m; ++i) {
+    const auto from = deviance.begin() + i * static_cast<std::ptrdiff_t>(std::size(kOwn));
+    const auto likelier = std::min_element(from, from + static_cast<std::ptrdiff_t>(std::size(kOwn)));
+    const bool needed = *from > std::min(reference, *likelier) + kModeLikelier;
+    const auto& [level, walk] = needed && *likelier > reference ? kNoChange : kOwn[needed ? likelier - from : 0];
+    best.level[i] *= level;
+    best.walk[i] *= walk;
+  }
+  return best;
+}
+
+}  // namespace tissue_stiffness

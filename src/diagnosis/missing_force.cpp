@@ -1,0 +1,195 @@
+#include "tissue_stiffness/diagnosis/missing_force.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <set>
+
+#include "tissue_stiffness/diagnosis/force_smoother.hpp"
+#include "tissue_stiffness/forward/reduced_trajectory.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr int kModes = 12;
+constexpr double kLikelier = 10.0;   // fall of the deviance that a force must bring
+constexpr std::size_t kNodes = 120;  // of the surface, that the force is told at
+constexpr double kSameSpan = 1e-6;   // relative
+constexpr double kShortest = 1e-9;   // [s]
+constexpr double kLocal = 0.5;       // of the largest force per mass: near it
+
+/// Surface nodes far from each other.
+std::vector<int> spread_nodes(const TetMesh& mesh, std::size_t most) {
+  std::set<int> surface;
+  for (Eigen::Index f = 0; f < mesh.facets.cols(); ++f) {
+    for (Eigen::Index i = 0; i < 3; ++i) surface.insert(mesh.facets(i, f));
+  }
+  const std::vector<int> all(surface.begin(), surface.end());
+  std::vector<double> far(all.size(), std::numeric_limits<double>::infinity());
+  std::vector<int> out;
+  for (std::size_t next = 0; out.size() < std::min(most, all.size());) {
+    out.push_back(all[next]);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      far[i] = std::min(far[i], (mesh.nodes.col(all[i]) - mesh.nodes.col(out.back())).squaredNorm());
+    }
+    next = static_cast<std::size_t>(std::max_element(far.begin(), far.end()) - far.begin());
+  }
+  return out;
+}
+
+Eigen::Matrix3Xd at(const std::vector<int>& nodes, const Eigen::VectorXd& field) {
+  Eigen::Matrix3Xd out(3, static_cast<Eigen::Index>(nodes.size()));
+  for (std::size_t i = 0; i < nodes.size(); ++i) out.col(static_cast<Eigen::Index>(i)) = field.segment<3>(3 * nodes[i]);
+  return out;
+}
+
+/// Share of y's square, modes x frames, that is proportional to x, mode by mode.
+double share_along(const Eigen::MatrixXd& y, const Eigen::MatrixXd& x) {
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < y.rows(); ++i) {
+    sum += std::pow(y.row(i).dot(x.row(i)), 2) / std::max(x.row(i).squaredNorm(), 1e-300);
+  }
+  return sum / y.squaredNorm();
+}
+
+std::string in_words(const MissingForce& force) {
+  std::size_t worst = 0;
+  for (std::size_t k = 1; k < force.total.size(); ++k) {
+    if (force.at_nodes[k].squaredNorm() > force.at_nodes[worst].squaredNorm()) worst = k;
+  }
+  const Eigen::Matrix3Xd& there = force.at_nodes[worst];
+  const Eigen::VectorXd size = there.colwise().norm();
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero(), mean = Eigen::Vector3d::Zero();
+  double weight = 0.0;
+  for (Eigen::Index i = 0; i < size.size(); ++i) {
+    if (size[i] < kLocal * size.maxCoeff()) continue;
+    centre += size[i] * force.places.col(i);
+    mean += there.col(i);
+    weight += size[i];
+  }
+  centre /= weight;
+  mean.normalize();
+  const auto most = std::max_element(force.follows.begin(), force.follows.end(),
+                                     [](const auto& a, const auto& b) { return a.second < b.second; });
+  char text[400];
+  std::snprintf(
+      text, sizeof text,
+      "up to %.2g N/kg, around (%.3f, %.3f, %.3f) m along (%.2f, %.2f, %.2f), %.2g N on the whole body, at %.2f s; "
+      "%.0f %% of it %s",
+      size.maxCoeff(), centre.x(), centre.y(), centre.z(), mean.x(), mean.y(), mean.z(), force.total[worst].norm(),
+      force.time[worst], 100.0 * most->second,
+      most->first == "constant" ? "is constant" : ("follows the " + most->first).c_str());
+  return text;
+}
+
+/// The body's lowest modes, and how the free run moves them.
+struct Modes {
+  Eigen::MatrixXd shapes;                    ///< 3n x modes, mass-normalised [kg^-1/2]
+  Eigen::VectorXd square;                    ///< omega^2 [rad^2/s^2]
+  Eigen::MatrixX3d weight;                   ///< modal force of a unit acceleration along each axis
+  std::vector<double> spans;                 ///< before each frame [s]
+  std::vector<ModalTransition> transitions;  ///< to each frame
+  Eigen::MatrixXd displacement;              ///< modes x frames
+};
+
+Modes modes_of(const Study& study, const Eigen::VectorXd& w) {
+  const auto reduced = study.reduced();
+  const Eigen::VectorXd theta = study.model().theta(w);
+  double time = study.recording().first_stamp + study.model().settings().time.start;
+  ReducedTrajectory run(*reduced, theta, time);
+  const Eigen::Index all = run.frequencies().size(), count = std::min<Eigen::Index>(kModes, all);
+  Modes out;
+  out.shapes = run.mode_shapes(static_cast<int>(count));
+  out.square = run.frequencies().head(count).cwiseAbs2();
+  out.weight = reduced->modes(theta)->weight.topRows(count);
+  const auto frames = static_cast<Eigen::Index>(study.recording().frames.size());
+  out.displacement.resize(count, frames);
+  double last = 0.0;
+  for (Eigen::Index k = 0; k < frames; ++k) {
+    const double next = study.recording().frames[static_cast<std::size_t>(k)].time;
+    run.advance(next);
+    const double span = std::max(next - time, kShortest);
+    out.spans.push_back(span);
+    if (k > 0 && std::abs(span - last) < kSameSpan * span) {
+      out.transitions.push_back(out.transitions.back());
+    } else {
+      out.transitions.emplace_back(run.step(), span, count, all);
+      last = span;
+    }
+    out.displacement.col(k) = run.modal_displacement().head(count);
+    time = next;
+  }
+  return out;
+}
+
+double squares(const FrameEvidence& e, const Eigen::VectorXd& q) {
+  return e.square - 2.0 * e.seen.dot(q) + q.dot(e.information * q);
+}
+
+std::vector<FrameEvidence> evidence_of(const Study& study, const Eigen::VectorXd& w, const Study::Rows& rows,
+                                       const Eigen::MatrixXd& shapes) {
+  const Eigen::MatrixXd along = study.rows_along(w, shapes, rows);
+  std::vector<FrameEvidence> out;
+  for (std::size_t k = 0; k + 1 < rows.offsets.size(); ++k) {
+    const Eigen::Index from = rows.offsets[k], size = rows.offsets[k + 1] - from;
+    const auto h = along.middleRows(from, size);
+    const auto e = rows.error.segment(from, size);
+    out.push_back({h.transpose() * h, h.transpose() * e, e.squaredNorm()});
+  }
+  return out;
+}
+
+}  // namespace
+
+MissingForce missing_force(const Study& study, const Eigen::VectorXd& w) {
+  const Recording& recording = study.recording();
+  const TetMesh& mesh = study.model().mesh();
+  const Modes modes = modes_of(study, w);
+  const Study::Rows rows = study.rows(w);
+  const std::vector<FrameEvidence> evidence = evidence_of(study, w, rows, modes.shapes);
+  const double scale = std::sqrt((modes.square.asDiagonal() * modes.displacement).squaredNorm() /
+                                 static_cast<double>(modes.displacement.size()));
+  const ForcePrior prior = likeliest_force_prior(modes.transitions, evidence, scale);
+  const SmoothedForce best = smooth_force(modes.transitions, evidence, prior);
+  const double without = rows.error.squaredNorm();
+  MissingForce out;
+  if (!(best.deviance < without - kLikelier)) return out;
+
+  const Eigen::Index count = modes.shapes.cols(), frames = modes.displacement.cols();
+  for (Eigen::Index i = 0; i < w.size(); ++i) {
+    const FreeParameter& free = study.model().free_parameters()[static_cast<std::size_t>(i)];
+    out.parameters[free.name] = free.to_value(w[i]);
+  }
+  out.nodes = spread_nodes(mesh, kNodes);
+  out.places = at(out.nodes, Eigen::Map<const Eigen::VectorXd>(mesh.nodes.data(), mesh.nodes.size()));
+  Eigen::MatrixXd force(count, frames), q(count, frames), v(count, frames);
+  Eigen::VectorXd before = Eigen::VectorXd::Zero(count);
+  double left = 0.0;
+  Eigen::Index kept = 0;
+  for (Eigen::Index k = 0; k < frames; ++k) {
+    const auto frame = static_cast<std::size_t>(k);
+    left += squares(evidence[frame], best.displacement[frame]);
+    const Eigen::VectorXd now = modes.displacement.col(k) + best.displacement[frame];
+    const double span = modes.spans[frame];
+    if (k > 0 && span > kShortest) {
+      force.col(kept) = best.force[frame - 1];  // which acts until this frame
+      q.col(kept) = 0.5 * (before + now);
+      v.col(kept) = (now - before) / span;
+      out.time.push_back(recording.frames[frame].time - recording.first_stamp);
+      out.total.emplace_back(modes.weight.transpose() * force.col(kept));
+      out.at_nodes.push_back(at(out.nodes, modes.shapes * force.col(kept)));
+      ++kept;
+    }
+    before = now;
+  }
+  force = modes.square.cwiseSqrt().cwiseInverse().asDiagonal() * force.leftCols(kept).eval();  // its square: static work
+  out.explained = 1.0 - left / without;
+  out.follows = {{"constant", share_along(force, Eigen::MatrixXd::Ones(count, kept))},
+                 {"displacement", share_along(force, q.leftCols(kept))},
+                 {"velocity", share_along(force, v.leftCols(kept))}};
+  out.words = in_words(out);
+  return out;
+}
+
+}  // namespace tissue_stiffness
