@@ -73,7 +73,7 @@ AnchoredFilter::Innovation Track::absorb(const Frame& frame) {
 }
 
 Eigen::MatrixXd Track::covariance() const {
-  Eigen::MatrixXd sum = filter_.covariance();
+  Eigen::MatrixXd sum = filter_.robust_covariance();
   if (doubt_.size() > 0) sum += doubt_ * doubt_.transpose();
   return sum;
 }

@@ -22,6 +22,7 @@ void AnchoredFilter::move_anchor(const Eigen::VectorXd& anchor, const Eigen::Vec
   }
   information_ = Eigen::MatrixXd::Zero(p, p);
   gradient_ = Eigen::VectorXd::Zero(p);
+  scores_.clear();
   data_cost_ = bend_cost_ = 0.0;
   rows_ = 0;
 }
@@ -71,7 +72,9 @@ AnchoredFilter::Innovation AnchoredFilter::update(const Eigen::VectorXd& y, cons
   out.nis = innovation.dot(precision.cwiseProduct(innovation)) - projected.dot((before + added).ldlt().solve(projected));
 
   information_ += added;
-  gradient_ += weighted.transpose() * e;
+  const Eigen::VectorXd pull = weighted.transpose() * e;
+  gradient_ += pull;
+  scores_.add(added, pull);
   data_cost_ += out.cost;
   rows_ += out.dof;
   return out;
@@ -93,6 +96,11 @@ Eigen::VectorXd AnchoredFilter::mean() const {
 Eigen::MatrixXd AnchoredFilter::covariance() const {
   const Eigen::Index p = anchor_.size();
   return total_information().ldlt().solve(Eigen::MatrixXd::Identity(p, p));
+}
+
+Eigen::MatrixXd AnchoredFilter::robust_covariance() const {
+  const double scale = misfit_scale();
+  return scores_.widened(covariance(), scores_.variance(mean() - anchor_) / (scale * scale));
 }
 
 double AnchoredFilter::cost() const {

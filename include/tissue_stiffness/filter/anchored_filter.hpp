@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 
+#include "tissue_stiffness/filter/score_batches.hpp"
+
 namespace tissue_stiffness {
 
 /// Unscented parameter filter in information form, with sigma points that stay where they are anchored.
@@ -42,6 +44,8 @@ class AnchoredFilter {
   Eigen::VectorXd mean() const;
   /// Inverse of the information; both count the noise as `misfit_scale` times larger in variance than the sensor's.
   Eigen::MatrixXd covariance() const;
+  /// The same, wider where the errors of successive frames agree more than noise does (score_batches.hpp).
+  Eigen::MatrixXd robust_covariance() const;
   /// Mean square of error over sigma at the anchor, at least 1: a model that cannot explain the data must not be sure of
   /// its parameters (the reduced chi-square of Press et al. 2007, sec. 15.1).
   double misfit_scale() const;
@@ -72,6 +76,7 @@ class AnchoredFilter {
   Eigen::MatrixXd points_;
   Eigen::MatrixXd information_;  ///< of the data
   Eigen::VectorXd gradient_;     ///< H^T R^-1 e summed, at the anchor
+  ScoreBatches scores_;
   double data_cost_ = 0.0, bend_cost_ = 0.0;
   int rows_ = 0;
 };
