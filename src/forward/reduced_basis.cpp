@@ -17,6 +17,7 @@ constexpr int kLeading = 4;             // modes that tell what an absent effect
 constexpr double kResponseShare = 0.6;  // of the room for absent effects: static responses; dynamic ones fill the rest
 constexpr int kFew = 3;                 // absent effects that may grow large: their stiffness acts on what is added, too
 constexpr double kFaint = 1e-12;        // of the strongest response, squared: what is left out
+constexpr Eigen::Index kLarge = 6000;   // unknowns from which on single precision is faster
 constexpr double kFree = 1e-9;          // of the highest eigenvalue: below it a body moves freely
 
 void zero_fixed(Eigen::MatrixXd& x, const std::vector<char>& fixed) {
@@ -37,6 +38,11 @@ class StaticResponse {
   Eigen::MatrixXd operator()(Eigen::MatrixXd loads) const {
     zero_fixed(loads, fixed_);
     return solver_.solve(loads);
+  }
+  // In single precision where that is faster: what a basis lacks to the last digits, its other vectors hold.
+  Eigen::MatrixXd roughly(Eigen::MatrixXd loads) const {
+    zero_fixed(loads, fixed_);
+    return loads.rows() < kLarge ? solver_.solve(loads) : solver_.solve_roughly(loads);
   }
 
  private:
@@ -95,7 +101,7 @@ class Builder {
         next.conservativeResize(Eigen::NoChange, next.cols() + block.cols());
         next.rightCols(block.cols()) = k * block;
       }
-      x = respond(std::move(next));
+      x = respond.roughly(std::move(next));
     }
   }
   void extend(OrthonormalBasis& basis, const StaticResponse& respond, const Eigen::MatrixXd& loads,
@@ -164,7 +170,7 @@ class Builder {
       x.middleCols(at, block.cols()) = block;
       at += block.cols();
     }
-    x = held_(std::move(x));
+    x = held_.roughly(std::move(x));
     const Eigen::RowVectorXd squares = (x.array() * (mass_ * x).array()).colwise().sum();
     at = 0;
     for (const Eigen::MatrixXd& block : blocks) {
