@@ -1,6 +1,7 @@
 #include "tissue_stiffness/diagnosis/candidates.hpp"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
@@ -151,8 +152,13 @@ std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd&
     const Study study(settings, base.model().mesh(), base.recording(), options);
     read_tangents(study, base, w, candidates);
   };
-  if (!linear_ones.empty()) study_of(linear_ones, 4, BasisOptions::Nonlinear::left_out);
-  if (!others.empty()) study_of(others, 16, BasisOptions::Nonlinear::first_order);
+  tbb::parallel_invoke(
+      [&] {
+        if (!linear_ones.empty()) study_of(linear_ones, 4, BasisOptions::Nonlinear::left_out);
+      },
+      [&] {
+        if (!others.empty()) study_of(others, 16, BasisOptions::Nonlinear::first_order);
+      });
   return all;
 }
 

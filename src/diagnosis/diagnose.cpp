@@ -116,7 +116,8 @@ Diagnosis diagnose(const ModelSettings& settings, const TetMesh& mesh, const Rec
   const std::size_t most = asked + static_cast<std::size_t>(options.automatic ? options.most_steps : 0);
   for (std::size_t k = 0; k < most; ++k) {
     if (k >= asked && finding.verdict != "missing" && finding.verdict != "unexplained") break;
-    const std::vector<Refit> refits = k < asked ? look(model, {options.add[k]}, options).refits : finding.refits;
+    const std::vector<Refit> refits =
+        k < asked ? look(model, {options.add[k]}, options, finding.by_mesh).refits : finding.refits;
     if (refits.empty() || (k >= asked && !proven(model, refits.front()))) break;
     const Refit& best = refits.front();
     for (const std::string& effect : best.effects) options.progress("add " + effect);
@@ -129,7 +130,7 @@ Diagnosis diagnose(const ModelSettings& settings, const TetMesh& mesh, const Rec
       out.final_verdict = "adequate";
       break;
     }
-    finding = look(model, {}, options);
+    finding = look(model, {}, options, finding.by_mesh);
     out.final_verdict = finding.verdict;
   }
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();

@@ -37,22 +37,27 @@ double evidence(const Refit& refit, double rows, double variance) {
 /// One look, step by step.
 class Look {
  public:
-  Look(const Fitted& base, const DiagnosisOptions& options)
-      : base_(base), options_(options), rows_(base.rows.count()), cost_(base.rows.error.squaredNorm()) {
+  Look(const Fitted& base, const DiagnosisOptions& options, Eigen::VectorXd by_mesh)
+      : base_(base),
+        options_(options),
+        rows_(base.rows.count()),
+        cost_(base.rows.error.squaredNorm()),
+        mesh_change_(std::move(by_mesh)) {
     options.progress("tangents of the library, and what a finer mesh would change");
     const Eigen::VectorXd std = base.fit.covariance.diagonal().cwiseSqrt();
     Eigen::MatrixXd known;
-    FinerMesh finer;
     tbb::parallel_invoke(
         [&] {
           candidates_ = find_candidates(*base.study, base.fit.w, options.ignore);
           known = base_tangents(*base.study, base.fit.w, std, base.rows);
         },
-        [&] { finer = finer_mesh(base); });
-    by_mesh_ = finer.explained;
-    floor_ = Scorer(base.rows.error, known, base.rows.offsets, 1.0).remaining(finer.change);
+        [&] {
+          if (mesh_change_.size() == 0) mesh_change_ = finer_mesh(base);
+        });
+    by_mesh_ = cost_ - (base.rows.error - mesh_change_).squaredNorm();
+    floor_ = Scorer(base.rows.error, known, base.rows.offsets, 1.0).remaining(mesh_change_);
     // An effect has to explain what the mesh does not.
-    scorer_ = std::make_unique<Scorer>(base.rows.error - finer.change, known, base.rows.offsets, 1.0);
+    scorer_ = std::make_unique<Scorer>(base.rows.error - mesh_change_, known, base.rows.offsets, 1.0);
     ranked_ = rank(*scorer_, candidates_, kRemainder * floor_);
   }
 
@@ -67,6 +72,7 @@ class Look {
     Finding out;
     out.verdict = judge();
     out.floor = floor_;
+    out.by_mesh = mesh_change_;
     if (out.verdict == "missing" || out.verdict == "unexplained") out.set = set();
     describe_all(out.effects);
     out.refits = refits_;
@@ -113,6 +119,7 @@ class Look {
   const double rows_, cost_;
   std::vector<Candidate> candidates_;
   std::unique_ptr<Scorer> scorer_;
+  Eigen::VectorXd mesh_change_;  ///< of each row, by a finer mesh [sigma]
   double floor_ = 0.0;
   double by_mesh_ = 0.0;  ///< of the sum of squared errors
   std::vector<Ranked> ranked_;
@@ -331,8 +338,9 @@ bool proven(const Fitted& base, const Refit& refit) {
   return refit.held_out_sigmas < kHeldOutGain * rms_sigmas(base.rows, base.study->recording(), true);
 }
 
-Finding look(const Fitted& base, const std::vector<std::string>& wanted, const DiagnosisOptions& options) {
-  return Look(base, options).find(wanted);
+Finding look(const Fitted& base, const std::vector<std::string>& wanted, const DiagnosisOptions& options,
+             const Eigen::VectorXd& by_mesh) {
+  return Look(base, options, by_mesh).find(wanted);
 }
 
 }  // namespace tissue_stiffness

@@ -12,8 +12,8 @@ constexpr double kSpread = 0.02;  // prior standard deviations: the finer mesh's
 
 // Fitted anew, because a body that rings is soon out of phase with itself at another modulus: at the base's modulus the
 // finer mesh would differ by far more than by what it explains.
-FinerMesh finer_mesh(const Fitted& base) {
-  FinerMesh out{Eigen::VectorXd::Zero(base.rows.error.size()), 0.0};
+Eigen::VectorXd finer_mesh(const Fitted& base) {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(base.rows.error.size());
   const Model& model = base.study->model();
   if (!model.settings().mesh.discretisation_error || model.nonlinear() || !MeshError::why_not(model.mesh()).empty()) {
     return out;
@@ -23,9 +23,7 @@ FinerMesh finer_mesh(const Fitted& base) {
   const BatchFit fit = fine.fit(base.fit.w, kSpread * model.prior_std());
   const Study::Rows rows = fine.rows(fit.w);
   if (rows.predicted.size() != base.rows.predicted.size()) return out;
-  out.change = base.rows.used.cwiseProduct(rows.predicted - base.rows.predicted);
-  out.explained = base.rows.error.squaredNorm() - (base.rows.error - out.change).squaredNorm();
-  return out;
+  return base.rows.used.cwiseProduct(rows.predicted - base.rows.predicted);
 }
 
 }  // namespace tissue_stiffness

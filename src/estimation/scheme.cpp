@@ -114,6 +114,7 @@ StepResult Scheme::replay(const std::vector<Frame>& frames) {
   replaying_ = true;
   StepResult last;
   for (const Frame& frame : frames) {
+    more_follow_ = &frame != &frames.back();
     StepResult result = step(frame);
     if (result.used || !last.used) last = std::move(result);
   }

@@ -230,7 +230,7 @@ class UnscentedScheme : public Scheme {
         unstudied_ = error.what();
       }
     }
-    if (study_.valid() || !unstudied_.empty() || track_->start().motion ||
+    if (study_.valid() || !unstudied_.empty() || more_follow() || track_->start().motion ||
         frames_.size() < std::max(kFirstMeshStudy, 2 * last_study_))
       return;
     last_study_ = frames_.size();

@@ -1,3 +1,5 @@
+#include <tbb/parallel_invoke.h>
+
 #include <fstream>
 #include <functional>
 #include <iostream>
@@ -40,7 +42,7 @@ Estimate estimate_at_last(const ModelSettings& settings, const TetMesh& mesh, co
   Estimator estimator(last, mesh);
   estimator.set_first_stamp(recording.first_stamp);
   for (const LoadSample& load : recording.loads) estimator.add_load(load);
-  for (const Frame& frame : recording.frames) estimator.step(frame);
+  estimator.replay(recording.frames);
   return estimator.estimate();
 }
 
@@ -101,8 +103,15 @@ int main(int argc, char** argv) {
     texts.next_model_text = extend_model(texts.model_text, diagnosis.entries, settings.directory);
     texts.versions = versions();
     say("run the models once more for the report");
-    try_run("the estimator", [&] { diagnosis.estimate = estimate_at_last(settings, reader.mesh(), recording, diagnosis); });
-    write_diagnosis(diagnosis, texts, show(settings, reader, recording, diagnosis), output);
+    Showing showing;
+    Estimate estimate;
+    tbb::parallel_invoke(
+        [&] {
+          try_run("the estimator", [&] { estimate = estimate_at_last(settings, reader.mesh(), recording, diagnosis); });
+        },
+        [&] { showing = show(settings, reader, recording, diagnosis); });
+    diagnosis.estimate = std::move(estimate);
+    write_diagnosis(diagnosis, texts, showing, output);
     progress.finish();
     if (json) {
       std::cout << diagnosis_json(diagnosis);

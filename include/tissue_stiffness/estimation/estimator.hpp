@@ -60,8 +60,8 @@ class Estimator {
   /// throws on data.
   StepResult step(const Frame& frame);
 
-  /// Steps through frames that were measured before, waiting for every look back; the last used one's result, or the
-  /// last's.
+  /// Steps through frames that were measured before, waiting for every look back, and with one look at
+  /// the mesh's error, at the end; the last used one's result, or the last's.
   StepResult replay(const std::vector<Frame>& frames);
 
   /// Back to the prior; loads and frames are forgotten.

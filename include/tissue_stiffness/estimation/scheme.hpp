@@ -47,6 +47,8 @@ class Scheme {
   /// Frames do not wait for another look at the past: it runs beside them.
   bool hurried() const { return background_ && !replaying_; }
   bool background() const { return background_; }
+  /// A replay's frames come at once: what is asked of the recording now and then is asked at its last.
+  bool more_follow() const { return more_follow_; }
 
   double start() const { return first_stamp_.value_or(0.0) + model_->settings().time.start; }
   Prediction at_rest(const Frame& frame) const;
@@ -74,7 +76,7 @@ class Scheme {
   std::optional<double> first_stamp_;
   double first_load_ = std::numeric_limits<double>::infinity();  ///< earliest load's time [s]
   std::optional<double> last_time_;
-  bool background_ = false, replaying_ = false;
+  bool background_ = false, replaying_ = false, more_follow_ = false;
 };
 
 std::unique_ptr<Scheme> make_unscented_scheme(const ModelSettings& settings, const TetMesh& mesh);
