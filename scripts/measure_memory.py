@@ -1,0 +1,78 @@
+"""The memory of the nodes over a recording that is played again and again: see scripts/measure_memory."""
+import argparse
+import os
+import signal
+import subprocess
+import sys
+import time
+
+STEP = 10.0   # s between looks
+WARM = 0.15   # of the time: what libraries and the first laps take
+
+
+def processes(launch):
+    """Process numbers of the nodes, by name."""
+    found = {}
+    children = subprocess.run(['ps', '--ppid', str(launch), '-o', 'pid=,args='], stdout=subprocess.PIPE,
+                              universal_newlines=True).stdout
+    for line in children.splitlines():
+        number, command = line.split(None, 1)
+        program = os.path.basename(command.split()[0])
+        if program in ('estimator_node', 'mesh_node', 'segmentation_node'):
+            found[program] = int(number)
+    return found
+
+
+def resident(number):
+    with open('/proc/%d/status' % number) as file:
+        for line in file:
+            if line.startswith('VmRSS'):
+                return int(line.split()[1]) / 1024.0
+    return float('nan')
+
+
+def worked(number):
+    """Seconds of a processor's time."""
+    with open('/proc/%d/stat' % number) as file:
+        fields = file.read().rsplit(')', 1)[1].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf('SC_CLK_TCK')
+
+
+def main():
+    parser = argparse.ArgumentParser(prog='measure_memory')
+    parser.add_argument('root')
+    parser.add_argument('model')
+    parser.add_argument('recording')
+    parser.add_argument('--minutes', type=float, default=20.0)
+    arguments = parser.parse_args()
+    launch = subprocess.Popen(['roslaunch', 'tissue_stiffness', 'replay.launch', 'options:=--loop',
+                               'model:=' + os.path.abspath(arguments.model), 'bag:=' + os.path.abspath(arguments.recording)],
+                              stdout=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
+    courses, busy = {}, {}
+    try:
+        time.sleep(2 * STEP)
+        nodes = processes(launch.pid)
+        if 'estimator_node' not in nodes:
+            sys.exit('measure_memory: no estimator_node among the processes of roslaunch')
+        end = time.time() + 60.0 * arguments.minutes
+        while time.time() < end:
+            time.sleep(STEP)
+            if launch.poll() is not None:
+                sys.exit('measure_memory: the nodes ended')
+            for name, number in nodes.items():
+                courses.setdefault(name, []).append(resident(number))
+                busy[name] = worked(number)
+    finally:
+        launch.send_signal(signal.SIGINT)
+        launch.wait(timeout=60)
+    print('| node | at first [MB] | warm | middle | end | growth after the first %.0f %% of %.0f minutes | processor [s] |' %
+          (100 * WARM, arguments.minutes))
+    print('|---|---|---|---|---|---|---|')
+    for name, course in sorted(courses.items()):
+        warm = course[int(WARM * len(course))]
+        print('| %s | %.1f | %.1f | %.1f | %.1f | %+.1f MB | %.0f |' %
+              (name, course[0], warm, course[len(course) // 2], course[-1], course[-1] - warm, busy[name]))
+
+
+if __name__ == '__main__':
+    main()
