@@ -6,6 +6,7 @@
 #include "tissue_stiffness/forward/model.hpp"
 #include "tissue_stiffness/nodes/diagnosis_conversions.hpp"
 #include "tissue_stiffness/nodes/estimator_inputs.hpp"
+#include "tissue_stiffness/nodes/force_view.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
@@ -28,6 +29,7 @@ ModelServices::ModelServices(const ros::NodeHandle& node, std::string model_fram
       change_(std::move(change)),
       node_(node),
       publisher_(node_.advertise<DiagnosisMessage>("diagnosis", 1, true)),
+      force_publisher_(node_.advertise<visualization_msgs::Marker>("missing_force", 1, true)),
       check_(options, [this](const Diagnosis& diagnosis, double stamp) { publish(diagnosis, stamp); }),
       spinner_(1, &queue_) {
   node_.setCallbackQueue(&queue_);
@@ -62,6 +64,7 @@ void ModelServices::publish(const Diagnosis& diagnosis, double stamp) {
     message.added = added_;
   }
   publisher_.publish(message);
+  force_publisher_.publish(force_marker(diagnosis.force, header));
 }
 
 bool ModelServices::on_diagnose(Diagnose::Request&, Diagnose::Response& response) {

@@ -52,7 +52,7 @@ class ModelServices {
 
   ros::CallbackQueue queue_;
   ros::NodeHandle node_;
-  ros::Publisher publisher_;
+  ros::Publisher publisher_, force_publisher_;
   ModelCheck check_;
   std::vector<ros::ServiceServer> services_;
   ros::AsyncSpinner spinner_;
