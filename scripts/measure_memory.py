@@ -2,12 +2,12 @@
 import argparse
 import os
 import signal
+import statistics
 import subprocess
 import sys
 import time
 
-STEP = 10.0   # s between looks
-WARM = 0.15   # of the time: what libraries and the first laps take
+STEP = 5.0  # s between looks
 
 
 def processes(launch):
@@ -50,7 +50,7 @@ def main():
                               stdout=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
     courses, busy = {}, {}
     try:
-        time.sleep(2 * STEP)
+        time.sleep(4 * STEP)
         nodes = processes(launch.pid)
         if 'estimator_node' not in nodes:
             sys.exit('measure_memory: no estimator_node among the processes of roslaunch')
@@ -65,13 +65,14 @@ def main():
     finally:
         launch.send_signal(signal.SIGINT)
         launch.wait(timeout=60)
-    print('| node | at first [MB] | warm | middle | end | growth after the first %.0f %% of %.0f minutes | processor [s] |' %
-          (100 * WARM, arguments.minutes))
-    print('|---|---|---|---|---|---|---|')
+    print('%.0f minutes; a model check comes and goes meanwhile, so that what is held goes up and down.\n' % arguments.minutes)
+    print('| node | median of the first third [MB] | of the last third | growth | most | processor [s] |')
+    print('|---|---|---|---|---|---|')
     for name, course in sorted(courses.items()):
-        warm = course[int(WARM * len(course))]
-        print('| %s | %.1f | %.1f | %.1f | %.1f | %+.1f MB | %.0f |' %
-              (name, course[0], warm, course[len(course) // 2], course[-1], course[-1] - warm, busy[name]))
+        third = len(course) // 3
+        first, last = statistics.median(course[:third]), statistics.median(course[-third:])
+        print('| %s | %.1f | %.1f | %+.1f %% | %.1f | %.0f |' %
+              (name, first, last, 100 * (last / first - 1), max(course), busy[name]))
 
 
 if __name__ == '__main__':

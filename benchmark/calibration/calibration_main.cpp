@@ -74,6 +74,13 @@ ModelSettings settings(const Scene& scene, double prior, const Eigen::Vector3d& 
   return read_model(parse_yaml(text, "calibration"), "");
 }
 
+// So large that what it leaves out is far below the noise of a whole recording.
+BasisOptions whole() {
+  BasisOptions options;
+  options.size = options.largest = 160;
+  return options;
+}
+
 /// What a recording from a fine mesh shows of a coarse mesh's surface vertices.
 std::vector<Frame> seen_on(const TetMesh& coarse, const Experiment& truth, const Scene& scene, std::mt19937& engine) {
   std::vector<int> ids, there;
@@ -119,7 +126,7 @@ Trial run(const Scene& scene, const TetMesh& mesh, const TetMesh& filmed, bool m
   Eigen::Vector3d load = scene.load;
   for (double& component : load) component *= 0.5 + uniform(engine);
   load *= modulus / std::sqrt(scene.low * scene.high);  // about the same motion
-  Experiment truth(settings(scene, modulus, load), filmed, {modulus});
+  Experiment truth(settings(scene, modulus, load), filmed, {modulus}, whole());
   const bool pressed = scene.effects.find("/force") != std::string::npos;
   Eigen::VectorXd wrench = Eigen::VectorXd::Zero(6);
   wrench.head(3) = load;

@@ -4,8 +4,9 @@
 
 namespace tissue_stiffness {
 
-Experiment::Experiment(const ModelSettings& settings, const TetMesh& mesh, const std::vector<double>& truth)
-    : model_(settings, mesh), forward_(make_forward_model(model_)) {
+Experiment::Experiment(const ModelSettings& settings, const TetMesh& mesh, const std::vector<double>& truth,
+                       const BasisOptions& basis)
+    : model_(settings, mesh), forward_(make_forward_model(model_, basis)) {
   Eigen::VectorXd w = model_.prior_mean();
   for (std::size_t i = 0; i < truth.size(); ++i) {
     w[static_cast<Eigen::Index>(i)] = model_.free_parameters().at(i).to_coordinate(truth[i]);

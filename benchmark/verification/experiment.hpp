@@ -6,6 +6,7 @@
 
 #include "tissue_stiffness/estimation/estimator.hpp"
 #include "tissue_stiffness/forward/forward_model.hpp"
+#include "tissue_stiffness/forward/reduced_basis.hpp"
 
 namespace tissue_stiffness {
 
@@ -13,8 +14,9 @@ namespace tissue_stiffness {
 /// noise is between the model and the measurement.
 class Experiment {
  public:
-  /// `truth`: values of the model's free parameters, in their order and units.
-  Experiment(const ModelSettings& settings, const TetMesh& mesh, const std::vector<double>& truth);
+  /// `truth`: values of the model's free parameters, in their order and units. `basis`: that it moves in.
+  Experiment(const ModelSettings& settings, const TetMesh& mesh, const std::vector<double>& truth,
+             const BasisOptions& basis = {});
 
   /// Loads are fed before film().
   void add_load(const LoadSample& sample);
