@@ -181,7 +181,9 @@ int main(int argc, char** argv) {
   std::printf(
       "| scene | 95 %% holds | NEES | mean error | bias | worst | half width | within 5 %% "
       "|\n|---|---|---|---|---|---|---|---|\n");
+  const std::string wanted = argc > 3 ? argv[3] : "";
   for (const Scene& scene : scenes()) {
+    if (scene.name.find(wanted) == std::string::npos) continue;
     const Eigen::Vector3i &c = scene.cells, &f = scene.fine;
     const TetMesh mesh = make_box_mesh(scene.size, c.x(), c.y(), c.z(), 2);
     const TetMesh fine = make_box_mesh(scene.size, f.x(), f.y(), f.z(), 2);
