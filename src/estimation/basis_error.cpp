@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "tissue_stiffness/filter/anchored_filter.hpp"
+
 namespace tissue_stiffness {
 namespace {
 
@@ -17,23 +19,61 @@ double least_noise(const Model& model) {
   return least;
 }
 
+std::size_t stride(const FitProblem& problem) {
+  return (problem.frames.size() + kLooks - 1) / kLooks;
+}
+
+bool looked_at(std::size_t frame, const FitProblem& problem) {
+  return frame % stride(problem) == 0 || frame + 1 == problem.frames.size();
+}
+
 }  // namespace
 
 BasisError basis_error(const ReducedModel& reduced, const FitProblem& problem, const Eigen::VectorXd& w) {
   const Eigen::VectorXd theta = problem.model.theta(w);
   const double delay = problem.model.delay(theta);
   const auto whole = reduced.start(theta, problem.start.time), half = reduced.start_in_half(theta, problem.start.time);
-  const std::size_t stride = (problem.frames.size() + kLooks - 1) / kLooks;
   double square = 0.0;
   for (std::size_t k = 0; k < problem.frames.size(); ++k) {
     const double time = problem.frames[k].time - delay;
     whole->advance(time);
     half->advance(time);
-    if (k % stride != 0 && k + 1 != problem.frames.size()) continue;
+    if (!looked_at(k, problem)) continue;
     square = std::max(square, (whole->displacement() - half->displacement()).squaredNorm());
   }
   const double rms = kBasisDoubt * std::sqrt(square / (3.0 * reduced.nodes_in_focus()));
   return {rms, rms / least_noise(problem.model)};
+}
+
+Eigen::VectorXd basis_shift(const ReducedModel& reduced, const FitProblem& problem, const Eigen::VectorXd& w,
+                            const Eigen::VectorXd& spread, const Eigen::VectorXd& prior_std) {
+  AnchoredFilter filter(w, prior_std.cwiseAbs2().asDiagonal());
+  filter.move_anchor(w, spread);
+  const Eigen::MatrixXd& points = filter.sigma_points();
+  const auto count = static_cast<std::size_t>(points.cols());
+  const Eigen::VectorXd theta = problem.model.theta(w);
+  const auto whole = reduced.start(theta, problem.start.time);
+  std::vector<Eigen::VectorXd> thetas(count);
+  std::vector<std::unique_ptr<Trajectory>> halves(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    thetas[i] = problem.model.theta(points.col(static_cast<Eigen::Index>(i)));
+    halves[i] = reduced.start_in_half(thetas[i], problem.start.time);
+  }
+  for (std::size_t k = 0; k < problem.frames.size(); ++k) {
+    const Frame& frame = problem.frames[k];
+    const bool look = looked_at(k, problem);
+    const auto moved = [&](Trajectory& run, const Eigen::VectorXd& at) {
+      run.advance(frame.time - problem.model.delay(at));
+      return look ? predict_frame(problem.model, problem.operators, frame, at, run.displacement()) : Prediction{};
+    };
+    const Prediction truth = moved(*whole, theta);
+    Eigen::MatrixXd rows(truth.predicted.size(), points.cols());
+    for (std::size_t i = 0; i < count; ++i) rows.col(static_cast<Eigen::Index>(i)) = moved(*halves[i], thetas[i]).predicted;
+    if (!look) continue;
+    const Eigen::VectorXd variance = truth.sigma.cwiseAbs2() / static_cast<double>(stride(problem));
+    filter.update(truth.predicted, rows, variance, Eigen::VectorXd::Ones(variance.size()));
+  }
+  return filter.mean() - w;
 }
 
 }  // namespace tissue_stiffness

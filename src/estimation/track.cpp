@@ -30,7 +30,7 @@ constexpr std::size_t kFirstBasisLook = 4;  // frames
 constexpr double kBasisShare = 0.1;         // of the noise: what the reduced basis may leave out
 constexpr int kMostGrowths = 4;             // of the basis at once, by half each
 constexpr double kChangedSpread = 0.05;     // prior standard deviations, of the sigma points after a change
-constexpr double kGrowthHelps = 0.9;        // of the error: what a growth leaves, if it is worth another
+constexpr double kGrowthHelps = 0.7;        // of the error: what a growth leaves, if it is worth another
 
 }  // namespace
 
@@ -74,7 +74,9 @@ AnchoredFilter::Innovation Track::absorb(const Frame& frame) {
 
 Eigen::MatrixXd Track::covariance() const {
   Eigen::MatrixXd sum = filter_.robust_covariance();
-  if (doubt_.size() > 0) sum += doubt_ * doubt_.transpose();
+  for (const Eigen::VectorXd& doubt : {doubt_, notes_.basis_shift}) {
+    if (doubt.size() > 0) sum += doubt * doubt.transpose();
+  }
   return sum;
 }
 
@@ -234,6 +236,7 @@ bool Track::grow_basis(const FitProblem& problem) {
     if (!larger) break;
     reduced = std::move(larger);
   }
+  notes_.basis_shift = basis_shift(*reduced, problem, filter_.mean(), filter_.spread(), model_.prior_std());
   return std::exchange(forward_, reduced) != reduced;
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "bar.hpp"
+#include "tissue_stiffness/estimation/batch_fit.hpp"
 #include "tissue_stiffness/forward/full_model.hpp"
 #include "tissue_stiffness/forward/observation_operator.hpp"
 
@@ -61,6 +62,23 @@ TEST_F(BasisErrorOfABar, BoundsTheRealErrorWithinAFactorOfTwenty) {
     const double told = reported(model).rms, truth = real(model);
     EXPECT_GE(told, truth) << size << " vectors";
     EXPECT_LE(told, 20.0 * truth) << size << " vectors";
+  }
+}
+
+TEST_F(BasisErrorOfABar, TellsWhatItDoesToTheModulus) {
+  const auto fitted = [&](const ReducedModel& model) {
+    return fit_batch({model_, model, operators_, frames_, 0.0}, model_.prior_mean(), 0.05 * model_.prior_std());
+  };
+  const double best = fitted(reduced(200)).w[0];
+  for (const int size : {4, 6, 10}) {
+    const ReducedModel model = reduced(size);
+    const BatchFit fit = fitted(model);
+    const Eigen::VectorXd spread = 2.0 * fit.covariance.diagonal().cwiseSqrt();
+    const double told =
+        basis_shift(model, {model_, model, operators_, frames_, 0.0}, fit.w, spread, model_.prior_std()).cwiseAbs()[0];
+    const double truth = std::abs(fit.w[0] - best);
+    EXPECT_GE(2.0 * told, truth) << size << " vectors";
+    EXPECT_LE(told, 30.0 * truth + std::sqrt(fit.covariance(0, 0))) << size << " vectors";
   }
 }
 

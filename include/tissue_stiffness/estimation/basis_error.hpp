@@ -17,4 +17,10 @@ constexpr double kBasisDoubt = 2.0;
 /// Over some thirty of the problem's frames, at filter coordinates w.
 BasisError basis_error(const ReducedModel& reduced, const FitProblem& problem, const Eigen::VectorXd& w);
 
+/// What the reduced basis does to the parameters, about 1 sigma: the fit of its earlier half to a run in all of it, from w
+/// on, in filter coordinates. One Gauss-Newton step over the same frames; `spread`: of the sigma points; `prior_std` holds
+/// what the data do not determine.
+Eigen::VectorXd basis_shift(const ReducedModel& reduced, const FitProblem& problem, const Eigen::VectorXd& w,
+                            const Eigen::VectorXd& spread, const Eigen::VectorXd& prior_std);
+
 }  // namespace tissue_stiffness

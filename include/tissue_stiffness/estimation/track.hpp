@@ -27,7 +27,7 @@ class Track {
   std::unique_ptr<Track> twin() const;
 
   const AnchoredFilter& filter() const { return filter_; }
-  /// Of the parameters: the filter's, and what a change that began the track leaves open.
+  /// Of the parameters: the filter's, and what the reduced basis and a change that began the track leave open.
   Eigen::MatrixXd covariance() const;
   const std::shared_ptr<ForwardModel>& forward() const { return forward_; }
   const RunStart& start() const { return start_; }
@@ -83,6 +83,7 @@ class Track {
     std::size_t settled = 0, scanned = 1, corrected = 0, basis = 0;
     std::optional<double> basis_error;  ///< [m]
     bool basis_exhausted = false;       ///< more vectors do not help
+    Eigen::VectorXd basis_shift;        ///< what the basis does to the parameters; empty: not known yet
   };
 
   const Model& model_;
