@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -17,6 +19,9 @@ namespace {
 constexpr std::size_t kRefits = 6;      // candidates that are simulated anew
 constexpr std::ptrdiff_t kWaysOf = 3;   // leading effects that are refitted in two ways
 constexpr double kSameWay = 0.8;        // cosine above which two ways are one
+constexpr std::size_t kMostWays = 3;    // of an effect and kind that are refitted where nothing explains
+constexpr std::size_t kBegun = 6;       // fits of the beginning that are tried on the whole recording
+constexpr std::size_t kBegunOf = 2;     // of one effect
 constexpr std::size_t kKindsOf = 2;     // leading refits whose other kinds are tried
 constexpr std::size_t kOthers = 4;      // and more, when those leave more than noise
 constexpr std::size_t kPairs = 3;       // and pairs
@@ -59,6 +64,7 @@ class Look {
     // An effect has to explain what the mesh does not.
     scorer_ = std::make_unique<Scorer>(base.rows.error - mesh_change_, known, base.rows.offsets, 1.0);
     ranked_ = rank(*scorer_, candidates_, kRemainder * floor_);
+    known_ = std::move(known);
   }
 
   Finding find(const std::vector<std::string>& wanted) {
@@ -68,6 +74,7 @@ class Look {
     if (by_effect && leaves_more_than_noise()) refit_others();
     if (by_effect && leaves_more_than_noise()) refit_other_kinds();
     if (by_effect && leaves_more_than_noise()) refit_rest();
+    if (by_effect && leaves_more_than_noise() && !explained()) refit_from_beginning();
     if (by_effect && leaves_more_than_noise()) refit_pairs();
     Finding out;
     out.verdict = judge();
@@ -87,6 +94,8 @@ class Look {
   void add_other_way(const Ranked& r, std::vector<std::vector<Addition>>& list) const;
   void drop_worse_ways();
   void refit_rest();
+  void refit_from_beginning();
+  std::vector<const Candidate*> different_ways() const;
   void refit_pairs();
   bool refitted(const std::string& effect) const {
     return std::any_of(refits_.begin(), refits_.end(), [&](const Refit& r) { return r.effects.front() == effect; });
@@ -96,6 +105,8 @@ class Look {
     return r.best->linear || r.score.explained * cost_ > kPromise * structured();
   }
   void refit_all(const std::vector<std::vector<Addition>>& list);
+  void try_each(std::size_t count, const std::function<std::string(std::size_t)>& name,
+                const std::function<void(std::size_t)>& work) const;
   void sort_refits();
   std::string judge() const;
   std::vector<std::string> set() const;
@@ -118,6 +129,7 @@ class Look {
   const DiagnosisOptions& options_;
   const double rows_, cost_;
   std::vector<Candidate> candidates_;
+  Eigen::MatrixXd known_;  ///< tangents of the base's parameters
   std::unique_ptr<Scorer> scorer_;
   Eigen::VectorXd mesh_change_;  ///< of each row, by a finer mesh [sigma]
   double floor_ = 0.0;
@@ -140,22 +152,29 @@ std::string names_of(const std::vector<Addition>& additions) {
   return names;
 }
 
-// Each on a core of its own.
-void Look::refit_all(const std::vector<std::vector<Addition>>& list) {
-  std::vector<std::optional<Refit>> done(list.size());
+// Each on a core of its own; what a model that cannot be run would find is left out.
+void Look::try_each(std::size_t count, const std::function<std::string(std::size_t)>& name,
+                    const std::function<void(std::size_t)>& work) const {
   std::mutex telling;
   const auto try_one = [&](std::size_t i) {
     {
       const std::lock_guard<std::mutex> lock(telling);
-      options_.progress("refit with " + names_of(list[i]));
+      options_.progress(name(i));
     }
     try {
-      done[i] = refit(base_, list[i]);
+      work(i);
     } catch (const NumericalError&) {
       base_.study->recording().checkpoint();  // a study that was ended; else a model that cannot be run explains nothing
     }
   };
-  tbb::parallel_for(std::size_t{0}, list.size(), try_one, tbb::simple_partitioner());
+  tbb::parallel_for(std::size_t{0}, count, try_one, tbb::simple_partitioner());
+}
+
+void Look::refit_all(const std::vector<std::vector<Addition>>& list) {
+  std::vector<std::optional<Refit>> done(list.size());
+  try_each(
+      list.size(), [&](std::size_t i) { return "refit with " + names_of(list[i]); },
+      [&](std::size_t i) { done[i] = refit(base_, list[i]); });
   for (std::optional<Refit>& refit : done) {
     if (refit) refits_.push_back(std::move(*refit));
   }
@@ -223,16 +242,63 @@ void Look::drop_worse_ways() {
   }
 }
 
-// Where phases have drifted apart a tangent says little: what it leaves unexplained may still be a single effect's, of any
-// effect's while most of it is.
+// What tangents at the end leave may still be a single effect's.
 void Look::refit_rest() {
   std::vector<std::vector<Addition>> list;
-  const bool any = !explained();
   for (const Ranked& r : ranked_) {
-    const bool worth = any || r.evidence > kSameEvidence;
-    if (r.best->linear && worth && !refitted(r.effect)) list.push_back({{r.best, r.score.amplitude}});
+    if (r.best->linear && r.evidence > kSameEvidence && !refitted(r.effect)) list.push_back({{r.best, r.score.amplitude}});
   }
   refit_all(list);
+}
+
+// Where phases have drifted apart a tangent says little: what is unexplained may be any effect's, of any direction and
+// strength. The best fits of the recording's beginning tell where to start.
+void Look::refit_from_beginning() {
+  const std::vector<const Candidate*> ways = different_ways();
+  std::vector<std::optional<BeginningFit>> fits(ways.size());
+  try_each(
+      ways.size(), [&](std::size_t i) { return "beginning with " + ways[i]->effect; },
+      [&](std::size_t i) { fits[i] = fit_beginning(base_, *ways[i]); });
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    if (fits[i]) order.push_back(i);
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return fits[a]->deviance < fits[b]->deviance; });
+  std::vector<std::vector<Addition>> list;
+  std::map<std::string, std::size_t> taken;
+  for (const std::size_t i : order) {
+    if (list.size() < kBegun && taken[ways[i]->effect]++ < kBegunOf)
+      list.push_back({{ways[i], {}, fits[i]->parameters, true}});
+  }
+  refit_all(list);
+}
+
+// Of each effect and kind the most evident ways that look different from one another, as the recording begins.
+std::vector<const Candidate*> Look::different_ways() const {
+  std::vector<Eigen::Index> offsets = base_.rows.offsets;
+  offsets.resize(1 + static_cast<std::size_t>(kBeginning * static_cast<double>(offsets.size() - 1)));
+  const Eigen::Index rows = offsets.back();
+  const Scorer scorer((base_.rows.error - mesh_change_).head(rows), known_.topRows(rows), offsets, 1.0);
+  std::vector<std::pair<const Candidate*, Score>> ways;
+  for (const Candidate& candidate : candidates_) {
+    if (!candidate.linear) continue;
+    const Tangent beginning{candidate.tangent.columns.topRows(rows), candidate.tangent.prior_std};
+    ways.emplace_back(&candidate, scorer.score(beginning));
+  }
+  std::stable_sort(ways.begin(), ways.end(),
+                   [](const auto& a, const auto& b) { return a.second.log_bayes_factor > b.second.log_bayes_factor; });
+  std::vector<const Candidate*> out;
+  std::map<std::string, std::vector<const Score*>> kept;
+  for (const auto& [way, score] : ways) {
+    std::vector<const Score*>& like = kept[way->effect + " " + way->proposal.kind];
+    const bool known =
+        std::any_of(like.begin(), like.end(), [&, &now = score](const Score* s) { return now.cosine_with(*s) > kSameWay; });
+    if (known || like.size() == kMostWays) continue;
+    like.push_back(&score);
+    out.push_back(way);
+  }
+  return out;
 }
 
 void Look::refit_pairs() {
@@ -262,7 +328,9 @@ void Look::sort_refits() {
 }
 
 std::string Look::judge() const {
-  const bool gained = !refits_.empty() && proven(base_, refits_.front());
+  // An effect has to explain more than the mesh's error, which another mesh would change.
+  const bool gained =
+      !refits_.empty() && proven(base_, refits_.front()) && cost_ - refits_.front().cost > floor_ * floor_ * rows_;
   // Within the noise, what the mesh explains about as well is no sign of an effect.
   if (noise() && (!gained || by_mesh_ > 0.5 * (cost_ - refits_.front().cost))) return "adequate";
   if (by_mesh_ > kExplains * structured()) return "numerics";

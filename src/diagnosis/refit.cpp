@@ -9,13 +9,14 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kBaseSpread = 0.05;   // prior standard deviations, of the base's parameters at first
-constexpr double kAddedSpread = 0.25;  // and of the added ones
-constexpr double kLeastFactor = 1.02;  // of a log-normal prior in the proposed model file
-constexpr double kPromise = 0.1;       // of the structured part: what quick runs have to explain before a full one
-constexpr double kPriorWidth = 5.0;    // posterior standard deviations, of the proposed priors
-constexpr double kRoom = 0.5;          // of the distance to a parameter's bound: the most that they have
-constexpr double kLeastShare = 1e-3;   // of the proposal's prior: the least
+constexpr double kBaseSpread = 0.05;      // prior standard deviations, of the base's parameters at first
+constexpr double kAddedSpread = 0.25;     // and of the added ones
+constexpr double kLeastFactor = 1.02;     // of a log-normal prior in the proposed model file
+constexpr double kPromise = 0.1;          // of the structured part: what quick runs have to explain before a full one
+constexpr double kPriorWidth = 5.0;       // posterior standard deviations, of the proposed priors
+constexpr double kRoom = 0.5;             // of the distance to a parameter's bound: the most that they have
+constexpr double kLeastShare = 1e-3;      // of the proposal's prior: the least
+constexpr double kShares[] = {0.6, 1.0};  // of the training frames, fitted one after the other from a fit of the beginning
 
 struct Start {
   Eigen::VectorXd w, spread;
@@ -72,6 +73,16 @@ std::vector<Start> starts(const Study& study, const Study& base, const Eigen::Ve
   return differs ? std::vector<Start>{tangent, prior} : std::vector<Start>{prior};
 }
 
+// Where the beginning's fit left all parameters.
+Start start_of(const Study& study, const std::map<std::string, double>& parameters) {
+  Start out{study.model().prior_mean(), kBaseSpread * study.model().prior_std(), {}};
+  for (std::size_t i = 0; i < study.model().free_parameters().size(); ++i) {
+    const FreeParameter& p = study.model().free_parameters()[i];
+    out.w[static_cast<Eigen::Index>(i)] = p.to_coordinate(parameters.at(p.name));
+  }
+  return out;
+}
+
 // Where `key: {` begins among an entry's arguments; the effect's own name may end like a key.
 std::size_t find_quantity(const std::string& entry, const std::string& key) {
   for (std::size_t at = entry.find(key + ": {"); at != std::string::npos; at = entry.find(key + ": {", at + 1)) {
@@ -123,7 +134,7 @@ std::optional<Start> quick_start(const Study& study, const Study& base, const st
   std::optional<Start> best;
   for (Start start : starts) {
     try {
-      start.w = study.scan_near(start.w, shared);
+      start.w = study.scan_near(start.w, shared).w;
       start.fit = study.quick_fit(start.w, start.spread);
       if (!best || start.fit.cost < best->fit.cost) best = std::move(start);
     } catch (const NumericalError& error) {
@@ -131,6 +142,15 @@ std::optional<Start> quick_start(const Study& study, const Study& base, const st
     }
   }
   return best;
+}
+
+// From a fit of the beginning to one of everything.
+Start grown(const Study& study, Start start) {
+  for (const double share : kShares) {
+    start.fit = study.quick_fit(start.w, start.spread, share);
+    start.w = start.fit.w;
+  }
+  return start;
 }
 
 double structured(const Study::Rows& rows) {
@@ -148,7 +168,9 @@ Refit refit(const Fitted& base, const std::vector<Addition>& additions) {
   const Study& study = *model->study;
   model->study->borrow(known);
   std::string reason;
-  std::optional<Start> start = quick_start(study, known, starts(study, known, base.fit.w, additions), reason);
+  std::optional<Start> start = additions.front().begun
+                                   ? grown(study, start_of(study, additions.front().scanned))
+                                   : quick_start(study, known, starts(study, known, base.fit.w, additions), reason);
   if (!start) throw NumericalError(additions.front().way->effect + " cannot be refitted: " + reason);
   Study::Rows& rows = model->rows = study.rows(start->fit.w);
   const double gain = base.rows.error.squaredNorm() - rows.error.squaredNorm();

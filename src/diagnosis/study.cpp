@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "tissue_stiffness/estimation/compare.hpp"
 #include "tissue_stiffness/estimation/coordinate_scan.hpp"
@@ -141,8 +142,14 @@ BatchFit Study::fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread)
   return quick_ ? fit_from_run_to_run(start, spread) : quick_fit(start, spread);
 }
 
-BatchFit Study::quick_fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread) const {
-  return fit_batch(problem(quick(), training_), start, spread);
+std::vector<Frame> Study::first_of_training(double share) const {
+  const auto count = static_cast<std::ptrdiff_t>(std::ceil(share * static_cast<double>(training_.size())));
+  return {training_.begin(), training_.begin() + count};
+}
+
+BatchFit Study::quick_fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread, double share) const {
+  const std::vector<Frame> frames = first_of_training(share);
+  return fit_batch(problem(quick(), frames), start, spread);
 }
 
 // Every full run says by how much quick ones are off there; a fit that allows for it says where the next one has to be.
@@ -188,12 +195,14 @@ Eigen::VectorXd Study::scan(const Eigen::VectorXd& start) const {
       .best;
 }
 
-Eigen::VectorXd Study::scan_near(const Eigen::VectorXd& start, const std::vector<Eigen::Index>& coordinates) const {
-  const FitProblem train = problem(quick(), training_);
+Study::Place Study::scan_near(const Eigen::VectorXd& start, const std::vector<Eigen::Index>& coordinates,
+                              double share) const {
+  const std::vector<Frame> frames = first_of_training(share);
+  const FitProblem train = problem(quick(), frames);
   const Eigen::VectorXd std = model_.prior_std();
-  Eigen::VectorXd best = start;
+  Place best{start, std::numeric_limits<double>::infinity()};
   for (const Eigen::Index i : coordinates) {
-    const Eigen::VectorXd from = best;
+    const Eigen::VectorXd from = best.w;
     const auto place = [&](int k) {
       return Eigen::VectorXd(from + k * kNearStep * std[i] * Eigen::VectorXd::Unit(from.size(), i));
     };
@@ -201,8 +210,8 @@ Eigen::VectorXd Study::scan_near(const Eigen::VectorXd& start, const std::vector
     tbb::parallel_for(-kNearPoints, kNearPoints + 1,
                       [&](int k) { costs[k + kNearPoints] = free_fit(train, place(k)).cost; });
     Eigen::Index lowest = 0;
-    costs.minCoeff(&lowest);
-    best = place(static_cast<int>(lowest) - kNearPoints);
+    best.cost = costs.minCoeff(&lowest);
+    best.w = place(static_cast<int>(lowest) - kNearPoints);
   }
   return best;
 }

@@ -64,6 +64,19 @@ TEST(Diagnose, DoesNotLookForWhatItIsToldToIgnore) {
   EXPECT_NE(refusal([&] { diagnose_bar(film({}, 1), options); }).find("magic"), std::string::npos);
 }
 
+// So strong that E makes up for it with three times its value, and phases drift apart where the tangents look.
+TEST(Diagnose, FindsAStrongEffectFromTheRecordingsBeginning) {
+  const Recording recording = film({"foundation: {stiffness: 1000}"}, 6);
+  const Diagnosis d = diagnose_bar(recording, {});
+  EXPECT_GT(d.steps.front().parameters.at("elasticity.young_modulus"), 3.0 * kTruth);
+  EXPECT_EQ(d.verdict, "missing");
+  ASSERT_FALSE(d.candidates.empty());
+  EXPECT_EQ(d.candidates.front().effect, "foundation");
+  EXPECT_NEAR(d.candidates.front().parameters.at("foundation.stiffness"), 1e3, 20.0);
+  EXPECT_NEAR(d.candidates.front().parameters.at("elasticity.young_modulus") / kTruth, 1.0, 0.01);
+  EXPECT_LT(d.candidates.front().held_out_rms_after, 1.1 * kNoise);
+}
+
 TEST(Diagnose, AddsWhatItIsTold) {
   DiagnosisOptions options;
   options.add = {"mass_damping"};

@@ -27,7 +27,18 @@ struct Addition {
   const Candidate* way = nullptr;
   Eigen::VectorXd amplitude;
   std::map<std::string, double> scanned = {};  ///< where a refit starts with what is neither amplitude nor the base's
+  bool begun = false;  ///< `scanned` holds every parameter, as the recording's beginning has them (BeginningFit)
 };
+
+/// A fit of the recording's beginning alone with one proposal more, looked for across its amplitude's whole prior. Phases
+/// that drift apart hide the minimum from tangents and from fits of a whole recording, but not there.
+struct BeginningFit {
+  std::map<std::string, double> parameters;  ///< of the whole model, by name
+  double deviance = 0.0;                     ///< sum of squared errors over sigma there, and Schwarz's for what was added
+};
+constexpr double kBeginning = 0.3;  // of the frames
+/// Throws NumericalError when no start can be run.
+BeginningFit fit_beginning(const Fitted& base, const Candidate& way);
 
 /// Two effects at once.
 struct RankedPair {

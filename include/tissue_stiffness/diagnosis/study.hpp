@@ -46,16 +46,20 @@ class Study {
   Eigen::MatrixXd rows_along(const Eigen::VectorXd& w, const Eigen::MatrixXd& shapes, const Rows& rows) const;
   /// Fits the training frames.
   BatchFit fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread) const;
-  /// The same without full runs.
-  BatchFit quick_fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread) const;
+  /// The same without full runs, of the first `share` of them.
+  BatchFit quick_fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread, double share = 1.0) const;
   /// Lets quick runs be off by as much as those of a fitted model with fewer effects.
   void borrow(const Study& base);
   /// Where a coarse look along each coordinate of the prior finds the training frames explained best.
   Eigen::VectorXd scan(const Eigen::VectorXd& start) const;
 
   /// The same along some coordinates only, closely and not far from `start`: where a fit of something else left them, a run
-  /// that rings may need them in another minimum.
-  Eigen::VectorXd scan_near(const Eigen::VectorXd& start, const std::vector<Eigen::Index>& coordinates) const;
+  /// that rings may need them in another minimum. Over the first `share` of the training frames; `cost`: there.
+  struct Place {
+    Eigen::VectorXd w;
+    double cost = 0.0;  ///< sum of squared errors [sigma^2]
+  };
+  Place scan_near(const Eigen::VectorXd& start, const std::vector<Eigen::Index>& coordinates, double share = 1.0) const;
 
   /// What is linear in the model, in a reduced basis.
   std::shared_ptr<const ReducedModel> reduced() const;
@@ -65,6 +69,7 @@ class Study {
 
  private:
   FitProblem problem(const ForwardModel& forward, const std::vector<Frame>& frames) const;
+  std::vector<Frame> first_of_training(double share) const;
   BatchFit fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd spread) const;
   const ForwardModel& quick() const { return anchored_ ? *anchored_ : quick_ ? *quick_ : *forward_; }
 
