@@ -1,9 +1,9 @@
-"""Scenes of the study, and what is hidden in them. A truth never is the estimator's own model: it runs on a mesh of eight
-times as many elements, in time steps instead of modes, and most hidden effects take another form than the library's."""
+"""Scenes of the study, and what is hidden in them. A truth never is the estimator's own model: it runs on a finer mesh with
+other nodes, in time steps instead of modes, and most hidden effects take another form than the library's."""
 
 STEP = 0.001      # s
 RATE = 30.0       # frames/s
-NOISE = 1e-4      # m
+NOISE = 2e-4      # m
 
 
 def elasticity(modulus, poisson=0.45, **more):
@@ -13,9 +13,15 @@ def elasticity(modulus, poisson=0.45, **more):
 class Scene:
     """A body, its loads, and how each effect is hidden in it at strength s (1: about as large as tissue has it)."""
 
-    def __init__(self, name, size, cells, modulus, regions, effects, loads):
-        self.name, self.size, self.cells, self.modulus = name, size, cells, modulus
+    def __init__(self, name, size, cells, true_cells, modulus, regions, effects, loads):
+        self.name, self.size, self.cells, self.true_cells, self.modulus = name, size, cells, true_cells, modulus
         self.regions, self.effects, self.loads = regions, effects, loads
+
+    def markers(self, nodes):
+        """Every second of the nodes on the surface."""
+        surface = [list(node) for node in nodes
+                   if any(min(x, length - x) < 1e-9 for x, length in zip(node, self.size))]
+        return surface[::2]
 
     def truth(self, modulus, hidden, s):
         """Regions and effects of the body with `hidden` in it."""
@@ -65,12 +71,12 @@ def scenes():
     base = [{'inertia': {'density': 1000.0}}, {'fixed': {'region': 'clamp'}}]
     pulled = base + [{'traction': {'region': 'tip', 'topic': '/tool/wrench'}}]
     return [
-        Scene('bar released under gravity', bar, [8, 2, 2], 60e3, faces(bar),
+        Scene('bar released under gravity', bar, [12, 3, 3], [20, 5, 5], 60e3, faces(bar),
               base + [{'gravity': {'acceleration': [0.0, 1.5, -4.0]}}], {}),
-        Scene('bar pushed and let go', bar, [8, 2, 2], 40e3, faces(bar), pulled,
+        Scene('bar pushed and let go', bar, [12, 3, 3], [20, 5, 5], 40e3, faces(bar), pulled,
               wrench({'direction': [0, 0, -1], 'ramp': {'to': 0.02, 'start': 0.1, 'end': 0.15}},
                      {'direction': [0, 1, 0], 'sine': {'amplitude': 0.01, 'frequency': 2.3}})),
-        Scene('slab worked by a tool', slab, [6, 4, 2], 15e3, faces(slab), pulled,
+        Scene('slab worked by a tool', slab, [9, 6, 3], [20, 10, 5], 15e3, faces(slab), pulled,
               wrench({'direction': [0, 0, -1], 'raised_cosine': {'amplitude': 0.05, 'frequency': 1.0}},
                      {'direction': [1, 0, 0], 'sine': {'amplitude': 0.3, 'frequency': 1.6}})),
     ]

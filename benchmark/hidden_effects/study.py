@@ -17,8 +17,9 @@ from meshes import box, write_vtk
 from scenes import NOISE, RATE, STEP, scenes
 
 DURATION = 1.6    # s
+TOPIC = '/tissue/markers'
 MISFITS = (0.03, 0.1, 0.3)   # of the motion
-TWINS = [{'viscous_damping', 'mass_damping'}, {'density_error', 'force_scale', 'image_scale', 'added_mass'}]
+TWINS = [{'viscous_damping', 'mass_damping', 'viscoelasticity'}, {'density_error', 'force_scale', 'image_scale', 'added_mass'}]
 HIDDEN = {
     'bar released under gravity': ['none', 'viscous_damping', 'viscoelasticity', 'elastic_support', 'stiff_inclusion',
                                    'added_mass', 'foundation', 'geometric_nonlinearity'],
@@ -28,6 +29,8 @@ HIDDEN = {
 }
 MODULUS = 'elasticity.young_modulus'
 TIME_LIMIT = 600  # s a run
+MOST_TRIALS = 5   # of a strength
+STRONGEST = 10.0
 
 
 class Failed(Exception):
@@ -47,16 +50,16 @@ def write(folder, name, content):
     return path
 
 
-def observations():
-    return [{'vertices': {'topic': '/tissue/vertices', 'noise': NOISE}}]
+def observations(scene):
+    return [{'markers': {'topic': TOPIC, 'noise': NOISE, 'rest': scene.markers(box(scene.size, scene.cells)[0])}}]
 
 
-def simulate(arguments, folder, scene, modulus, hidden, strength, noise, memory, seed):
+def simulate(arguments, folder, scene, modulus, hidden, strength, noise=1e-9, memory=0.0, seed=1, mesh='mesh.vtk'):
     regions, effects = scene.truth(modulus, hidden, strength)
-    content = {'mesh': {'file': 'mesh.vtk'}, 'regions': regions, 'effects': effects, 'observations': observations(),
-               'simulation': {'duration': DURATION, 'rate': RATE, 'step': STEP, 'refine': 1, 'spectral_radius': 1.0,
-                              'seed': seed, **({'loads': scene.loads} if scene.loads else {}),
-                              'sensors': {'/tissue/vertices': {'every': 2, 'noise': noise, 'memory': memory}}}}
+    content = {'mesh': {'file': mesh}, 'regions': regions, 'effects': effects, 'observations': observations(scene),
+               'simulation': {'duration': DURATION, 'rate': RATE, 'step': STEP, 'spectral_radius': 1.0, 'seed': seed,
+                              **({'loads': scene.loads} if scene.loads else {}),
+                              'sensors': {TOPIC: {'noise': noise, 'memory': memory}}}}
     bag = os.path.join(folder, 'recording.bag')
     call([arguments.simulate, write(folder, 'scene.yaml', content), '--output', bag, '--quiet'])
     return bag
@@ -65,7 +68,7 @@ def simulate(arguments, folder, scene, modulus, hidden, strength, noise, memory,
 def motion(bag):
     with rosbag.Bag(bag) as file:
         frames = [[value for point in point_cloud2.read_points(cloud, ('x', 'y', 'z')) for value in point]
-                  for _, cloud, _ in file.read_messages('/tissue/vertices')]
+                  for _, cloud, _ in file.read_messages(TOPIC)]
     return [[value - rest for value, rest in zip(frame, frames[0])] for frame in frames]
 
 
@@ -75,11 +78,16 @@ def rms(frames):
 
 
 def strength_for(arguments, folder, scene, modulus, hidden, misfit):
-    """The effect's strength at which it moves the body by about `misfit` of its motion, as if in proportion."""
-    plain = motion(simulate(arguments, folder, scene, modulus, 'none', 0.0, 1e-9, 0.0, 1))
-    changed = motion(simulate(arguments, folder, scene, modulus, hidden, 0.5, 1e-9, 0.0, 1))
-    size = rms([[a - b for a, b in zip(x, y)] for x, y in zip(changed, plain)]) / rms(plain)
-    return min(10.0, 0.5 * misfit / max(size, 1e-6))
+    """The effect's strength at which it moves the body by about `misfit` of its motion; on the coarse mesh, which is quick."""
+    plain = motion(simulate(arguments, folder, scene, modulus, 'none', 0.0))
+    strength = 0.02
+    for _ in range(MOST_TRIALS):
+        changed = motion(simulate(arguments, folder, scene, modulus, hidden, strength))
+        size = rms([[a - b for a, b in zip(x, y)] for x, y in zip(changed, plain)]) / rms(plain)
+        if 0.8 < size / misfit < 1.25 or strength == STRONGEST:
+            break
+        strength = min(STRONGEST, strength * min(10.0, max(0.1, misfit / max(size, 1e-6))))
+    return strength
 
 
 def draw(task):
@@ -93,15 +101,18 @@ def draw(task):
     row = {'number': number, 'scene': scene_name, 'hidden': hidden, 'misfit': misfit, 'memory': memory, 'absent': absent}
     try:
         write_vtk(os.path.join(folder, 'mesh.vtk'), *box(scene.size, scene.cells))
+        write_vtk(os.path.join(folder, 'true.vtk'), *box(scene.size, scene.true_cells))
         switch = hidden in ('none', 'geometric_nonlinearity')
         strength = 0.0 if switch else strength_for(arguments, folder, scene, modulus, hidden, misfit)
-        bag = simulate(arguments, folder, scene, modulus, hidden, strength, NOISE, memory, number + 1)
+        bag = simulate(arguments, folder, scene, modulus, hidden, strength, NOISE, memory, number + 1, 'true.vtk')
         start = modulus * rng.choice((0.5, 0.7, 1.5, 2.0))
         effects = [{'elasticity': {'law': 'linear', 'young_modulus': {'prior': start, 'factor': 3.0}, 'poisson_ratio': 0.45}}]
         model = write(folder, 'model.yaml', {'mesh': {'file': 'mesh.vtk'}, 'regions': scene.regions,
-                                             'effects': effects + scene.effects, 'observations': observations()})
+                                             'effects': effects + scene.effects, 'observations': observations(scene)})
         command = [arguments.diagnose, model, bag, '--auto', '--quiet', '--output', folder]
-        call(command + (['--ignore', hidden] if absent else []))
+        for name in sorted(like(hidden)) if absent else []:
+            command += ['--ignore', name]
+        call(command)
         with open(os.path.join(folder, 'diagnosis.json')) as file:
             found = json.load(file)
     except (Failed, subprocess.TimeoutExpired) as error:
@@ -128,8 +139,9 @@ def tasks(arguments):
     return out
 
 
-def twins(a, b):
-    return a == b or any(a in group and b in group for group in TWINS)
+def like(hidden):
+    """The effect and its twins."""
+    return {hidden}.union(*(group for group in TWINS if hidden in group))
 
 
 def share(values):
@@ -150,7 +162,7 @@ def tables(rows):
         cells += [share([value(row) for row in seen if row['misfit'] == m]) for m in MISFITS]
         lines.append('| %s | %s |' % (name, ' | '.join(cells)))
     line('the hidden effect is in the set', lambda row: row['hidden'] in row['set'])
-    line('it or a twin is first', lambda row: bool(row['set']) and twins(row['set'][0], row['hidden']))
+    line('it or a twin is first', lambda row: bool(row['set']) and row['set'][0] in like(row['hidden']))
     line('it is first', lambda row: row['set'][:1] == [row['hidden']])
     line('it is first or second', lambda row: row['hidden'] in row['set'][:2])
     line('E within 3 % after adding', lambda row: abs(row['modulus_error']) < 0.03)
@@ -201,19 +213,25 @@ def main():
     parser.add_argument('--draws', type=int, default=200)
     parser.add_argument('--jobs', type=int, default=os.cpu_count())
     parser.add_argument('--output')
+    parser.add_argument('--resume', action='store_true', help='keep the draws that are in the output folder already')
     arguments = parser.parse_args()
     arguments.output = arguments.output or os.path.join(arguments.root, 'output', 'hidden_effects')
     for tool in ('simulate', 'diagnose'):
         setattr(arguments, tool, os.path.join(arguments.root, 'build/devel/lib/tissue_stiffness', tool))
     os.makedirs(arguments.output, exist_ok=True)
+    kept = os.path.join(arguments.output, 'rows.json')
     rows = []
+    if arguments.resume and os.path.exists(kept):
+        with open(kept) as file:
+            rows = [row for row in json.load(file) if row['number'] < arguments.draws]
+    done = {row['number'] for row in rows}
     with multiprocessing.Pool(arguments.jobs) as pool:
-        for row in pool.imap_unordered(draw, tasks(arguments)):
+        for row in pool.imap_unordered(draw, [task for task in tasks(arguments) if task[1] not in done]):
             rows.append(row)
             what = row.get('failed') or '%s %s' % (row['verdict'], ' '.join(row['set']))
             print('%3d/%d %-28s %-22s %4.0f %% -> %s' % (len(rows), arguments.draws, row['scene'], row['hidden'] +
                   (' (absent)' if row['absent'] else ''), 100 * row['misfit'], what), flush=True)
-            with open(os.path.join(arguments.output, 'rows.json'), 'w') as file:
+            with open(kept, 'w') as file:
                 json.dump(sorted(rows, key=lambda r: r['number']), file, indent=1)
     lines, (names, found, counts) = tables(rows)
     doc = os.path.join(arguments.root, 'doc')
