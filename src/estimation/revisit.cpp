@@ -8,8 +8,8 @@
 
 namespace tissue_stiffness {
 
-Revisit::Revisit(const Track& track, std::vector<Frame> frames, std::optional<ChangeQuestion> change)
-    : frames_(std::move(frames)), outcome_{track.twin(), false, 0, std::move(change)} {
+Revisit::Revisit(const Track& track, std::vector<Frame> frames, Task task)
+    : frames_(std::move(frames)), outcome_{track.twin(), std::move(task)} {
   work_ = aside([this] { run(); });
 }
 
@@ -28,15 +28,21 @@ std::vector<Frame> Revisit::arrived() {
   return std::exchange(later_, {});
 }
 
-Revisit::Outcome Revisit::look(std::unique_ptr<Track> twin, const std::vector<Frame>& frames,
-                               std::optional<ChangeQuestion> change, const Track::Checkpoint& checkpoint) {
-  Outcome out{std::move(twin), false, 0, std::move(change)};
-  if (!out.change) {
+Revisit::Outcome Revisit::look(std::unique_ptr<Track> twin, const std::vector<Frame>& frames, Task task,
+                               const Track::Checkpoint& checkpoint) {
+  Outcome out{std::move(twin), std::move(task)};
+  std::unique_ptr<Track> next;
+  if (out.task.roll > 0) {
+    out.first = out.task.roll;
+    next = out.track->rolled(frames, out.first, checkpoint);
+  } else if (out.task.change) {
+    next = out.track->changed(frames, *out.task.change, checkpoint, out.first);
+  } else {
     out.moved = out.track->look(frames, checkpoint);
-  } else if (auto changed = out.track->changed(frames, *out.change, checkpoint, out.first)) {
-    out.track = std::move(changed);
-    out.moved = true;
+    return out;
   }
+  out.moved = next != nullptr;
+  if (next) out.track = std::move(next);
   return out;
 }
 
@@ -44,7 +50,7 @@ void Revisit::run() {
   const auto checkpoint = [this] {
     if (given_up_) throw NumericalError("given up");
   };
-  outcome_ = look(std::move(outcome_.track), frames_, std::move(outcome_.change), checkpoint);
+  outcome_ = look(std::move(outcome_.track), frames_, std::move(outcome_.task), checkpoint);
   if (!outcome_.moved) return;
   for (std::vector<Frame> more = arrived(); !more.empty(); more = arrived()) {
     for (const Frame& frame : more) {

@@ -158,6 +158,30 @@ std::unique_ptr<Track> Track::changed(const std::vector<Frame>& frames, const Ch
   }
 }
 
+std::unique_ptr<Track> Track::rolled(const std::vector<Frame>& frames, std::size_t first,
+                                     const Checkpoint& checkpoint) const {
+  const auto middle = frames.begin() + static_cast<std::ptrdiff_t>(first);
+  const std::vector<Frame> early(frames.begin(), middle), later(middle, frames.end());
+  try {
+    const std::unique_ptr<Track> before = twin();
+    before->replay(problem(early, checkpoint), filter_.anchor(), filter_.spread());
+    const Eigen::VectorXd theta = model_.theta(filter_.mean());
+    const auto run = forward_->begin(theta, start_);
+    const double time = early.back().time - model_.delay(theta);
+    run->advance(time);
+    AnchoredFilter prior(before->filter_.mean(), before->filter_.robust_covariance());
+    auto out = std::make_unique<Track>(model_, operators_, forward_, std::move(prior),
+                                       RunStart{time, forward_->resume(theta, *run)});
+    out->doubt_ = doubt_;
+    out->notes_ = notes_;
+    out->notes_.settled = out->notes_.scanned = later.size();
+    out->replay(out->problem(later, checkpoint), filter_.anchor(), filter_.spread());
+    return out;
+  } catch (const NumericalError&) {
+    return nullptr;
+  }
+}
+
 FitProblem Track::problem(const std::vector<Frame>& frames, const Checkpoint& checkpoint) const {
   return {model_, *forward_, operators_, frames, start_, checkpoint};
 }

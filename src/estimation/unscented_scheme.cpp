@@ -20,7 +20,6 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr int kVelocityFrames = 4;           // frames that the initial velocity is read from
-constexpr std::size_t kWindow = 4000;        // frames kept for replay; later ones only add information
 constexpr std::size_t kFirstMeshStudy = 16;  // frames
 constexpr double kConverged = 0.05;          // relative standard deviation
 constexpr double kShiftDoubt = 0.5;          // of the mesh's effect, once it is corrected for
@@ -126,46 +125,56 @@ class UnscentedScheme : public Scheme {
   void keep(const Frame& frame) {
     if (complete_) frames_.push_back(frame);
     if (revisit_) revisit_->add(frame);
-    if (frames_.size() + past_.frame_count() <= kWindow) return;
-    if (past_.empty()) {
-      complete_ = false;
-      frames_.clear();
-    }
-    past_ = {};
+    if (complete_ && frames_.size() + past_.frame_count() > window_) past_ = {};
   }
+
+  bool overfull() const { return frames_.size() > window_; }
 
   // Looks at the recording again, where that is due, or for a change; in the background when a node runs. True if the runs
   // changed.
   bool revisit() {
     if (revisit_ || !complete_) return false;
+    if (overfull()) return look_back(*track_, frames_, {std::nullopt, frames_.size() / 2});
     if (std::optional<ChangeQuestion> again = past_.closer(frames_.size())) {
-      return look_back(past_.track(), past_.frames_since_its_start(frames_), std::move(again));
+      return look_back(past_.track(), past_.frames_since_its_start(frames_), {std::move(again)});
     }
     std::optional<ChangeQuestion> question = track_->corrected() ? std::nullopt : watch_.due();
     const bool calm = !watch_.suspicious() || watch_.searched();
     if (!question && !(calm && track_->wants_look(frames_.size()))) return false;
-    return look_back(*track_, frames_, std::move(question));
+    return look_back(*track_, frames_, {std::move(question)});
   }
 
-  bool look_back(const Track& track, const std::vector<Frame>& frames, std::optional<ChangeQuestion> question) {
-    if (!hurried()) return adopt(Revisit::look(track.twin(), frames, std::move(question), [] {}));
-    revisit_ = std::make_unique<Revisit>(track, frames, std::move(question));
+  bool look_back(const Track& track, const std::vector<Frame>& frames, Revisit::Task task) {
+    if (!hurried()) return adopt(Revisit::look(track.twin(), frames, std::move(task), [] {}));
+    revisit_ = std::make_unique<Revisit>(track, frames, std::move(task));
     return false;
   }
 
   bool adopt(Revisit::Outcome outcome) {
+    const Revisit::Task& task = outcome.task;
     if (!outcome.moved) {
-      if (!outcome.change) track_->take_notes(*outcome.track);
+      if (task.roll > 0) stop_keeping();
+      if (task.roll == 0 && !task.change) track_->take_notes(*outcome.track);
       return false;
     }
-    if (outcome.change) {
-      past_.turn(*track_, *outcome.track, outcome.first, *outcome.change, frames_);
+    if (task.roll > 0) {
+      frames_.erase(frames_.begin(), frames_.begin() + static_cast<std::ptrdiff_t>(outcome.first));
+      past_ = {};
+    } else if (task.change) {
+      past_.turn(*track_, *outcome.track, outcome.first, *task.change, frames_);
       validity_.reset();
-      if (!outcome.change->near) watch_.go_on();
+      if (!task.change->near) watch_.go_on();
     }
     track_ = std::move(outcome.track);
     forward_ = track_->forward();
     return true;
+  }
+
+  // The track then only adds information.
+  void stop_keeping() {
+    complete_ = false;
+    frames_.clear();
+    past_ = {};
   }
 
   void publish(const Frame& frame, const Ensemble::Predicted& predicted, const AnchoredFilter::Innovation& innovation,
@@ -251,7 +260,8 @@ class UnscentedScheme : public Scheme {
   std::vector<Frame> frames_, waiting_;
   Past past_;
   ChangeWatch watch_{(model_->drift().array() > 0.0).any()};
-  bool complete_ = true;              ///< every frame since the start is in frames_
+  std::size_t window_ = static_cast<std::size_t>(model_->settings().window);
+  bool complete_ = true;              ///< every frame since the track's start is in frames_
   std::unique_ptr<Revisit> revisit_;  ///< under way
 
   std::string unstudied_;                  ///< why the mesh's error is not assessed; empty: it is

@@ -113,6 +113,8 @@ std::vector<KeySpec> run_keys() {
       required_key("initial.velocity", Kind::numbers, "m/s", "[x, y, z] of the whole body, or `from_frames`"),
       choice_key("estimator", {"unscented", "paper"}, false,
                  "the default, or the scheme of Yang & Lin 2016 as it was published, to compare with"),
+      integer_key("window", 100, 1000000, 4000,
+                  "frames that are kept to be looked at again; when they are too many, the older half becomes the prior"),
   };
 }
 

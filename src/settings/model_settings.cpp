@@ -94,6 +94,7 @@ ModelSettings read_model(const Value& root, const std::string& directory) {
   if (root.has("initial")) model.initial = read_initial(root.at("initial"));
   const bool paper = read_choice(root, find_key(model_keys(), "estimator")) == "paper";
   model.estimator = paper ? EstimatorKind::paper : EstimatorKind::unscented;
+  model.window = read_integer(root, find_key(model_keys(), "window"));
   root.require_all_read();
   check_regions(model, root.at("observations"));
   return model;

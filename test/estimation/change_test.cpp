@@ -19,13 +19,13 @@ ModelSettings drifting(const std::string& drift, double start = 45e3) {
 }
 
 /// A bar under gravity whose modulus is `course` of the time, piecewise constant between `steps` instants a frame.
-std::vector<Frame> film(const std::function<double(double)>& course, int steps, unsigned seed) {
+std::vector<Frame> film(const std::function<double(double)>& course, int steps, unsigned seed, int frames = kFrames) {
   const Experiment bar(drifting(""), bar_mesh(), {course(0.0)});
   const ReducedModel runs(bar.model());
   const auto theta = [&](double time) { return bar.model().theta(Eigen::VectorXd::Constant(1, std::log(course(time)))); };
   std::unique_ptr<Trajectory> run = runs.start(theta(0.0), 0.0);
   std::vector<Experiment::Moment> moments;
-  for (int k = 0; k < steps * kFrames; ++k) {
+  for (int k = 0; k < steps * frames; ++k) {
     const double time = kRate * k / steps;
     run->advance(time);
     run = runs.resume(theta(time + 0.5 * kRate / steps), *run);
@@ -99,6 +99,41 @@ TEST(Change, IsNotFollowedByAConstantModulus) {
 
 TEST(Change, ANegativeRateIsRefused) {
   EXPECT_NE(refusal([] { Estimator(drifting("-1"), bar_mesh()); }).find("drift"), std::string::npos);
+}
+
+// The window holds 100 frames; the bar is filmed for four times as long. Its phase since the start is then told less well.
+TEST(Window, LeavesOldFramesBehindButNotWhatTheyTold) {
+  const std::vector<Frame> frames = film(jump(1e9, 1.0), 1, 5, 400);
+  ModelSettings settings = drifting("");
+  Estimator all(settings, bar_mesh());
+  step_through(all, frames);
+  settings.window = 100;
+  Estimator some(settings, bar_mesh());
+  step_through(some, frames);
+  EXPECT_TRUE(holds(some.estimate().parameters.front(), kTruth));
+  EXPECT_NEAR(value(some) / value(all), 1.0, 2e-4);
+  EXPECT_LT(some.estimate().parameters.front().std, 4.0 * all.estimate().parameters.front().std);
+  const std::vector<Misfit> free = some.free_run();
+  EXPECT_GE(free.size(), 50U);
+  EXPECT_LE(free.size(), 101U);
+  double square = 0.0;
+  for (const Misfit& misfit : free) square += misfit.rms_sigma * misfit.rms_sigma / static_cast<double>(free.size());
+  EXPECT_NEAR(square, 1.0, 0.05);
+}
+
+TEST(Window, AJumpIsFollowedLongAfterTheBeginning) {
+  const double when = 270.3 * kRate;
+  const std::vector<Frame> frames = film(jump(when, 2.0), 10, 3, 330);
+  ModelSettings settings = drifting("0.3");
+  settings.window = 100;
+  Estimator estimator(settings, bar_mesh());
+  for (const Frame& frame : frames) {
+    const StepResult result = estimator.step(frame);
+    ASSERT_TRUE(result.used) << result.reason;
+    if (frame.time > when + 1.0) {
+      EXPECT_NEAR(value(estimator) / (2.0 * kTruth), 1.0, 0.02) << frame.time - when;
+    }
+  }
 }
 
 }  // namespace

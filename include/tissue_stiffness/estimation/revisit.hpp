@@ -14,8 +14,13 @@ namespace tissue_stiffness {
 /// A look at the recording so far, beside the frames that keep coming.
 class Revisit {
  public:
-  /// Begins at once, with copies; asked a question it looks for a change of the parameters, and for nothing else.
-  Revisit(const Track& track, std::vector<Frame> frames, std::optional<ChangeQuestion> change);
+  /// What else than a look: for a change of the parameters, or to leave the first `roll` frames behind.
+  struct Task {
+    std::optional<ChangeQuestion> change;
+    std::size_t roll = 0;
+  };
+  /// Begins at once, with copies.
+  Revisit(const Track& track, std::vector<Frame> frames, Task task);
   /// Gives up.
   ~Revisit();
   Revisit(const Revisit&) = delete;
@@ -27,15 +32,16 @@ class Revisit {
   /// What came of a look.
   struct Outcome {
     std::unique_ptr<Track> track;
-    bool moved = false;                    ///< false: only its notes are new
-    std::size_t first = 0;                 ///< frame that the track begins with; 0 unless the parameters changed
-    std::optional<ChangeQuestion> change;  ///< what it was asked
+    Task task;
+    bool moved = false;  ///< false: only its notes are new
+    std::size_t first =
+        0;  ///< frame that the track begins with; 0 unless the parameters changed or frames were left behind
   };
   /// Waits for the end; a track that moved is at the last frame added. Throws NumericalError when it cannot follow.
   Outcome take();
 
   /// The look itself, at once; with a twin of the track that goes on.
-  static Outcome look(std::unique_ptr<Track> twin, const std::vector<Frame>& frames, std::optional<ChangeQuestion> change,
+  static Outcome look(std::unique_ptr<Track> twin, const std::vector<Frame>& frames, Task task,
                       const Track::Checkpoint& checkpoint);
 
  private:

@@ -95,6 +95,7 @@ struct ModelSettings {
   std::vector<ObservationSettings> observations;
   TimeSettings time;
   InitialSettings initial;
+  int window = 4000;  ///< frames kept to be looked at again; half of them become the prior of the others when it is full
   EstimatorKind estimator = EstimatorKind::unscented;  ///< key `estimator: unscented | paper`
 };
 
