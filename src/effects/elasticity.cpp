@@ -16,6 +16,11 @@ class Elasticity : public Effect {
     for (const int e : elements_) inside[e] = 1.0;
     volumetric_ = context.fem.volumetric_stiffness(inside);
     shear_ = context.fem.shear_stiffness(inside);
+    if (!arguments.has("region")) return;
+    for (SparseMatrix* part : {&volumetric_, &shear_}) {  // of many regions each keeps its own entries alone
+      part->prune(0.0);
+      part->data().squeeze();
+    }
   }
 
   void linear_terms(LinearTerms& out) const override {
