@@ -1,7 +1,6 @@
 #include "tissue_stiffness/estimation/batch_fit.hpp"
 
 #include "tissue_stiffness/estimation/compare.hpp"
-#include "tissue_stiffness/filter/anchored_filter.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -27,9 +26,9 @@ void run(const FitProblem& problem, AnchoredFilter& filter, const Eigen::VectorX
 
 }  // namespace
 
-BatchFit fit_batch(const FitProblem& problem, const Eigen::VectorXd& start, const Eigen::VectorXd& spread) {
-  const Eigen::VectorXd prior = problem.model.prior_std();
-  AnchoredFilter filter(problem.model.prior_mean(), prior.cwiseAbs2().asDiagonal());
+AnchoredFilter fit_filter(const FitProblem& problem, AnchoredFilter filter, const Eigen::VectorXd& start,
+                          const Eigen::VectorXd& spread) {
+  const Eigen::VectorXd prior = filter.spread();
   run(problem, filter, start, spread);
   for (int k = 0; k < kMostIterations; ++k) {
     const Eigen::VectorXd std = filter.covariance().diagonal().cwiseSqrt();
@@ -50,6 +49,13 @@ BatchFit fit_batch(const FitProblem& problem, const Eigen::VectorXd& start, cons
     }
     if (before.cost() - filter.cost() < kGain * before.cost()) break;
   }
+  return filter;
+}
+
+BatchFit fit_batch(const FitProblem& problem, const Eigen::VectorXd& start, const Eigen::VectorXd& spread) {
+  const Eigen::VectorXd prior = problem.model.prior_std();
+  const AnchoredFilter filter =
+      fit_filter(problem, AnchoredFilter(problem.model.prior_mean(), prior.cwiseAbs2().asDiagonal()), start, spread);
   return {filter.anchor(), filter.covariance(), filter.cost()};
 }
 

@@ -7,8 +7,6 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kLearnt = 0.5;  // posterior over prior standard deviation below which the data have spoken
-
 bool ends_with(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
@@ -66,7 +64,7 @@ std::map<std::string, Identifiability> identify(const Model& model, const Eigen:
     const std::string& name = model.free_parameters()[i].name;
     const auto k = static_cast<Eigen::Index>(i);
     const std::string percent = std::to_string(static_cast<int>(std::round(100.0 * narrowed[k])));
-    if (narrowed[k] > kLearnt) {
+    if (narrowed[k] > learnt) {
       result[name] = {"none", "the data hardly narrow the prior: posterior standard deviation is " + percent + " % of it"};
     } else if (is_scale(name) && known.empty()) {
       result[name] = {"ratio_only", "no force, pressure, density or mass is known: all scale together"};

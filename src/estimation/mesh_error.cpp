@@ -1,9 +1,13 @@
 #include "tissue_stiffness/estimation/mesh_error.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "tissue_stiffness/estimation/ensemble.hpp"
 #include "tissue_stiffness/filter/anchored_filter.hpp"
 #include "tissue_stiffness/forward/reduced_model.hpp"
 #include "tissue_stiffness/meshing/bend_boundary.hpp"
+#include "tissue_stiffness/meshing/build_mesh.hpp"
 #include "tissue_stiffness/meshing/refine.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
@@ -15,6 +19,7 @@ constexpr int kMostCuts = 4;
 constexpr double kSettled = 0.1;      // of the shift
 constexpr double kNegligible = 1e-5;  // prior standard deviations
 constexpr double kLongestStep = 0.1;  // prior standard deviations at once
+constexpr double kTelling = 0.1;      // mean square of a mesh's misfit in sigmas that a recording would show
 constexpr int kMostNodes = 6000;      // refined eightfold: what still factorises in seconds and within 2 GB
 
 void drive(const MeshError::Question& question, Model& model) {
@@ -58,11 +63,11 @@ struct MeshError::Studies {
   ReducedModel coarse_runs, fine_runs;
   std::vector<std::unique_ptr<ObservationOperator>> operators;
 
-  Studies(const ModelSettings& settings, const TetMesh& mesh) : Studies(settings, mesh, finer(mesh, settings.mesh)) {}
-  Studies(const ModelSettings& settings, const TetMesh& mesh, const TetMesh& refined)
-      : coarse(settings, mesh),
-        fine(settings, refined, refine(coarse.regions(), mesh, refined)),
-        coarse_runs(coarse),
+  Studies(const ModelSettings& settings, const ModelSettings& known, const TetMesh& mesh,
+          const std::map<std::string, Region>& regions, const BasisOptions& basis, const TetMesh& refined)
+      : coarse(settings, mesh, regions),
+        fine(known, refined, refine(regions, mesh, refined)),
+        coarse_runs(coarse, basis),
         fine_runs(fine),
         operators(make_observation_operators(coarse)) {}
 };
@@ -72,8 +77,17 @@ std::string MeshError::why_not(const TetMesh& mesh) {
 }
 
 MeshError::MeshError(const ModelSettings& settings, const TetMesh& mesh)
-    : studies_(std::make_unique<Studies>(settings, mesh)) {}
+    : MeshError(settings, settings, mesh, resolve_regions(settings.regions, mesh), {}) {}
+MeshError::MeshError(const ModelSettings& settings, const ModelSettings& fine, const TetMesh& mesh,
+                     const std::map<std::string, Region>& regions, const BasisOptions& basis)
+    : studies_(std::make_unique<Studies>(settings, fine, mesh, regions, basis, finer(mesh, settings.mesh))) {}
 MeshError::~MeshError() = default;
+
+Eigen::VectorXd MeshError::Answer::believed(double mean_square) const {
+  const double seen = mean_square - 1.0;
+  if (left < kTelling || seen >= left) return shift;
+  return std::sqrt(std::max(seen, kTelling) / left) * shift;
+}
 
 MeshError::Answer MeshError::study(const Question& q) {
   Studies& s = *studies_;
@@ -81,7 +95,7 @@ MeshError::Answer MeshError::study(const Question& q) {
   drive(q, s.fine);
   // Nodes of the coarse mesh keep their numbers in the finer one, whose run is seen through them.
   std::vector<Prediction> truth;
-  const Eigen::VectorXd theta = s.fine.theta(q.w);
+  const Eigen::VectorXd theta = s.coarse.theta(q.w);
   const auto run = s.fine_runs.start(theta, q.start);
   for (const Frame& frame : q.frames) {
     run->advance(frame.time - s.fine.delay(theta));

@@ -23,7 +23,6 @@ constexpr int kVelocityFrames = 4;           // frames that the initial velocity
 constexpr std::size_t kFirstMeshStudy = 16;  // frames
 constexpr double kConverged = 0.05;          // relative standard deviation
 constexpr double kShiftDoubt = 0.5;          // of the mesh's effect, once it is corrected for
-constexpr double kTelling = 0.1;             // mean square of a mesh's misfit in sigmas that a recording would show
 constexpr double kInvalidSigmas = 10.0;      // rms error over noise at which the model says nothing about the body
 
 class UnscentedScheme : public Scheme {
@@ -221,20 +220,12 @@ class UnscentedScheme : public Scheme {
     return MeshError::why_not(model_->mesh());
   }
 
-  // A mesh as wrong as the study makes it would leave a misfit; where the recording shows less, the mesh is less wrong. (A
-  // body may really have the facets that the finer mesh bends.)
-  Eigen::VectorXd believed(const MeshError::Answer& answer) const {
-    const double seen = track_->filter().misfit_scale() - 1.0;
-    if (answer.left < kTelling || seen >= answer.left) return answer.shift;
-    return std::sqrt(std::max(seen, kTelling) / answer.left) * answer.shift;
-  }
-
   // What the mesh does to the estimate, asked anew whenever the recording has doubled; in the background when a node runs.
   void study_mesh() {
     if (study_.valid() && (!background() || study_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)) {
       try {
         study_.get();
-        shift_ = believed(studied_);
+        shift_ = studied_.believed(track_->filter().misfit_scale());
       } catch (const std::exception& error) {
         unstudied_ = error.what();
       }

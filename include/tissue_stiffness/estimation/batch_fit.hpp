@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include "tissue_stiffness/estimation/choose_correction.hpp"
+#include "tissue_stiffness/filter/anchored_filter.hpp"
 
 namespace tissue_stiffness {
 
@@ -17,5 +18,9 @@ struct BatchFit {
 /// few posterior standard deviations later. Steps that do not lower the cost are cut. Throws NumericalError when the run at
 /// `start` diverges.
 BatchFit fit_batch(const FitProblem& problem, const Eigen::VectorXd& start, const Eigen::VectorXd& spread);
+
+/// The same with any prior: that of `filter`, which has seen no frame. Ends anchored at the most probable parameters.
+AnchoredFilter fit_filter(const FitProblem& problem, AnchoredFilter filter, const Eigen::VectorXd& start,
+                          const Eigen::VectorXd& spread);
 
 }  // namespace tissue_stiffness

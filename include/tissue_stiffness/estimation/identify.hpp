@@ -9,6 +9,9 @@
 
 namespace tissue_stiffness {
 
+/// Posterior over prior standard deviation below which the data have spoken.
+constexpr double learnt = 0.5;
+
 /// What the data determine. A parameter whose posterior is hardly narrower than its prior is `none`. Scales - moduli,
 /// densities, added masses, load scales - rescale together without moving anything: when every one of them that acts is
 /// unknown, the data give only their ratios. Forces in newton or pascal, or a mass, that are known make the others

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tissue_stiffness/effects/course.hpp"
+#include "tissue_stiffness/forward/reduced_basis.hpp"
 #include "tissue_stiffness/settings/model_settings.hpp"
 #include "tissue_stiffness/types/observation.hpp"
 #include "tissue_stiffness/types/tet_mesh.hpp"
@@ -28,6 +29,10 @@ class MeshError {
 
   /// Throws as Model does.
   MeshError(const ModelSettings& settings, const TetMesh& mesh);
+  /// With the regions' parts of the mesh as given, and a basis of that size. `fine`: the same model for the finer mesh, in
+  /// which more may be known, as it runs at one place only.
+  MeshError(const ModelSettings& settings, const ModelSettings& fine, const TetMesh& mesh,
+            const std::map<std::string, Region>& regions, const BasisOptions& basis);
   ~MeshError();
   MeshError(const MeshError&) = delete;
   MeshError& operator=(const MeshError&) = delete;
@@ -48,6 +53,10 @@ class MeshError {
     Eigen::VectorXd shift;
     /// Mean square error over sigma that this fit leaves: with such a mesh a recording cannot be explained any better.
     double left = 0.0;
+    /// The shift, as far as a recording shows it that is fitted with this mean square error over sigma: a mesh as wrong as
+    /// that would leave a misfit; where there is less, the mesh is less wrong. (A body may really have the facets that the
+    /// finer mesh bends.)
+    Eigen::VectorXd believed(double mean_square) const;
   };
   /// Throws NumericalError when the fit does not settle.
   Answer study(const Question& question);
