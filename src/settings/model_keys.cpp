@@ -8,6 +8,7 @@ namespace {
 using Kind = KeySpec::Kind;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kPositive = std::numeric_limits<double>::min();
+constexpr double kLeastFactor = 1.01;
 
 KeySpec positive(const std::string& path, const std::string& unit, const std::string& meaning) {
   return required_number(path, unit, kPositive, kInfinity, meaning);
@@ -115,6 +116,11 @@ std::vector<KeySpec> run_keys() {
                  "the default, or the scheme of Yang & Lin 2016 as it was published, to compare with"),
       integer_key("window", 100, 1000000, 4000,
                   "frames that are kept to be looked at again; when they are too many, the older half becomes the prior"),
+      plain_key("map", Kind::map, "",
+                "how the modulus varies over the body: in place of the one estimated `young_modulus`, one a patch"),
+      integer_key("map.cells", 2, 100, 24, "most patches that the body is divided into"),
+      positive("map.length", "m", "distance over which the modulus stays alike"),
+      number_key("map.factor", "", kLeastFactor, 100, 2, "1-sigma factor by which it varies from place to place"),
   };
 }
 

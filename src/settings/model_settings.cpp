@@ -66,6 +66,14 @@ InitialSettings read_initial(const Value& map) {
   return initial;
 }
 
+MapSettings read_map(const Value& map) {
+  MapSettings out;
+  out.cells = read_integer(map, find_key(model_keys(), "map.cells"));
+  out.length = read_number(map, find_key(model_keys(), "map.length"));
+  out.factor = read_number(map, find_key(model_keys(), "map.factor"));
+  return out;
+}
+
 /// A contour can only belong to a region that exists.
 void check_regions(const ModelSettings& model, const Value& observations) {
   std::vector<std::string> names;
@@ -95,6 +103,7 @@ ModelSettings read_model(const Value& root, const std::string& directory) {
   const bool paper = read_choice(root, find_key(model_keys(), "estimator")) == "paper";
   model.estimator = paper ? EstimatorKind::paper : EstimatorKind::unscented;
   model.window = read_integer(root, find_key(model_keys(), "window"));
+  if (root.has("map")) model.map = read_map(root.at("map"));
   root.require_all_read();
   check_regions(model, root.at("observations"));
   return model;

@@ -99,6 +99,15 @@ std::string changed(const std::string& line, const std::string& replacement) {
   return text.replace(at, line.size(), replacement);
 }
 
+TEST(ModelSettings, AMapIsAskedFor) {
+  EXPECT_FALSE(read(whole_model).map);
+  const ModelSettings model = read(std::string(whole_model) + "map: {length: 0.02}\n");
+  ASSERT_TRUE(model.map);
+  EXPECT_EQ(model.map->length, 0.02);
+  EXPECT_EQ(model.map->cells, 24);
+  EXPECT_EQ(model.map->factor, 2.0);
+}
+
 TEST(ModelSettings, RevolveAndExtrudeTakeTheirOwnKeys) {
   const std::string mesh = "{file: mesh.stl, scale: 0.001, max_edge_length: 0.01, order: 1}";
   const ModelSettings revolved =
@@ -119,9 +128,13 @@ struct Malformed {
 
 TEST(ModelSettings, RefusesWhatIsWrongAndSaysWhere) {
   const std::vector<Malformed> table = {
-      {"", "colour: red", {"model.yaml:23: colour", "unknown key `colour`", "effects, estimator, initial, mesh"}},
+      {"", "colour: red", {"model.yaml:23: colour", "unknown key `colour`", "effects, estimator, initial, map, mesh"}},
       {"estimator: paper", "estimatr: paper", {"model.yaml:22: estimatr", "did you mean `estimator`?"}},
       {"estimator: paper", "estimator: kalman", {"model.yaml:22: estimator", "`kalman`", "unscented, paper"}},
+      {"", "map: {cells: 8}", {"model.yaml:23: map", "no key `length`"}},
+      {"", "map: {length: 0.02, cells: 1}", {"model.yaml:23: map.cells", "found 1", "2"}},
+      {"", "map: {length: 0.02, factor: 1}", {"model.yaml:23: map.factor", "found 1", "1.01"}},
+      {"", "map: {length: 0.02, patches: 8}", {"model.yaml:23: map.patches", "unknown key"}},
       {"", "mesh: {file: x}", {"model.yaml:23: mesh", "twice"}},
       {"mesh: {file", "mash: {file", {"model.yaml: found no key `mesh`", "did you mean `mash`?"}},
       {"{file: mesh.stl,", "{", {"model.yaml:1: mesh", "exactly one of file, revolve, extrude"}},

@@ -83,6 +83,13 @@ struct InitialSettings {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< rigid initial velocity [m/s]
 };
 
+/// `map: {cells, length, factor}`: how the modulus may vary over the body.
+struct MapSettings {
+  int cells = 0;        ///< patches at the finest level
+  double length = 0.0;  ///< over which log E stays alike [m]
+  double factor = 0.0;  ///< 1 sigma by which the modulus varies, > 1
+};
+
 enum class EstimatorKind { unscented, paper };
 
 /// A whole model file.
@@ -97,6 +104,7 @@ struct ModelSettings {
   InitialSettings initial;
   int window = 4000;  ///< frames kept to be looked at again; half of them become the prior of the others when it is full
   EstimatorKind estimator = EstimatorKind::unscented;  ///< key `estimator: unscented | paper`
+  std::optional<MapSettings> map;                      ///< empty: one modulus an elasticity, no map
 };
 
 /// Reads every key but the effects' arguments, which the effects layer checks. Unknown, missing and out-of-range keys throw
