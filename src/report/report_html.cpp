@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "tissue_stiffness/report/course.hpp"
+#include "tissue_stiffness/report/map_table.hpp"
 #include "tissue_stiffness/report/page.hpp"
 #include "tissue_stiffness/report/text.hpp"
 #include "tissue_stiffness/report/write_results.hpp"
@@ -208,9 +209,9 @@ std::string report_html(const Results& results, const Showing& showing) {
   page.heading = "Tissue stiffness";
   page.subheading = short_path(results.model) + " · " + short_path(results.recording);
   page.body = answer(results) + facts(results) + courses(results) + player(showing) + misfit(results) +
-              parameter_table(results) + skipped_table(results) + choices(results) +
-              section("model", "", file_details("Model file", results.model_text, "", true)) + timing_table(results) +
-              colophon(results.command_line, results.versions);
+              parameter_table(results) + (results.map ? map_table(*results.map) : "") + skipped_table(results) +
+              choices(results) + section("model", "", file_details("Model file", results.model_text, "", true)) +
+              timing_table(results) + colophon(results.command_line, results.versions);
   page.data = "{\"results\":" + results_json(results) + ",\"course\":" + course_json(results, showing.first_stamp) +
               ",\"showing\":" + showing_json(showing) + "}";
   return page.html();

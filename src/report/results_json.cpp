@@ -19,6 +19,26 @@ json parameter_json(const ParameterEstimate& p) {
           {"interval95", json::array({number(p.lower95), number(p.upper95)})}};
 }
 
+json map_json(const StiffnessMap& map) {
+  json levels = json::array(), patches = json::array();
+  for (const StiffnessLevel& level : map.levels) {
+    levels.push_back({{"patches", level.patches},
+                      {"mean_square", number(level.mean_square)},
+                      {"log_evidence", number(level.log_evidence)},
+                      {"kept", level.kept}});
+  }
+  for (const StiffnessPatch& patch : map.patches) {
+    patches.push_back({{"center", {patch.center.x(), patch.center.y(), patch.center.z()}},
+                       {"young_modulus", number(patch.young_modulus)},
+                       {"interval95", {number(patch.lower95), number(patch.upper95)}},
+                       {"identified", patch.identified}});
+  }
+  return {{"levels", levels},
+          {"patches", patches},
+          {"identified", map.identified()},
+          {"mesh_error", map.mesh_error.empty() ? "assessed" : "not assessed: " + map.mesh_error}};
+}
+
 }  // namespace
 
 std::string results_json(const Results& results) {
@@ -32,7 +52,7 @@ std::string results_json(const Results& results) {
   for (const FrameRecord& frame : results.frames) {
     if (!frame.used) skipped.push_back({{"time", number(frame.time)}, {"reason", frame.reason}});
   }
-  const json root = {
+  json root = {
       {"model", results.model},
       {"recording", results.recording},
       {"state", to_string(results.state)},
@@ -49,6 +69,7 @@ std::string results_json(const Results& results) {
        {{"median", number(results.frame_seconds_quantile(0.5))}, {"p99", number(results.frame_seconds_quantile(0.99))}}},
       {"versions", versions},
   };
+  if (results.map) root["map"] = map_json(*results.map);
   return root.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }
 

@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
   bool quiet = false, json = false;
   app.add_option("MODEL", model, "model file (YAML)")->required();
   app.add_option("RECORDING", recording, "rosbag")->required();
-  app.add_option("--output", output, "folder for results.json, estimates.csv and report.html")->required();
+  app.add_option("--output", output, "folder for results.json, estimates.csv, report.html and map.vtk")->required();
   app.add_option("--frames", frames, "stop after so many frames (default: all)")->check(CLI::PositiveNumber);
   app.add_flag("--quiet", quiet, "no progress and no table");
   app.add_flag("--json", json, "print results.json instead of the table");
@@ -35,11 +35,13 @@ int main(int argc, char** argv) {
     progress.finish();
     run.results.command_line = join_arguments(argc, argv);
     write_results(run.results, run.showing, output);
+    if (run.results.map) write_text(output + "/map.vtk", run.map_vtk);
     if (json) {
       std::cout << results_json(run.results) << "\n";
     } else if (!quiet) {
       print_summary(run, Paint::for_stdout(), std::cout);
-      std::cout << "written       " << output << "/{results.json,estimates.csv,report.html}\n";
+      std::cout << "written       " << output << "/{results.json,estimates.csv,report.html"
+                << (run.results.map ? ",map.vtk}\n" : "}\n");
     }
   });
 }

@@ -7,8 +7,11 @@
 #include <optional>
 
 #include "tissue_stiffness/estimation/estimator.hpp"
+#include "tissue_stiffness/estimation/map_stiffness.hpp"
+#include "tissue_stiffness/estimation/patch_model.hpp"
 #include "tissue_stiffness/estimation/replay_recorder.hpp"
 #include "tissue_stiffness/filter/consistency.hpp"
+#include "tissue_stiffness/report/map_vtk.hpp"
 #include "tissue_stiffness/tools/recording_reader.hpp"
 #include "tissue_stiffness/tools/versions.hpp"
 #include "tissue_stiffness/types/error.hpp"
@@ -64,11 +67,13 @@ class Run {
   Run(const ModelSettings& settings, RecordingReader& recording)
       : settings_(settings), recording_(recording), estimator_(settings, recording.mesh()) {
     estimator_.set_first_stamp(recording.reader().first_stamp());
+    if (settings.map) require_map(Model(settings, recording.mesh()));
   }
 
   /// Whether the frame was used; otherwise `reason` says why not.
   bool step(const Instant& instant, std::string& reason) {
     for (const LoadSample& sample : instant.loads) estimator_.add_load(sample);
+    if (settings_.map) loads_.insert(loads_.end(), instant.loads.begin(), instant.loads.end());
     const auto start = Clock::now();
     StepResult result;
     if (instant.frame.observations.empty()) {
@@ -82,6 +87,7 @@ class Run {
       reason = result.reason;
       return false;
     }
+    if (settings_.map) frames_.push_back(instant.frame);
     run_.results.frame_seconds.push_back(since(start) + instant.segment_seconds);
     if (instant.segment_seconds > 0.0) run_.stage_samples["segment"].push_back(instant.segment_seconds);
     for (const auto& [stage, seconds] : result.seconds) run_.stage_samples[stage].push_back(seconds);
@@ -107,12 +113,21 @@ class Run {
       for (const double s : samples) sum += s;
       results.stage_seconds.emplace_back(stage, sum);
     }
+    if (settings_.map) add_map();
     add_free_run();
     run_.late = recording_.reader().late();
     return std::move(run_);
   }
 
  private:
+  void add_map() {
+    const TetMesh& mesh = estimator_.mesh();
+    const StiffnessMap map = map_stiffness(
+        {settings_, mesh, std::move(frames_), std::move(loads_), recording_.reader().first_stamp(), estimator_.estimate()});
+    run_.map_vtk = map_vtk(map, mesh);
+    run_.results.map = map;
+  }
+
   void add_free_run() {
     double error = 0.0, motion = 0.0, count = 0.0;
     const BagReader& reader = recording_.reader();
@@ -137,6 +152,8 @@ class Run {
   EstimationRun run_;
   ConsistencySum nis_;
   NoiseSum noise_;
+  std::vector<Frame> frames_;  ///< those used, and the loads so far: for a map
+  std::vector<LoadSample> loads_;
 };
 
 }  // namespace

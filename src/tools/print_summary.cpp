@@ -50,6 +50,20 @@ void print_parameters(const Results& results, const Paint& paint, std::ostream& 
   }
 }
 
+void print_map(const StiffnessMap& map, std::ostream& out) {
+  print_line(out, "map           %d patches, %d identified, the others at their prior",
+             static_cast<int>(map.patches.size()), map.identified());
+  for (const StiffnessPatch& patch : map.patches) {
+    if (!patch.identified) continue;
+    const ShownUnit unit = shown_unit(patch.young_modulus, "Pa");
+    const double spread = unit.scale * patch.std * patch.young_modulus;
+    const auto shown = [&](double modulus) { return rounded(unit.scale * modulus, spread); };
+    print_line(out, "  at (%6.3f, %6.3f, %6.3f) m  %s %s, 95 %%: %s .. %s", patch.center.x(), patch.center.y(),
+               patch.center.z(), shown(patch.young_modulus).c_str(), unit.name.c_str(), shown(patch.lower95).c_str(),
+               shown(patch.upper95).c_str());
+  }
+}
+
 void print_stages(const EstimationRun& run, const Paint& paint, std::ostream& out) {
   out << paint.bold(formatted("%-12s %12s %12s %12s", "stage", "median [ms]", "p99 [ms]", "total [s]")) << "\n";
   for (const char* stage : {"segment", "predict", "observe", "update", "revisit", "mesh error"}) {
@@ -74,6 +88,7 @@ void print_summary(const EstimationRun& run, const Paint& paint, std::ostream& o
              short_number(1e3 * results.rms_error, 4).c_str(), results.rms_error / results.noise_rms,
              100.0 * results.relative_error);
   print_line(out, "NIS           %.3g a degree of freedom, p = %.2g", results.nis_mean_per_dof, results.nis_p_value);
+  if (results.map) print_map(*results.map, out);
   print_stages(run, paint, out);
 }
 

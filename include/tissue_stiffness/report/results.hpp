@@ -2,11 +2,13 @@
 
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "tissue_stiffness/types/estimate.hpp"
+#include "tissue_stiffness/types/stiffness_map.hpp"
 
 namespace tissue_stiffness {
 
@@ -43,6 +45,7 @@ struct Results {
   double basis_error = std::numeric_limits<double>::quiet_NaN();     ///< of the reduced basis, an upper bound [m]
   double nis_mean_per_dof = std::numeric_limits<double>::quiet_NaN();
   double nis_p_value = std::numeric_limits<double>::quiet_NaN();
+  std::optional<StiffnessMap> map;  ///< where the model file asks for one
   std::vector<FrameRecord> frames;
   std::vector<double> frame_seconds;                          ///< wall time of each used frame
   std::vector<std::pair<std::string, double>> stage_seconds;  ///< wall time of each stage over the whole run

@@ -8,9 +8,10 @@
 namespace tissue_stiffness {
 
 /// `results.json`: parameters.{effect.parameter}.{unit,mean,std,interval95}, identifiable.{...}.{verdict,reason}, state,
-/// frames (used), skipped[].{time,reason}, rms_error [m], noise_rms [m], relative_error, nis.{mean_per_dof,p_value},
-/// seconds_per_frame.{median,p99}. A number that does not exist is null. Everything but seconds_per_frame is the same for
-/// the same input.
+/// map (where there is one).{levels[].{patches,mean_square,log_evidence,kept},
+/// patches[].{center,young_modulus,interval95,identified},identified,mesh_error}, frames (used), skipped[].{time,reason},
+/// rms_error [m], noise_rms [m], relative_error, nis.{mean_per_dof,p_value}, seconds_per_frame.{median,p99}. A number that
+/// does not exist is null. Everything but seconds_per_frame is the same for the same input.
 std::string results_json(const Results& results);
 
 /// `estimates.csv` (RFC 4180): a header with units, then one row a frame. A number that does not exist is an empty field.

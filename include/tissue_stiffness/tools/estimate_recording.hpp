@@ -19,6 +19,7 @@ struct EstimationRun {
   Showing showing;                                           ///< the free run at the final estimate
   std::map<std::string, std::vector<double>> stage_samples;  ///< wall time of each stage in each frame that used it [s]
   double seconds = 0.0;                                      ///< wall time over all frames, reading included
+  std::string map_vtk;                                       ///< empty without a map
   int late = 0;                                              ///< messages that came too late for their frame
 };
 

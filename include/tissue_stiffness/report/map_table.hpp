@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+#include "tissue_stiffness/types/stiffness_map.hpp"
+
+namespace tissue_stiffness {
+
+/// Card of report.html: how many parts of the body are identified, and the modulus of each, softest first. HTML.
+std::string map_table(const StiffnessMap& map);
+
+}  // namespace tissue_stiffness

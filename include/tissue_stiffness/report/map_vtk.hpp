@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "tissue_stiffness/types/stiffness_map.hpp"
+#include "tissue_stiffness/types/tet_mesh.hpp"
+
+namespace tissue_stiffness {
+
+/// `map.vtk` (legacy ASCII unstructured grid): the body at rest with cell data `patch` (-1: not mapped), `young_modulus`,
+/// `lower95`, `upper95` [Pa] (0 where not mapped) and `identified` (0 or 1).
+std::string map_vtk(const StiffnessMap& map, const TetMesh& mesh);
+
+}  // namespace tissue_stiffness
