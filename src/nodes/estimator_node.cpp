@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "tissue_stiffness/estimation/patch_model.hpp"
 #include "tissue_stiffness/nodes/message_conversions.hpp"
 #include "tissue_stiffness/nodes/node_keys.hpp"
 #include "tissue_stiffness/types/error.hpp"
@@ -44,6 +45,7 @@ EstimatorNode::EstimatorNode(ros::NodeHandle node, const NodeSettings& settings)
       queue_(std::chrono::duration<double>(read_number(settings.own, key("load_timeout"))), queue_size_),
       inputs_(node, settings_, poses_, queue_, diagnostics_),
       outputs_(node, poses_.model_frame()),
+      map_(node, poses_.model_frame()),
       running_(settings_) {
   const ModelCheck::Options check{read_number(settings.own, key("diagnosis_period")),
                                   read_number(settings.own, key("diagnosis_window"))};
@@ -107,6 +109,7 @@ void EstimatorNode::run() {
 void EstimatorNode::work() {
   const std::optional<TetMesh> first = wait_for_mesh();
   if (!first) return;
+  if (settings_.map) require_map(Model(settings_, *first));
   build(*first);
   inputs_.listen(queue_size_);
   while (const auto work = queue_.take()) {
@@ -151,6 +154,7 @@ void EstimatorNode::build(const TetMesh& mesh) {
   services_->start(running_, mesh);
   inputs_.set_vertex_count(mesh.corner_count);
   outputs_.prepare(running_, mesh);
+  map_.start(running_, mesh);
   for (const std::string& line : estimator_->description()) ROS_INFO("%s", line.c_str());
   diagnostics_.state(DiagnosticStatus::OK, to_string(EstimateState::no_data));
 }
@@ -178,6 +182,7 @@ void EstimatorNode::start_lap(const ros::Time& first_stamp) {
   estimator_->reset();
   estimator_->set_first_stamp(first_stamp.toSec());
   services_->check().start_lap(first_stamp.toSec());
+  map_.start_lap();
 }
 
 void EstimatorNode::process(const FrameQueue::Work& work) {
@@ -203,6 +208,9 @@ void EstimatorNode::process(const FrameQueue::Work& work) {
   report(result);
   if (!result.used) return;
   services_->check().add(frame);
+  if (services_->check().complete()) {
+    map_.add_frame(result.estimate, [this] { return services_->check().recording(); });
+  }
   outputs_.publish(*estimator_, result, frame, work.stamp);
 }
 

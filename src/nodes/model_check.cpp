@@ -87,6 +87,11 @@ Recording ModelCheck::recording() const {
   return out;
 }
 
+bool ModelCheck::complete() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return complete_;
+}
+
 std::optional<Diagnosis> ModelCheck::last() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return last_;

@@ -16,19 +16,20 @@ constexpr double kRedSigmas = 3.0;
 constexpr int kRings = 3;  // of facets around a measured node, over which its misfit is interpolated
 constexpr double kAmbient = 0.65;
 
-/// `light`: 0 in the shade to 1 in the light.
-std_msgs::ColorRGBA colour(double sigmas, double light) {
-  const float shade = static_cast<float>(kAmbient + (1.0 - kAmbient) * light);
-  std_msgs::ColorRGBA out;
-  out.a = 1.0F;
-  if (!std::isfinite(sigmas)) {
-    out.r = out.g = out.b = 0.7F * shade;
-    return out;
-  }
+Eigen::Vector3f heat_colour(double sigmas) {
+  if (!std::isfinite(sigmas)) return Eigen::Vector3f::Constant(0.7F);
   const double heat = std::min(std::abs(sigmas) / kRedSigmas, 1.0);
-  out.r = shade * static_cast<float>(std::min(2.0 * heat, 1.0));
-  out.g = shade * static_cast<float>(std::min(2.0 - 2.0 * heat, 1.0));
-  out.b = shade * 0.1F;
+  return {static_cast<float>(std::min(2.0 * heat, 1.0)), static_cast<float>(std::min(2.0 - 2.0 * heat, 1.0)), 0.1F};
+}
+
+/// `light`: 0 in the shade to 1 in the light.
+std_msgs::ColorRGBA shaded(const Eigen::Vector3f& colour, double light) {
+  const Eigen::Vector3f lit = static_cast<float>(kAmbient + (1.0 - kAmbient) * light) * colour;
+  std_msgs::ColorRGBA out;
+  out.r = lit.x();
+  out.g = lit.y();
+  out.b = lit.z();
+  out.a = 1.0F;
   return out;
 }
 
@@ -106,18 +107,18 @@ double at(const Eigen::VectorXd& values, int node) {
 
 }  // namespace
 
-visualization_msgs::Marker surface_marker(const TetMesh& mesh, const Eigen::Matrix3Xd& displacement, const Misfit& misfit,
-                                          const std_msgs::Header& header) {
+visualization_msgs::Marker painted_surface(const TetMesh& mesh, const Eigen::Matrix3Xd& positions,
+                                           const std::function<Eigen::Vector3f(int node)>& colour, const std::string& name,
+                                           const std_msgs::Header& header) {
   visualization_msgs::Marker marker;
   marker.header = header;
-  marker.ns = "tracked_surface";
+  marker.ns = name;
   marker.type = visualization_msgs::Marker::TRIANGLE_LIST;
   marker.action = visualization_msgs::Marker::ADD;
   marker.pose.orientation.w = 1.0;
   marker.scale.x = marker.scale.y = marker.scale.z = 1.0;
   marker.color.a = 1.0F;
-  const Eigen::Matrix3Xd positions = mesh.nodes + displacement;
-  const Eigen::VectorXd light = lights(mesh, positions), sigmas = interpolated(misfit.node_sigmas, mesh);
+  const Eigen::VectorXd light = lights(mesh, positions);
   const auto parts = triangles(mesh.facets.rows());
   const std::size_t corners = 3 * parts.size() * static_cast<std::size_t>(mesh.facet_count());
   marker.points.reserve(corners);
@@ -131,11 +132,18 @@ visualization_msgs::Marker surface_marker(const TetMesh& mesh, const Eigen::Matr
         point.y = positions(1, node);
         point.z = positions(2, node);
         marker.points.push_back(point);
-        marker.colors.push_back(colour(sigmas[node], light[node]));
+        marker.colors.push_back(shaded(colour(node), light[node]));
       }
     }
   }
   return marker;
+}
+
+visualization_msgs::Marker surface_marker(const TetMesh& mesh, const Eigen::Matrix3Xd& displacement, const Misfit& misfit,
+                                          const std_msgs::Header& header) {
+  const Eigen::VectorXd sigmas = interpolated(misfit.node_sigmas, mesh);
+  const auto colour = [&](int node) { return heat_colour(sigmas[node]); };
+  return painted_surface(mesh, mesh.nodes + displacement, colour, "tracked_surface", header);
 }
 
 sensor_msgs::PointCloud2 surface_cloud(const TetMesh& mesh, const Eigen::Matrix3Xd& displacement, const Misfit& misfit,

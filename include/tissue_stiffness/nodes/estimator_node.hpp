@@ -13,6 +13,7 @@
 #include "tissue_stiffness/estimation/estimator.hpp"
 #include "tissue_stiffness/nodes/estimator_inputs.hpp"
 #include "tissue_stiffness/nodes/estimator_outputs.hpp"
+#include "tissue_stiffness/nodes/map_publisher.hpp"
 #include "tissue_stiffness/nodes/model_services.hpp"
 #include "tissue_stiffness/nodes/ros_settings.hpp"
 
@@ -26,6 +27,8 @@ namespace tissue_stiffness {
 /// `previous_estimate` of /diagnostics keeps what the run before had found.
 ///
 /// Beside the frames it looks for what the model misses, and takes effects in and out of the running model: ModelServices.
+///
+/// A model with `map` has its modulus mapped over the body beside the frames, too: MapPublisher.
 ///
 /// Private parameters: `model` (a file) or the model's keys; `model_frame` ("model"), `load_timeout` (0.1 s: how long a
 /// frame waits for the loads and other sensors up to its stamp), `transform_timeout` (0.1 s), `queue_size` (100 frames),
@@ -61,6 +64,7 @@ class EstimatorNode {
   FrameQueue queue_;
   EstimatorInputs inputs_;
   EstimatorOutputs outputs_;
+  MapPublisher map_;
   ModelSettings running_;  ///< with what was added; the worker's alone, as the estimator
   std::unique_ptr<Estimator> estimator_;
 

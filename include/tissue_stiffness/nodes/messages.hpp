@@ -12,16 +12,19 @@
 #define Misfit MisfitMessage
 #define MissingEffect MissingEffectMessage
 #define Diagnosis DiagnosisMessage
+#define StiffnessMap StiffnessMapMessage
 #include <tissue_stiffness/Contour.h>
 #include <tissue_stiffness/Diagnose.h>
 #include <tissue_stiffness/Diagnosis.h>
 #include <tissue_stiffness/Misfit.h>
 #include <tissue_stiffness/MissingEffect.h>
+#include <tissue_stiffness/StiffnessMap.h>
 #include <tissue_stiffness/TetMesh.h>
 #undef Contour
 #undef TetMesh
 #undef Misfit
 #undef MissingEffect
 #undef Diagnosis
+#undef StiffnessMap
 
 #include <tissue_stiffness/StiffnessEstimate.h>

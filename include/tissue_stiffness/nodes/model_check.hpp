@@ -46,6 +46,8 @@ class ModelCheck {
 
   /// What is kept of this lap.
   Recording recording() const;
+  /// False when it lacks loads that acted since the start: nothing can be run again then.
+  bool complete() const;
   /// The last one of the running model.
   std::optional<Diagnosis> last() const;
   /// Checks now, in the thread, and waits for it. Throws InputError when there is no model or too little data,

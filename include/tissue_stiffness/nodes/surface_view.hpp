@@ -4,6 +4,8 @@
 #include <visualization_msgs/Marker.h>
 
 #include <Eigen/Core>
+#include <functional>
+#include <string>
 
 #include "tissue_stiffness/types/misfit.hpp"
 #include "tissue_stiffness/types/observation.hpp"
@@ -13,8 +15,14 @@ namespace tissue_stiffness {
 
 // The tracked surface for rviz: rest mesh plus displacement [m], in the frame and at the stamp of `header`.
 
+/// TRIANGLE_LIST of the surface at `positions` (3 x nodes [m]), each node in the colour (red, green, blue, 0 to 1) that
+/// `colour` has for it, shaded by a light from above. A 10-node facet is shown as four triangles. `name`: its namespace.
+visualization_msgs::Marker painted_surface(const TetMesh& mesh, const Eigen::Matrix3Xd& positions,
+                                           const std::function<Eigen::Vector3f(int node)>& colour, const std::string& name,
+                                           const std_msgs::Header& header);
+
 /// TRIANGLE_LIST coloured by misfit: green at 0 sigma over yellow to red at 3 sigma and beyond, interpolated between
-/// measured nodes, grey far from any; shaded by a light from above. A 10-node facet is shown as four triangles.
+/// measured nodes, grey far from any.
 visualization_msgs::Marker surface_marker(const TetMesh& mesh, const Eigen::Matrix3Xd& displacement, const Misfit& misfit,
                                           const std_msgs::Header& header);
 
