@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "tissue_stiffness/fem/products.hpp"
+
 namespace tissue_stiffness {
 namespace {
 
@@ -110,11 +112,11 @@ Eigen::MatrixXd project_strain_stiffness(const Discretisation& fem, const Strain
   constexpr Eigen::Index block = 1024;  // rows that are gathered before they are multiplied
   const int points = fem.points_per_element();
   const Eigen::Index m = strains.cols();
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(m, m);
+  GramSum result(m);
   StrainRows rows(block + 6, m);
   Eigen::Index count = 0;
   const auto flush = [&] {
-    if (count > 0) result.selfadjointView<Eigen::Lower>().rankUpdate(rows.topRows(count).transpose());
+    result.add(rows, count);
     count = 0;
   };
   for (int e = 0; e < fem.element_count(); ++e) {
@@ -129,8 +131,7 @@ Eigen::MatrixXd project_strain_stiffness(const Discretisation& fem, const Strain
     }
   }
   flush();
-  result.triangularView<Eigen::StrictlyUpper>() = result.transpose();
-  return result;
+  return result.sum();
 }
 
 Eigen::VectorXd stress_force(const Discretisation& fem, const StressField& stress) {

@@ -58,7 +58,9 @@ class Builder {
         prior_(model),
         mass_(model.mass(prior_.theta)),
         stiffness_(model.reference_stiffness(prior_.theta)),
-        held_(stiffness_, mass_, model.fixed(prior_.theta)) {}
+        held_(stiffness_, mass_, model.fixed(prior_.theta)) {
+    mass_.prune(0.0);  // of each pair of nodes' 3 x 3 block, a third
+  }
 
   ReducedBasis build() {
     const Eigen::Index free_dofs = model_.fem().dof_count() / 2;
@@ -88,32 +90,28 @@ class Builder {
   }
 
   // Static responses to the loads, then to the inertia (and, with several moduli, the stiffnesses) of what was added last.
-  static void extend(OrthonormalBasis& basis, const StaticResponse& respond, const SparseMatrix& mass,
-                     const Eigen::MatrixXd& loads, const std::vector<SparseMatrix>& groups, Eigen::Index size) {
+  static void extend(OrthonormalBasis& basis, const StaticResponse& respond, const Eigen::MatrixXd& loads,
+                     const std::vector<SparseMatrix>& groups, Eigen::Index size) {
     Eigen::MatrixXd x = respond(loads);
     for (;;) {
       const Eigen::Index before = basis.size();
       basis.add(std::move(x), size);
       const Eigen::MatrixXd block = basis.vectors().rightCols(basis.size() - before);
       if (block.cols() == 0 || basis.size() >= size) return;
-      Eigen::MatrixXd next = mass * block;
+      Eigen::MatrixXd next = basis.weighted().rightCols(block.cols());
       for (const SparseMatrix& k : groups) {
         next.conservativeResize(Eigen::NoChange, next.cols() + block.cols());
-        next.rightCols(block.cols()) = k * block;
+        next.rightCols(block.cols()) = symmetric_product(k, block);
       }
       x = respond.roughly(std::move(next));
     }
-  }
-  void extend(OrthonormalBasis& basis, const StaticResponse& respond, const Eigen::MatrixXd& loads,
-              const std::vector<SparseMatrix>& groups, Eigen::Index size) const {
-    extend(basis, respond, mass_, loads, groups, size);
   }
 
   // The modes of the basis that the loads move most.
   Eigen::MatrixXd leading_motion(const OrthonormalBasis& basis, const Eigen::MatrixXd& loads) const {
     const Eigen::MatrixXd b = basis.vectors();
     if (b.cols() == 0) return b;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(b.transpose() * (stiffness_ * b));
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inner_products(b, symmetric_product(stiffness_, b)));
     const Eigen::VectorXd& square = eigen.eigenvalues();
     Eigen::MatrixXd share = eigen.eigenvectors().transpose() * (b.transpose() * loads);
     for (Eigen::Index k = 0; k < share.rows(); ++k) {
@@ -171,7 +169,7 @@ class Builder {
       at += block.cols();
     }
     x = held_.roughly(std::move(x));
-    const Eigen::RowVectorXd squares = (x.array() * (mass_ * x).array()).colwise().sum();
+    const Eigen::RowVectorXd squares = (x.array() * symmetric_product(mass_, x).array()).colwise().sum();
     at = 0;
     for (const Eigen::MatrixXd& block : blocks) {
       const double square = squares.segment(at, block.cols()).sum();
@@ -184,7 +182,7 @@ class Builder {
   void add_common(OrthonormalBasis& basis, const Eigen::MatrixXd& responses, const std::vector<SparseMatrix>& groups,
                   Eigen::Index size) const {
     const Eigen::MatrixXd rest = basis.beside(responses);
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(rest.transpose() * (mass_ * rest));
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inner_products(rest, symmetric_product(mass_, rest)));
     const Eigen::VectorXd& square = eigen.eigenvalues();
     const auto statics =
         basis.size() + static_cast<Eigen::Index>(kResponseShare * static_cast<double>(size - basis.size()));
@@ -194,10 +192,10 @@ class Builder {
     basis.add(rest * eigen.eigenvectors().rightCols(strong).rowwise().reverse(), statics);
     const Eigen::MatrixXd added = basis.vectors().rightCols(basis.size() - before);
     if (added.cols() == 0) return;
-    Eigen::MatrixXd loads = mass_ * added;
+    Eigen::MatrixXd loads = basis.weighted().rightCols(added.cols());
     for (const SparseMatrix& k : groups) {
       loads.conservativeResize(Eigen::NoChange, loads.cols() + added.cols());
-      loads.rightCols(added.cols()) = k * added;
+      loads.rightCols(added.cols()) = symmetric_product(k, added);
     }
     extend(basis, held_, loads, groups, size);
   }

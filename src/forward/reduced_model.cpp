@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "tissue_stiffness/fem/products.hpp"
 #include "tissue_stiffness/forward/reduced_trajectory.hpp"
 
 namespace tissue_stiffness {
@@ -44,7 +45,7 @@ Eigen::MatrixXd project_matrix(const SparseMatrix& k, const Eigen::MatrixXd& bas
   for (int j = 0; j < k.outerSize(); ++j) {
     if (SparseMatrix::InnerIterator(k, j)) rows.push_back(j);
   }
-  if (static_cast<Eigen::Index>(rows.size()) == k.rows()) return basis.transpose() * (k * basis);
+  if (static_cast<Eigen::Index>(rows.size()) == k.rows()) return inner_products(basis, symmetric_product(k, basis));
   const auto count = static_cast<Eigen::Index>(rows.size());
   Eigen::MatrixXd own(count, basis.cols()), product = Eigen::MatrixXd::Zero(count, basis.cols());
   std::vector<Eigen::Index> place(static_cast<std::size_t>(k.rows()), -1);

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <utility>
 
-#include "tissue_stiffness/fem/discretisation.hpp"
+#include "tissue_stiffness/fem/products.hpp"
 
 namespace tissue_stiffness {
 
-/// Gram-Schmidt, twice, in the inner product of M.
+/// Gram-Schmidt, twice, in the inner product of M (compressed).
 class OrthonormalBasis {
  public:
   OrthonormalBasis(const SparseMatrix& mass, Eigen::Index capacity)
@@ -17,6 +17,8 @@ class OrthonormalBasis {
 
   Eigen::Index size() const { return size_; }
   auto vectors() const { return vectors_.leftCols(size_); }
+  /// M times them.
+  auto weighted() const { return weighted_.leftCols(size_); }
 
   /// What is left of the columns of x beside the basis.
   Eigen::MatrixXd beside(Eigen::MatrixXd x) const {
@@ -30,7 +32,7 @@ class OrthonormalBasis {
   /// Adds the columns' new directions, at most until `size` vectors are there.
   void add(Eigen::MatrixXd x, Eigen::Index size) {
     const Eigen::Index before = size_;
-    const Eigen::RowVectorXd norms = (x.array() * (mass_ * x).array()).colwise().sum().sqrt();
+    const Eigen::RowVectorXd norms = (x.array() * symmetric_product(mass_, x).array()).colwise().sum().sqrt();
     for (Eigen::Index i = 0; i < x.cols(); ++i) {
       if (norms[i] > 0.0) x.col(i) /= norms[i];
     }
@@ -48,7 +50,7 @@ class OrthonormalBasis {
       const Eigen::VectorXd share = weighted_.middleCols(before, size_ - before).transpose() * x;
       x.noalias() -= vectors_.middleCols(before, size_ - before) * share;
     }
-    const Eigen::VectorXd weighted = mass_ * x;
+    const Eigen::VectorXd weighted = symmetric_product(mass_, x);
     const double norm = std::sqrt(x.dot(weighted));
     if (!(norm > dependent)) return;
     vectors_.col(size_) = x / norm;

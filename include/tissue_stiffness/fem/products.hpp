@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "tissue_stiffness/fem/discretisation.hpp"
+
+namespace tissue_stiffness {
+
+/// S X of a symmetric S (n x n, both triangles stored) and X (n x m). Rows of the result are independent of each other: in
+/// parallel, and the same whatever the number of cores.
+Eigen::MatrixXd symmetric_product(const SparseMatrix& s, const Eigen::MatrixXd& x);
+
+/// A^T B of tall A (n x p) and B (n x q), in the widest instructions of the machine; sums of fixed blocks of rows, so that
+/// the result does not depend on the number of cores.
+Eigen::MatrixXd inner_products(const Eigen::Ref<const Eigen::MatrixXd>& a, const Eigen::Ref<const Eigen::MatrixXd>& b);
+
+/// Sum of A^T A over blocks of rows as they come. Not thread safe.
+class GramSum {
+ public:
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+  explicit GramSum(Eigen::Index columns) : sum_(Eigen::MatrixXd::Zero(columns, columns)) {}
+  /// The first `count` rows of a.
+  void add(const Rows& a, Eigen::Index count);
+  const Eigen::MatrixXd& sum() const { return sum_; }
+
+ private:
+  Eigen::MatrixXd sum_;
+};
+
+}  // namespace tissue_stiffness
