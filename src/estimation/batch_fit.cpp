@@ -11,6 +11,7 @@ constexpr double kLongestStep = 1.0;  // prior standard deviations at once
 constexpr double kSmallStep = 0.02;   // posterior standard deviations: converged
 constexpr double kFloor = 1e-4;       // of the prior's standard deviation: smallest span of the sigma points
 constexpr double kGain = 1e-5;        // relative fall of the cost below which it is over
+constexpr double kNarrower = 0.7;     // of the sigma points' span: with more than that a step comes out as it did
 
 void run(const FitProblem& problem, AnchoredFilter& filter, const Eigen::VectorXd& anchor, const Eigen::VectorXd& spread) {
   filter.move_anchor(anchor, spread);
@@ -43,8 +44,9 @@ AnchoredFilter fit_filter(const FitProblem& problem, AnchoredFilter filter, cons
       better = filter.cost() < before.cost();
     }
     if (!better) {
+      filter = before;
+      if ((next.array() > kNarrower * before.spread().array()).all()) break;
       run(problem, filter, before.anchor(), next);
-      if (next.isApprox(before.spread())) break;
       continue;
     }
     if (before.cost() - filter.cost() < kGain * before.cost()) break;
