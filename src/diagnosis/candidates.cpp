@@ -149,7 +149,7 @@ std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd&
     BasisOptions options;
     options.per_part = per_part;
     options.nonlinear = nonlinear;
-    const Study study(settings, base.model().mesh(), base.recording(), options);
+    const Study study(settings, base, options);
     read_tangents(study, base, w, candidates);
   };
   tbb::parallel_invoke(

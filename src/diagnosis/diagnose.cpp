@@ -27,12 +27,12 @@ Fitted fit_model(const ModelSettings& settings, const TetMesh& mesh, const Recor
 }
 
 // The refit's model; run in full where that was not worth it before.
-Fitted extended(const Fitted& base, const Refit& refit, const TetMesh& mesh, const Recording& recording) {
+Fitted extended(const Fitted& base, const Refit& refit) {
   if (refit.model) return std::move(*refit.model);
   Fitted out;
   ModelSettings settings = base.study->model().settings();
   for (const std::string& entry : refit.entries) add_effect(settings, entry);
-  out.study = std::make_unique<Study>(settings, mesh, recording);
+  out.study = std::make_unique<Study>(settings, *base.study);
   Eigen::VectorXd start = out.study->model().prior_mean();
   for (const auto& [name, value] : refit.parameters) {
     const Eigen::Index i = out.study->index(name);
@@ -121,7 +121,7 @@ Diagnosis diagnose(const ModelSettings& settings, const TetMesh& mesh, const Rec
     if (refits.empty() || (k >= asked && !proven(model, refits.front()))) break;
     const Refit& best = refits.front();
     for (const std::string& effect : best.effects) options.progress("add " + effect);
-    Fitted next = extended(model, best, mesh, recording);
+    Fitted next = extended(model, best);
     out.final_effects.insert(out.final_effects.end(), best.effects.begin(), best.effects.end());
     out.entries.insert(out.entries.end(), best.entries.begin(), best.entries.end());
     model = std::move(next);

@@ -164,7 +164,7 @@ Refit refit(const Fitted& base, const std::vector<Addition>& additions) {
   auto model = std::make_shared<Fitted>();
   ModelSettings settings = known.model().settings();
   for (const Addition& addition : additions) add_effect(settings, addition.way->proposal.refine);
-  model->study = std::make_unique<Study>(settings, known.model().mesh(), known.recording());
+  model->study = std::make_unique<Study>(settings, known);
   const Study& study = *model->study;
   model->study->borrow(known);
   std::string reason;

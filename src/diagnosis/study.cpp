@@ -40,6 +40,14 @@ Study::Study(const ModelSettings& settings, const TetMesh& mesh, const Recording
 
 Study::Study(const ModelSettings& settings, const TetMesh& mesh, std::map<std::string, Region> regions,
              const Recording& recording, const BasisOptions& basis)
+    : Study(settings, mesh, std::move(regions), recording, basis, nullptr) {}
+
+Study::Study(const ModelSettings& settings, const Study& relative, const BasisOptions& basis)
+    : Study(settings, relative.model_.mesh(), relative.model_.regions(), relative.recording_, basis,
+            relative.forward_.get()) {}
+
+Study::Study(const ModelSettings& settings, const TetMesh& mesh, std::map<std::string, Region> regions,
+             const Recording& recording, const BasisOptions& basis, const ForwardModel* relative)
     : recording_(recording),
       training_(recording.training()),
       model_(settings, mesh, std::move(regions)),
@@ -51,7 +59,7 @@ Study::Study(const ModelSettings& settings, const TetMesh& mesh, std::map<std::s
   }
   BasisOptions whole = basis;
   whole.steps_per_frame = kSteps;
-  forward_ = make_forward_model(model_, whole);
+  forward_ = make_forward_model(model_, whole, relative);
   const std::vector<int> nodes = observed_nodes(operators_, recording.frames);
   forward_->focus(nodes);
   if (!model_.nonlinear() || basis.nonlinear != BasisOptions::Nonlinear::in_full) return;
@@ -61,8 +69,14 @@ Study::Study(const ModelSettings& settings, const TetMesh& mesh, std::map<std::s
     return adds_extra_force(part) && model_.estimated(part);
   });
   quick.nonlinear = steered ? BasisOptions::Nonlinear::first_order : BasisOptions::Nonlinear::left_out;
-  quick_ = make_forward_model(model_, quick);
+  quick_ = make_forward_model(model_, quick, relative);
   quick_->focus(nodes);
+}
+
+BasisOptions Study::keeping_root() {
+  BasisOptions basis;
+  basis.keep_root = true;
+  return basis;
 }
 
 void Study::borrow(const Study& base) {

@@ -3,6 +3,7 @@
 
 #include <cholmod.h>
 
+#include <mutex>
 #include <thread>
 
 #include "tissue_stiffness/fem/single_factor.hpp"
@@ -29,6 +30,7 @@ struct SparseSolver::Data {
   cholmod_factor* factor = nullptr;
   bool numeric = false;
   mutable std::unique_ptr<const SingleFactor> single;  ///< made when it is first asked for
+  mutable std::mutex busy;                             ///< CHOLMOD's workspace is one for all solves
 
   Data() {
     set_threads(1);
@@ -170,6 +172,7 @@ Eigen::MatrixXd SparseSolver::solve(const Eigen::MatrixXd& b) const {
   rhs.x = const_cast<double*>(b.data());
   rhs.xtype = CHOLMOD_REAL;
   rhs.dtype = CHOLMOD_DOUBLE;
+  const std::lock_guard<std::mutex> lock(data_->busy);
   cholmod_dense* x = cholmod_solve(CHOLMOD_A, data_->factor, &rhs, &data_->common);
   if (x == nullptr) throw NumericalError("sparse solve failed");
   Eigen::MatrixXd result = Eigen::Map<Eigen::MatrixXd>(static_cast<double*>(x->x), b.rows(), b.cols());
@@ -179,7 +182,10 @@ Eigen::MatrixXd SparseSolver::solve(const Eigen::MatrixXd& b) const {
 
 Eigen::MatrixXd SparseSolver::solve_roughly(const Eigen::MatrixXd& b) const {
   if (!data_->numeric || data_->factor->is_super == 0) return solve(b);
-  if (data_->single == nullptr) data_->single = std::make_unique<const SingleFactor>(layout(*data_->factor));
+  {
+    const std::lock_guard<std::mutex> lock(data_->busy);
+    if (data_->single == nullptr) data_->single = std::make_unique<const SingleFactor>(layout(*data_->factor));
+  }
   return data_->single->solve(b);
 }
 

@@ -79,8 +79,8 @@ BasisOptions at_first_order(BasisOptions options) {
 
 }  // namespace
 
-FirstOrderModel::FirstOrderModel(const Model& model, const BasisOptions& options)
-    : reduced_(model, at_first_order(options)) {}
+FirstOrderModel::FirstOrderModel(const Model& model, const BasisOptions& options, const ReducedModel* relative)
+    : reduced_(model, at_first_order(options), relative) {}
 
 std::unique_ptr<Trajectory> FirstOrderModel::start(const Eigen::VectorXd& theta, double start) const {
   return std::make_unique<FirstOrderTrajectory>(reduced_, theta, start);

@@ -8,10 +8,14 @@ std::unique_ptr<ForwardModel> make_forward_model(const Model& model) {
   return make_forward_model(model, BasisOptions());
 }
 
-std::unique_ptr<ForwardModel> make_forward_model(const Model& model, const BasisOptions& basis) {
+std::unique_ptr<ForwardModel> make_forward_model(const Model& model, const BasisOptions& basis,
+                                                 const ForwardModel* relative) {
+  const auto* reduced = dynamic_cast<const ReducedModel*>(relative);
   const bool left_out = basis.nonlinear == BasisOptions::Nonlinear::left_out;
-  if (!model.nonlinear() || left_out) return std::make_unique<ReducedModel>(model, basis);
-  if (basis.nonlinear == BasisOptions::Nonlinear::first_order) return std::make_unique<FirstOrderModel>(model, basis);
+  if (!model.nonlinear() || left_out) return std::make_unique<ReducedModel>(model, basis, reduced);
+  if (basis.nonlinear == BasisOptions::Nonlinear::first_order) {
+    return std::make_unique<FirstOrderModel>(model, basis, reduced);
+  }
   FullModel::Options options;
   options.steps_per_frame = basis.steps_per_frame;
   options.step = model.settings().time.step;

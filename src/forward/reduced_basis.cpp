@@ -50,39 +50,88 @@ class StaticResponse {
   SparseSolver solver_;
 };
 
+bool same(const SparseMatrix& a, const SparseMatrix& b) {
+  const auto count = static_cast<std::size_t>(a.nonZeros());
+  return a.rows() == b.rows() && a.nonZeros() == b.nonZeros() &&
+         std::equal(a.outerIndexPtr(), a.outerIndexPtr() + a.outerSize() + 1, b.outerIndexPtr()) &&
+         std::equal(a.innerIndexPtr(), a.innerIndexPtr() + count, b.innerIndexPtr()) &&
+         std::equal(a.valuePtr(), a.valuePtr() + count, b.valuePtr());
+}
+
+bool same(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return a.rows() == b.rows() && a.cols() == b.cols() && a == b;
+}
+
+}  // namespace
+
+class BasisRoot {
+ public:
+  // The body.
+  SparseMatrix stiffness, mass;
+  std::vector<char> fixed;
+  std::shared_ptr<const StaticResponse> held;
+  // What moves it.
+  Eigen::MatrixXd loads;
+  std::vector<SparseMatrix> groups;
+  Eigen::Index size = 0;
+  Eigen::MatrixXd vectors, weighted;  ///< the second: M times the first
+
+  bool same_body(const BasisRoot& other) const {
+    return fixed == other.fixed && same(stiffness, other.stiffness) && same(mass, other.mass);
+  }
+  bool same_motion(const BasisRoot& other) const {
+    return size == other.size && same(loads, other.loads) &&
+           std::equal(groups.begin(), groups.end(), other.groups.begin(), other.groups.end(),
+                      [](const SparseMatrix& a, const SparseMatrix& b) { return same(a, b); });
+  }
+};
+
+namespace {
+
 class Builder {
  public:
-  Builder(const Model& model, const BasisOptions& options)
-      : model_(model),
-        options_(options),
-        prior_(model),
-        mass_(model.mass(prior_.theta)),
-        stiffness_(model.reference_stiffness(prior_.theta)),
-        held_(stiffness_, mass_, model.fixed(prior_.theta)) {
-    mass_.prune(0.0);  // of each pair of nodes' 3 x 3 block, a third
-  }
+  Builder(const Model& model, const BasisOptions& options, const std::shared_ptr<const BasisRoot>& known)
+      : model_(model), options_(options), prior_(model), root_(make_root(known)) {}
 
   ReducedBasis build() {
     const Eigen::Index free_dofs = model_.fem().dof_count() / 2;
     const Eigen::Index room = std::min<Eigen::Index>(std::max(options_.size, options_.largest), free_dofs);
     OrthonormalBasis basis(mass_, room);
-    const Eigen::MatrixXd acting = acting_loads(model_, prior_, mass_);
-    const auto first = std::min<Eigen::Index>(options_.size, room);
-    if (acting.cols() > 0) extend(basis, held_, acting, stiffness_groups(model_, prior_), first);
+    basis.begin(root_->vectors, root_->weighted);
     const Eigen::Index awake = basis.size();
-    add_sleeping(basis, acting);
+    add_sleeping(basis, root_->loads);
     if (basis.size() == 0) {
       throw InputError(model_.settings().name + ": effects", "nothing that moves the body",
                        "gravity, pressure, traction or an initial velocity");
     }
-    ReducedBasis result{basis.vectors(), std::vector<int>(static_cast<std::size_t>(basis.size()), -1), {}};
+    ReducedBasis result{basis.vectors(), std::vector<int>(static_cast<std::size_t>(basis.size()), -1), {}, root_};
     mark(result, awake);
     mark(result, basis.size() - awake);
-    add_supports(basis, acting, result);
+    add_supports(basis, root_->loads, result);
     return result;
   }
 
  private:
+  std::shared_ptr<const BasisRoot> make_root(const std::shared_ptr<const BasisRoot>& known) const {
+    auto root = std::make_shared<BasisRoot>();
+    root->stiffness = model_.reference_stiffness(prior_.theta);
+    root->mass = model_.mass(prior_.theta);
+    root->mass.prune(0.0);  // of each pair of nodes' 3 x 3 block, a third
+    root->fixed = model_.fixed(prior_.theta);
+    root->loads = acting_loads(model_, prior_, root->mass);
+    root->groups = stiffness_groups(model_, prior_);
+    const Eigen::Index most = std::max(options_.size, options_.largest), free_dofs = model_.fem().dof_count() / 2;
+    root->size = std::min<Eigen::Index>(options_.size, std::min(most, free_dofs));
+    const bool same_body = known && known->same_body(*root);
+    if (same_body && known->same_motion(*root)) return known;
+    root->held = same_body ? known->held : std::make_shared<StaticResponse>(root->stiffness, root->mass, root->fixed);
+    OrthonormalBasis basis(root->mass, root->size);
+    if (root->loads.cols() > 0) extend(basis, *root->held, root->loads, root->groups, root->size);
+    root->vectors = basis.vectors();
+    root->weighted = basis.weighted();
+    return root;
+  }
+
   static void mark(ReducedBasis& basis, Eigen::Index count) {
     const auto early = static_cast<std::size_t>((count + 1) / 2);
     basis.late.insert(basis.late.end(), early, 0);
@@ -168,7 +217,7 @@ class Builder {
       x.middleCols(at, block.cols()) = block;
       at += block.cols();
     }
-    x = held_.roughly(std::move(x));
+    x = root_->held->roughly(std::move(x));
     const Eigen::RowVectorXd squares = (x.array() * symmetric_product(mass_, x).array()).colwise().sum();
     at = 0;
     for (const Eigen::MatrixXd& block : blocks) {
@@ -197,7 +246,7 @@ class Builder {
       loads.conservativeResize(Eigen::NoChange, loads.cols() + added.cols());
       loads.rightCols(added.cols()) = symmetric_product(k, added);
     }
-    extend(basis, held_, loads, groups, size);
+    extend(basis, *root_->held, loads, groups, size);
   }
 
   static SparseMatrix springs(const Model::Part& part, const Eigen::VectorXd& p) {
@@ -231,14 +280,15 @@ class Builder {
   const Model& model_;
   BasisOptions options_;
   PriorView prior_;
-  SparseMatrix mass_, stiffness_;
-  StaticResponse held_;
+  std::shared_ptr<const BasisRoot> root_;
+  const SparseMatrix &mass_ = root_->mass, &stiffness_ = root_->stiffness;
 };
 
 }  // namespace
 
-ReducedBasis build_reduced_basis(const Model& model, const BasisOptions& options) {
-  return Builder(model, options).build();
+ReducedBasis build_reduced_basis(const Model& model, const BasisOptions& options,
+                                 const std::shared_ptr<const BasisRoot>& known) {
+  return Builder(model, options, known).build();
 }
 
 }  // namespace tissue_stiffness

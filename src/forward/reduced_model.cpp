@@ -63,11 +63,13 @@ Eigen::MatrixXd project_matrix(const SparseMatrix& k, const Eigen::MatrixXd& bas
 
 }  // namespace
 
-ReducedModel::ReducedModel(const Model& model, const BasisOptions& options) : model_(model), options_(options) {
+ReducedModel::ReducedModel(const Model& model, const BasisOptions& options, const ReducedModel* relative)
+    : model_(model), options_(options) {
   if (model.nonlinear() && options.nonlinear == BasisOptions::Nonlinear::in_full) {
     throw InputError("model", "a nonlinear effect", "linear effects only, in a reduced basis");
   }
-  basis_ = build_reduced_basis(model, options);
+  basis_ = build_reduced_basis(model, options, relative != nullptr ? relative->basis_.root : nullptr);
+  if (!options.keep_root) basis_.root = nullptr;
   project();
 }
 

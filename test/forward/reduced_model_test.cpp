@@ -56,6 +56,29 @@ TEST(ReducedModel, FollowsTheFullOneUnderLoads) {
   EXPECT_LT(away, 1e-3);
 }
 
+// An effect that is absent at the prior leaves the root alone; another prior or another load does not.
+TEST(ReducedModel, TakesOverARelativesRootOnlyWhereItIsItsOwn) {
+  const TetMesh mesh = bar_mesh(5);
+  const std::string modulus = elastic("{prior: 3.0e4, factor: 2}");
+  const std::vector<std::vector<std::string>> lists = {
+      {kInertia, modulus, kFixed, kGravity, "foundation: {region: top, stiffness: {mean: 0, std: 1.0e4}}"},
+      {kInertia, elastic("{prior: 4.0e4, factor: 2}"), kFixed, kGravity},
+      {kInertia, modulus, kFixed, "gravity: {acceleration: [3, 0, -1]}"}};
+  const Model base(box_settings({kInertia, modulus, kFixed, kGravity}), mesh);
+  BasisOptions options;
+  options.keep_root = true;
+  const ReducedModel relative(base, options);
+  for (const std::vector<std::string>& effects : lists) {
+    const Model model(box_settings(effects), mesh);
+    const ReducedModel alone(model, options), beside(model, options, &relative);
+    EXPECT_EQ(alone.basis(), beside.basis()) << effects[1] << effects.back();
+  }
+  const Model more(box_settings(lists.front()), mesh), other(box_settings(lists.back()), mesh);
+  const auto root = build_reduced_basis(base, options).root;
+  EXPECT_EQ(build_reduced_basis(more, options, root).root, root);
+  EXPECT_NE(build_reduced_basis(other, options, root).root, root);
+}
+
 TEST(ReducedModel, FollowsTheFullOneWithSeveralModuli) {
   const TetMesh mesh = bar_mesh(4);
   const Model model(box_settings({kInertia, elastic("{prior: 3.0e4, factor: 2}", "near"),

@@ -17,12 +17,18 @@ namespace tissue_stiffness {
 class Study {
  public:
   /// Throws as Model does.
-  Study(const ModelSettings& settings, const TetMesh& mesh, const Recording& recording, const BasisOptions& basis = {});
+  Study(const ModelSettings& settings, const TetMesh& mesh, const Recording& recording,
+        const BasisOptions& basis = keeping_root());
   /// With the regions' parts of the mesh as given.
   Study(const ModelSettings& settings, const TetMesh& mesh, std::map<std::string, Region> regions,
         const Recording& recording, const BasisOptions& basis = {});
+  /// The same body and recording under other effects: what they do not change is not found out anew.
+  Study(const ModelSettings& settings, const Study& relative, const BasisOptions& basis = keeping_root());
   Study(const Study&) = delete;
   Study& operator=(const Study&) = delete;
+
+  /// For a study that has relatives to come.
+  static BasisOptions keeping_root();
 
   const Model& model() const { return model_; }
   const Recording& recording() const { return recording_; }
@@ -68,6 +74,8 @@ class Study {
   Eigen::Index index(const std::string& parameter) const;
 
  private:
+  Study(const ModelSettings& settings, const TetMesh& mesh, std::map<std::string, Region> regions,
+        const Recording& recording, const BasisOptions& basis, const ForwardModel* relative);
   FitProblem problem(const ForwardModel& forward, const std::vector<Frame>& frames) const;
   std::vector<Frame> first_of_training(double share) const;
   BatchFit fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd spread) const;

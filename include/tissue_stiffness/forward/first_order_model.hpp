@@ -16,7 +16,8 @@ namespace tissue_stiffness {
 class FirstOrderModel : public ForwardModel {
  public:
   /// Throws InputError for a model that nothing moves.
-  explicit FirstOrderModel(const Model& model, const BasisOptions& options = {});
+  /// `relative` as ReducedModel has it.
+  explicit FirstOrderModel(const Model& model, const BasisOptions& options = {}, const ReducedModel* relative = nullptr);
 
   std::unique_ptr<Trajectory> start(const Eigen::VectorXd& theta, double start) const override;
   void focus(const std::vector<int>& nodes) override { reduced_.focus(nodes); }

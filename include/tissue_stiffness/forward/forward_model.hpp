@@ -96,6 +96,8 @@ class ForwardModel {
 struct BasisOptions;
 /// Reduced for a linear model, full otherwise.
 std::unique_ptr<ForwardModel> make_forward_model(const Model& model);
-std::unique_ptr<ForwardModel> make_forward_model(const Model& model, const BasisOptions& options);
+/// `relative`: a model of the same body, whose work is taken over where both are reduced and it would be the same.
+std::unique_ptr<ForwardModel> make_forward_model(const Model& model, const BasisOptions& options,
+                                                 const ForwardModel* relative = nullptr);
 
 }  // namespace tissue_stiffness

@@ -20,6 +20,13 @@ class OrthonormalBasis {
   /// M times them.
   auto weighted() const { return weighted_.leftCols(size_); }
 
+  /// Begins with vectors that are orthonormal already, and M times them.
+  void begin(const Eigen::MatrixXd& vectors, const Eigen::MatrixXd& weighted) {
+    size_ = vectors.cols();
+    vectors_.leftCols(size_) = vectors;
+    weighted_.leftCols(size_) = weighted;
+  }
+
   /// What is left of the columns of x beside the basis.
   Eigen::MatrixXd beside(Eigen::MatrixXd x) const {
     for (int pass = 0; pass < 2; ++pass) {

@@ -25,7 +25,8 @@ struct ReducedModes {
 class ReducedModel : public ForwardModel {
  public:
   /// Throws InputError for a model that nothing moves, and for a nonlinear one that is to be simulated in full.
-  explicit ReducedModel(const Model& model, const BasisOptions& options = {});
+  /// `relative`: a model of the same body, whose basis' root is taken over where it is this one's too.
+  explicit ReducedModel(const Model& model, const BasisOptions& options = {}, const ReducedModel* relative = nullptr);
 
   std::unique_ptr<Trajectory> start(const Eigen::VectorXd& theta, double start) const override;
   /// Their displacements are recovered together.
