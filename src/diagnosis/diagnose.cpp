@@ -98,12 +98,12 @@ Diagnosis diagnose(const ModelSettings& settings, const TetMesh& mesh, const Rec
   }
   for (const std::string& name : options.ignore) effect_spec({name, name, {}});  // throws what is none
   Diagnosis out;
-  options.progress("fit of the given model");
+  options.progress("fit of the given model", 0, 0);
   Fitted model = fit_model(settings, mesh, recording);
   out.steps.push_back(step_of(model, recording, {}));
   Finding finding = look(model, {}, options);
   if (finding.verdict == "missing" || finding.verdict == "unexplained") {
-    options.progress("the force that is missing");
+    options.progress("the force that is missing", 0, 0);
     out.force = missing_force(*model.study, believed(model, finding));
   }
   describe_residual(model, finding.floor, out);
@@ -120,7 +120,7 @@ Diagnosis diagnose(const ModelSettings& settings, const TetMesh& mesh, const Rec
         k < asked ? look(model, {options.add[k]}, options, finding.by_mesh).refits : finding.refits;
     if (refits.empty() || (k >= asked && !proven(model, refits.front()))) break;
     const Refit& best = refits.front();
-    for (const std::string& effect : best.effects) options.progress("add " + effect);
+    for (const std::string& effect : best.effects) options.progress("add " + effect, 0, 0);
     Fitted next = extended(model, best);
     out.final_effects.insert(out.final_effects.end(), best.effects.begin(), best.effects.end());
     out.entries.insert(out.entries.end(), best.entries.begin(), best.entries.end());

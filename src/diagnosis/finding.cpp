@@ -48,7 +48,7 @@ class Look {
         rows_(base.rows.count()),
         cost_(base.rows.error.squaredNorm()),
         mesh_change_(std::move(by_mesh)) {
-    options.progress("tangents of the library, and what a finer mesh would change");
+    options.progress("tangents of the library, and what a finer mesh would change", 0, 0);
     const Eigen::VectorXd std = base.fit.covariance.diagonal().cwiseSqrt();
     Eigen::MatrixXd known;
     tbb::parallel_invoke(
@@ -156,16 +156,19 @@ std::string names_of(const std::vector<Addition>& additions) {
 void Look::try_each(std::size_t count, const std::function<std::string(std::size_t)>& name,
                     const std::function<void(std::size_t)>& work) const {
   std::mutex telling;
+  std::size_t over = 0;
   const auto try_one = [&](std::size_t i) {
     {
       const std::lock_guard<std::mutex> lock(telling);
-      options_.progress(name(i));
+      options_.progress(name(i), over, count);
     }
     try {
       work(i);
     } catch (const NumericalError&) {
       base_.study->recording().checkpoint();  // a study that was ended; else a model that cannot be run explains nothing
     }
+    const std::lock_guard<std::mutex> lock(telling);
+    ++over;
   };
   tbb::parallel_for(std::size_t{0}, count, try_one, tbb::simple_partitioner());
 }

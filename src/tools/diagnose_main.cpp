@@ -93,7 +93,9 @@ int main(int argc, char** argv) {
     const ModelSettings settings = load_model(texts.model);
     RecordingReader reader(texts.recording, settings);
     StepProgress progress(std::cerr, Progress::style_of_stderr(quiet || json), "diagnose");
-    const auto say = [&](const std::string& what) { progress.show(what); };
+    const auto say = [&](const std::string& what, std::size_t done = 0, std::size_t total = 0) {
+      progress.show(what, done, total);
+    };
     say("read the recording");
     const Recording recording = read_recording(reader, settings, texts.recording);
     options.progress = say;

@@ -56,13 +56,20 @@ void Progress::finish() {
 StepProgress::StepProgress(std::ostream& out, Progress::Style style, std::string what)
     : out_(out), style_(style), what_(std::move(what)), start_(std::chrono::steady_clock::now()) {}
 
-void StepProgress::show(const std::string& step) {
+void StepProgress::show(const std::string& step, std::size_t done, std::size_t total) {
   if (style_ == Progress::Style::quiet) return;
   const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  char head[64];
-  std::snprintf(head, sizeof head, "%s [step %d, %.1f s] ", what_.c_str(), ++steps_, elapsed);
+  if (done == 0) counted_since_ = elapsed;
+  char head[64], count[64] = "";
+  std::snprintf(head, sizeof head, "%s [step %d, %.1f s", what_.c_str(), ++steps_, elapsed);
+  if (done > 0) {
+    const double left = (elapsed - counted_since_) / static_cast<double>(done) * static_cast<double>(total - done);
+    std::snprintf(count, sizeof count, "; %zu of %zu done, %.0f s left", done, total, left);
+  } else if (total > 0) {
+    std::snprintf(count, sizeof count, "; 0 of %zu done", total);
+  }
   const bool bar = style_ == Progress::Style::bar;
-  out_ << (bar ? "\r" : "") << head << step << (bar ? "\033[K" : "\n") << std::flush;
+  out_ << (bar ? "\r" : "") << head << count << "] " << step << (bar ? "\033[K" : "\n") << std::flush;
 }
 
 void StepProgress::finish() {

@@ -103,6 +103,37 @@ TEST(Diagnose, NamesTwoEffectsThatAreMissingTogether) {
   EXPECT_NEAR(d.steps.back().parameters.at("elasticity.young_modulus") / kTruth, 1.0, 0.03);
 }
 
+struct Told {
+  std::string what;
+  std::size_t done, total;
+};
+
+// What the diagnosis of a bar refits, as it tells it.
+std::vector<Told> refits_told(const Recording& recording, Diagnosis& d) {
+  std::vector<Told> told;
+  DiagnosisOptions options;
+  options.automatic = true;
+  options.progress = [&](const std::string& what, std::size_t done, std::size_t total) {
+    if (what.rfind("refit with ", 0) == 0) told.push_back({what, done, total});
+  };
+  d = diagnose_bar(recording, options);
+  return told;
+}
+
+TEST(Diagnose, CountsTheRefitsOfEachRound) {
+  Diagnosis d;
+  const auto told = refits_told(film({"viscous_damping: {beta: 6.0e-3}"}, 1), d);
+  ASSERT_FALSE(told.empty());
+  EXPECT_EQ(told.front().done, 0U);
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    EXPECT_LT(told[i].done, told[i].total);
+    if (i > 0 && told[i].done > 0) {
+      EXPECT_GE(told[i].done, told[i - 1].done);
+      EXPECT_EQ(told[i].total, told[i - 1].total);
+    }
+  }
+}
+
 // Filmed on a mesh three times as fine, seen at the coarse one's vertices.
 Recording film_finer(const ModelSettings& settings, const TetMesh& coarse) {
   const TetMesh fine = bar_mesh(24, 6, 6);

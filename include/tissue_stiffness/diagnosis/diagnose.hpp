@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <vector>
@@ -14,7 +15,9 @@ struct DiagnosisOptions {
   std::vector<std::string> ignore;  ///< effects that are not looked for
   bool automatic = false;           ///< keep adding the best while the held-out error proves it
   int most_steps = 3;               ///< of automatic adding
-  std::function<void(const std::string&)> progress = [](const std::string&) {};  ///< what is being done
+  /// What begins; where such steps are counted, how many of them are over and how many there are.
+  std::function<void(const std::string&, std::size_t done, std::size_t total)> progress = [](const std::string&,
+                                                                                             std::size_t, std::size_t) {};
 };
 
 /// Compares the fitted model's free run with the recording, ranks what the library offers as missing, proves the best by

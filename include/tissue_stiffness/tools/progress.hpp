@@ -32,13 +32,14 @@ class Progress {
   bool drawn_ = false;
 };
 
-/// Progress of work whose steps have names and no known number: which one, and for how long by now. One line that changes
-/// on a terminal, a line a step elsewhere.
+/// Progress of work whose steps have names: which one, and for how long by now. Where steps are counted, how many of them
+/// are done and how long the others will take at that pace. One line that changes on a terminal, a line a step elsewhere.
 class StepProgress {
  public:
   StepProgress(std::ostream& out, Progress::Style style, std::string what);
 
-  void show(const std::string& step);
+  /// A step begins; `done` of `total` alike are over (0 of 0: nobody counts). A `done` of 0 begins a new count.
+  void show(const std::string& step, std::size_t done = 0, std::size_t total = 0);
   /// Ends the line.
   void finish();
 
@@ -47,6 +48,7 @@ class StepProgress {
   Progress::Style style_;
   std::string what_;
   std::chrono::steady_clock::time_point start_;
+  double counted_since_ = 0.0;  ///< when the count began [s]
   int steps_ = 0;
 };
 
