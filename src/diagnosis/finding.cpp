@@ -75,7 +75,7 @@ class Look {
     if (by_effect && leaves_more_than_noise()) refit_other_kinds();
     if (by_effect && leaves_more_than_noise()) refit_rest();
     if (by_effect && leaves_more_than_noise() && !explained()) refit_from_beginning();
-    if (by_effect && leaves_more_than_noise()) refit_pairs();
+    if (by_effect && leaves_more_than_noise() && !explained()) refit_pairs();
     Finding out;
     out.verdict = judge();
     out.floor = floor_;

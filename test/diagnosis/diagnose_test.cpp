@@ -120,6 +120,16 @@ std::vector<Told> refits_told(const Recording& recording, Diagnosis& d) {
   return told;
 }
 
+// Damping explains most of the error; what the small mass adds to it shows once damping is in the model.
+TEST(Diagnose, TriesNoPairsWhereASingleEffectExplains) {
+  Diagnosis d;
+  const auto told = refits_told(film({"viscous_damping: {beta: 6.0e-3}", "added_mass: {region: tip, mass: 0.001}"}, 6), d);
+  for (const Told& refit : told) EXPECT_EQ(refit.what.find(" and "), std::string::npos) << refit.what;
+  ASSERT_EQ(d.steps.size(), 3U);
+  EXPECT_GT(d.steps[1].held_out_rms, 1.02 * d.steps[1].noise_floor);
+  EXPECT_EQ(d.final_verdict, "adequate");
+}
+
 TEST(Diagnose, CountsTheRefitsOfEachRound) {
   Diagnosis d;
   const auto told = refits_told(film({"viscous_damping: {beta: 6.0e-3}"}, 1), d);
