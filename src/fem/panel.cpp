@@ -1,4 +1,5 @@
-// The inner loops of SingleFactor, compiled for several instruction sets; the machine picks one at load time.
+// The inner loops of SingleFactor and of products of tall matrices, compiled for several instruction sets; the machine
+// picks one at load time.
 #include "tissue_stiffness/fem/panel.hpp"
 
 #include <cstring>
@@ -13,6 +14,7 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr int kLanes = 16;
+typedef double Doubles __attribute__((vector_size(kRowWidth * sizeof(double)), aligned(sizeof(double)), may_alias));
 typedef float Lanes __attribute__((vector_size(kLanes * sizeof(float)), aligned(sizeof(float)), may_alias));
 
 template <int K>
@@ -86,6 +88,37 @@ FOR_EVERY_MACHINE void panel_dot(int rows, const float* panel, long stride, cons
       return dot<3>(rows, panel, stride, t, t_stride, sums);
     default:
       return dot<4>(rows, panel, stride, t, t_stride, sums);
+  }
+}
+
+FOR_EVERY_MACHINE void tile_product(long rows, const double* a, const double* b, double* c) {
+  Doubles sum[kTileHeight];
+  std::memset(sum, 0, sizeof sum);
+  for (long r = 0; r < rows; ++r) {
+    const Doubles right = *reinterpret_cast<const Doubles*>(b + kRowWidth * r);
+    for (int i = 0; i < kTileHeight; ++i) sum[i] += a[kTileHeight * r + i] * right;
+  }
+  std::memcpy(c, sum, sizeof sum);
+}
+
+FOR_EVERY_MACHINE void sum_rows(int count, const double* values, const int* rows, const double* x, long columns,
+                                double* y) {
+  constexpr int wide = 4;
+  long at = 0;
+  for (; at + wide * kRowWidth <= columns; at += wide * kRowWidth) {
+    Doubles sum[wide];
+    std::memset(sum, 0, sizeof sum);
+    for (int k = 0; k < count; ++k) {
+      const double* row = x + columns * rows[k] + at;
+      for (int i = 0; i < wide; ++i) sum[i] += values[k] * *reinterpret_cast<const Doubles*>(row + kRowWidth * i);
+    }
+    std::memcpy(y + at, sum, sizeof sum);
+  }
+  for (; at < columns; at += kRowWidth) {
+    Doubles sum;
+    std::memset(&sum, 0, sizeof sum);
+    for (int k = 0; k < count; ++k) sum += values[k] * *reinterpret_cast<const Doubles*>(x + columns * rows[k] + at);
+    std::memcpy(y + at, &sum, sizeof sum);
   }
 }
 

@@ -15,4 +15,14 @@ void panel_subtract(int rows, const float* panel, long stride, const float* coef
 /// sums(:, k) = panel^T t(:, k), kPanelWidth x columns.
 void panel_dot(int rows, const float* panel, long stride, const float* t, long t_stride, int columns, float* sums);
 
+/// Doubles of a row that a kernel takes at once, and columns of the left factor that go with them: what registers hold.
+constexpr int kRowWidth = 8;
+constexpr int kTileHeight = 6;
+
+/// c = a^T b of packed a (rows x kTileHeight) and b (rows x kRowWidth), all row by row.
+void tile_product(long rows, const double* a, const double* b, double* c);
+
+/// y = sum over k < count of values[k] times row rows[k] of x, rows of `columns` doubles each, a multiple of kRowWidth.
+void sum_rows(int count, const double* values, const int* rows, const double* x, long columns, double* y);
+
 }  // namespace tissue_stiffness
