@@ -4,7 +4,6 @@
 #include <cholmod.h>
 
 #include <mutex>
-#include <thread>
 
 #include "tissue_stiffness/fem/single_factor.hpp"
 #include "tissue_stiffness/types/error.hpp"
@@ -17,8 +16,8 @@ namespace tissue_stiffness {
 
 namespace {
 
-void set_threads(int count) {
-  if (openblas_set_num_threads != nullptr) openblas_set_num_threads(count);
+void take_one_thread() {
+  if (openblas_set_num_threads != nullptr) openblas_set_num_threads(1);
   if (omp_set_max_active_levels != nullptr) omp_set_max_active_levels(0);  // CHOLMOD asks for 4 threads by name
 }
 
@@ -33,7 +32,7 @@ struct SparseSolver::Data {
   mutable std::mutex busy;                             ///< CHOLMOD's workspace is one for all solves
 
   Data() {
-    set_threads(1);
+    take_one_thread();
     cholmod_start(&common);
 #ifdef TISSUE_STIFFNESS_CHOLMOD_SUPERNODAL
     common.supernodal = CHOLMOD_SUPERNODAL;
@@ -45,6 +44,8 @@ struct SparseSolver::Data {
   }
   // Nested dissection of the graph of nodes, a ninth of the matrix; small ones are left to CHOLMOD's own choice.
   cholmod_factor* analyse(cholmod_sparse& a) {
+    static std::mutex one_at_a_time;  // METIS draws from the C library's random numbers, which it seeds at each call
+    const std::lock_guard<std::mutex> lock(one_at_a_time);
     if (a.nrow % 3 != 0 || a.nrow < kLarge) return cholmod_analyze(&a, &common);
     std::vector<int> order = node_order(a);
     if (order.empty()) return cholmod_analyze(&a, &common);
@@ -142,14 +143,12 @@ SparseSolver::~SparseSolver() = default;
 SparseSolver::SparseSolver(SparseSolver&&) noexcept = default;
 SparseSolver& SparseSolver::operator=(SparseSolver&&) noexcept = default;
 
-void SparseSolver::factorize(const SparseMatrix& matrix, Cores cores) {
-  set_threads(cores == Cores::all ? static_cast<int>(std::thread::hardware_concurrency()) : 1);
+void SparseSolver::factorize(const SparseMatrix& matrix) {
   cholmod_sparse a = view(matrix);
   if (data_->factor == nullptr) data_->factor = data_->analyse(a);
   data_->numeric = false;
   data_->single = nullptr;
   const bool failed = data_->factor == nullptr || cholmod_factorize(&a, data_->factor, &data_->common) == 0;
-  set_threads(1);
   if (failed) throw NumericalError("sparse factorisation failed: out of memory or a pattern that changed");
   if (data_->common.status == CHOLMOD_NOT_POSDEF) {
     throw NumericalError("matrix is not positive definite (column " + std::to_string(data_->factor->minor) + ")");
@@ -163,7 +162,6 @@ bool SparseSolver::ready() const {
 
 Eigen::MatrixXd SparseSolver::solve(const Eigen::MatrixXd& b) const {
   if (!data_->numeric) throw NumericalError("solve before a successful factorisation");
-  set_threads(1);
   cholmod_dense rhs{};
   rhs.nrow = static_cast<std::size_t>(b.rows());
   rhs.ncol = static_cast<std::size_t>(b.cols());

@@ -33,7 +33,7 @@ class StaticResponse {
     const bool held = std::any_of(fixed_.begin(), fixed_.end(), [](char flag) { return flag != 0; });
     if (!held) stiffness += kShift * stiffness.diagonal().sum() / mass.diagonal().sum() * mass;
     fix_dofs(stiffness, fixed_, stiffness.diagonal().mean());
-    solver_.factorize(stiffness, SparseSolver::Cores::all);
+    solver_.factorize(stiffness);
   }
   Eigen::MatrixXd operator()(Eigen::MatrixXd loads) const {
     zero_fixed(loads, fixed_);

@@ -1,5 +1,8 @@
 // The factor in single precision against the one in double.
 #include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
+
+#include <vector>
 
 #include "tissue_stiffness/fem/sparse_solver.hpp"
 #include "verification/elastic_body.hpp"
@@ -39,6 +42,23 @@ TEST(SingleFactor, LeavesZeroAlone) {
   SparseSolver solver;
   solver.factorize(k);
   EXPECT_TRUE(solver.solve_roughly(Eigen::MatrixXd::Zero(k.rows(), 2)).isZero(0.0));
+}
+
+// Threads of BLAS are a setting of the whole process: nobody may change it while others work.
+TEST(SparseSolver, GivesTheSameBytesWhateverWorksBesideIt) {
+  const SparseMatrix k = held_stiffness(4);
+  const Eigen::MatrixXd b = random_vector(k.rows(), 1.0, 9);
+  const auto solution = [&](const SparseSolver& solver) { return solver.solve(b); };
+  SparseSolver alone;
+  alone.factorize(k);
+  const Eigen::MatrixXd expected = solution(alone);
+  std::vector<Eigen::MatrixXd> found(8);
+  tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t i) {
+    SparseSolver own;
+    if (i % 2 == 0) own.factorize(k);
+    found[i] = solution(i % 2 == 0 ? own : alone);
+  });
+  for (const Eigen::MatrixXd& x : found) EXPECT_EQ(x, expected);
 }
 
 }  // namespace

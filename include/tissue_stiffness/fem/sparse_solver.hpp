@@ -18,12 +18,12 @@ class SparseSolver {
   SparseSolver& operator=(SparseSolver&&) noexcept;
 
   /// Numerical factorisation; analyses the pattern at the first call. Throws NumericalError when not positive definite.
-  /// On one core, for where others work beside it, or on all.
-  enum class Cores { one, all };
-  void factorize(const SparseMatrix& matrix, Cores cores = Cores::one);
+  /// On one core: how many BLAS takes is a setting of the whole process, and changes the last digits of whatever works
+  /// beside it.
+  void factorize(const SparseMatrix& matrix);
   bool ready() const;
 
-  /// Solution of A x = b for every column of b.
+  /// Solution of A x = b for every column of b. Thread safe, as the next one is.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
 
   /// The same to about six digits and several times faster for several columns, for iterations that correct it.
