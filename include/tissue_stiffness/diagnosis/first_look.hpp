@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "tissue_stiffness/diagnosis/diagnose.hpp"
+#include "tissue_stiffness/diagnosis/ranking.hpp"
+
+namespace tissue_stiffness {
+
+/// What a fitted model's error shows before anything is refitted: the library, ranked by its tangents, and the mesh's part.
+struct FirstLook {
+  /// `by_mesh`: what a finer mesh changes, as an earlier look at the same recording found it; empty: found out now.
+  FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Eigen::VectorXd by_mesh);
+
+  const Fitted& base;
+  const double rows, cost;  ///< number, and sum of squared errors [sigma^2]
+  std::vector<Candidate> candidates;
+  Eigen::MatrixXd known;           ///< tangents of the base's parameters
+  Eigen::VectorXd mesh_change;     ///< of each row, by a finer mesh [sigma]
+  double by_mesh = 0.0;            ///< of the sum of squared errors
+  double floor = 0.0;              ///< rms of what the base's parameters leave of the mesh's change [sigma]
+  std::unique_ptr<Scorer> scorer;  ///< of the error that the mesh does not explain
+  std::vector<Ranked> ranked;
+
+  double structured() const;   ///< sum of squares beyond noise
+  double unavoidable() const;  ///< sum of squares that is no more than noise and what the mesh itself does
+  bool noise() const;          ///< the error may be noise
+  bool numerics() const;       ///< a finer mesh explains it
+  /// A refit that leaves this sum of squares explains the error.
+  bool explained(double left) const;
+};
+
+constexpr double kRemainder = 0.25;  // of the mesh's error that a mesh twice as fine still has, or more
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tissue_stiffness/diagnosis/first_look.hpp"
+
+namespace tissue_stiffness {
+
+/// Refits of what the tangents rank highest, best first, one an effect (or pair); of `wanted` ones only, if any. Where the
+/// best leaves more than noise the search goes on: other ways and kinds of the leaders, fits that begin with the
+/// recording's beginning, pairs. Each stage is one function. Refits run side by side.
+std::vector<Refit> search_refits(const FirstLook& look, const std::vector<std::string>& wanted,
+                                 const DiagnosisOptions& options);
+
+constexpr double kSameEvidence = 5.0;  // log evidence within which refits are not told apart
+
+/// Evidence of a refit after Schwarz, errors counted as large as `variance` [sigma^2].
+double evidence(const Refit& refit, double rows, double variance);
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,56 @@
+#include "tissue_stiffness/diagnosis/first_look.hpp"
+
+#include <tbb/parallel_invoke.h>
+
+#include <algorithm>
+
+#include "tissue_stiffness/diagnosis/finding.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr double kAdequate = 1.1;  // rms in sigmas up to which a residual may be noise
+constexpr double kExplains = 0.8;  // of the structured part: less is no explanation
+
+}  // namespace
+
+FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Eigen::VectorXd change)
+    : base(fitted), rows(fitted.rows.count()), cost(fitted.rows.error.squaredNorm()), mesh_change(std::move(change)) {
+  options.progress("tangents of the library, and what a finer mesh would change", 0, 0);
+  const Study::Rows& r = base.rows;
+  tbb::parallel_invoke(
+      [&] {
+        candidates = find_candidates(*base.study, base.fit.w, options.ignore);
+        known = base_tangents(*base.study, base.fit.w, base.fit.covariance.diagonal().cwiseSqrt(), r);
+      },
+      [&] {
+        if (mesh_change.size() == 0) mesh_change = finer_mesh(base);
+      });
+  by_mesh = cost - (r.error - mesh_change).squaredNorm();
+  floor = Scorer(r.error, known, r.offsets, 1.0).remaining(mesh_change);
+  // An effect has to explain what the mesh does not.
+  scorer = std::make_unique<Scorer>(r.error - mesh_change, known, r.offsets, 1.0);
+  ranked = rank(*scorer, candidates, kRemainder * floor);
+}
+
+double FirstLook::structured() const {
+  return std::max(0.0, cost - rows);
+}
+
+double FirstLook::unavoidable() const {
+  return (1.0 + floor * floor) * rows;
+}
+
+bool FirstLook::noise() const {
+  return cost < kAdequate * kAdequate * rows;
+}
+
+bool FirstLook::numerics() const {
+  return by_mesh > kExplains * structured();
+}
+
+bool FirstLook::explained(double left) const {
+  return left - rows < (1.0 - kExplains) * structured() || left - rows < floor * floor * rows;
+}
+
+}  // namespace tissue_stiffness

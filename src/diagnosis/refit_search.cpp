@@ -1,0 +1,273 @@
+#include "tissue_stiffness/diagnosis/refit_search.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <set>
+
+#include "tissue_stiffness/types/error.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr std::size_t kRefits = 6;     // candidates that are simulated anew
+constexpr std::ptrdiff_t kWaysOf = 3;  // leading effects that are refitted in two ways
+constexpr double kSameWay = 0.8;       // cosine above which two ways are one
+constexpr std::size_t kMostWays = 3;   // of an effect and kind that are refitted where nothing explains
+constexpr std::size_t kBegun = 6;      // fits of the beginning that are tried on the whole recording
+constexpr std::size_t kBegunOf = 2;    // of one effect
+constexpr std::size_t kKindsOf = 2;    // leading refits whose other kinds are tried
+constexpr std::size_t kOthers = 4;     // and more, when those leave more than noise
+constexpr std::size_t kPairs = 3;      // and pairs
+constexpr double kExplained = 1.02;    // and up to which a refit need not be bettered
+constexpr double kPromise = 0.2;       // of the structured part
+
+/// The search, stage by stage.
+class Search {
+ public:
+  Search(const FirstLook& look, const DiagnosisOptions& options) : look_(look), options_(options) {}
+
+  std::vector<Refit> operator()(const std::vector<std::string>& wanted) {
+    refit_singles(wanted);
+    if (!wanted.empty() || look_.noise() || look_.numerics()) return std::move(refits_);
+    if (leaves_more_than_noise()) refit_others();
+    if (leaves_more_than_noise()) refit_other_kinds();
+    if (leaves_more_than_noise()) refit_rest();
+    if (leaves_more_than_noise() && !explained()) refit_from_beginning();
+    if (leaves_more_than_noise() && !explained()) refit_pairs();
+    return std::move(refits_);
+  }
+
+ private:
+  void refit_singles(const std::vector<std::string>& wanted);
+  void refit_others();
+  void refit_other_kinds();
+  void refit_rest();
+  void refit_from_beginning();
+  void refit_pairs();
+  void add_other_way(const Ranked& r, std::vector<std::vector<Addition>>& list) const;
+  std::vector<const Candidate*> different_ways() const;
+  void refit_all(const std::vector<std::vector<Addition>>& list);
+  void try_each(std::size_t count, const std::function<std::string(std::size_t)>& name,
+                const std::function<void(std::size_t)>& work) const;
+  void sort_refits();
+  void drop_worse_ways();
+  bool refitted(const std::string& effect) const {
+    return std::any_of(refits_.begin(), refits_.end(), [&](const Refit& r) { return r.effects.front() == effect; });
+  }
+  /// Runs in full take long: none for an effect whose tangent explains next to nothing.
+  bool worth_full_runs(const Ranked& r) const {
+    return r.best->linear || r.score.explained * look_.cost > kPromise * look_.structured();
+  }
+  bool leaves_more_than_noise() const {
+    return refits_.empty() || refits_.front().cost > kExplained * kExplained * look_.unavoidable();
+  }
+  bool explained() const { return !refits_.empty() && look_.explained(refits_.front().cost); }
+
+  const FirstLook& look_;
+  const DiagnosisOptions& options_;
+  std::vector<Refit> refits_;
+};
+
+std::string names_of(const std::vector<Addition>& additions) {
+  std::string names;
+  for (const Addition& a : additions) names += (names.empty() ? "" : " and ") + a.way->effect;
+  return names;
+}
+
+// Each on a core of its own; what a model that cannot be run would find is left out.
+void Search::try_each(std::size_t count, const std::function<std::string(std::size_t)>& name,
+                      const std::function<void(std::size_t)>& work) const {
+  std::mutex telling;
+  std::size_t over = 0;
+  const auto try_one = [&](std::size_t i) {
+    {
+      const std::lock_guard<std::mutex> lock(telling);
+      options_.progress(name(i), over, count);
+    }
+    try {
+      work(i);
+    } catch (const NumericalError&) {
+      look_.base.study->recording()
+          .checkpoint();  // a study that was ended; else a model that cannot be run explains nothing
+    }
+    const std::lock_guard<std::mutex> lock(telling);
+    ++over;
+  };
+  tbb::parallel_for(std::size_t{0}, count, try_one, tbb::simple_partitioner());
+}
+
+void Search::refit_all(const std::vector<std::vector<Addition>>& list) {
+  std::vector<std::optional<Refit>> done(list.size());
+  try_each(
+      list.size(), [&](std::size_t i) { return "refit with " + names_of(list[i]); },
+      [&](std::size_t i) { done[i] = refit(look_.base, list[i]); });
+  for (std::optional<Refit>& refit : done) {
+    if (refit) refits_.push_back(std::move(*refit));
+  }
+  sort_refits();
+  for (std::size_t i = 1; i < refits_.size(); ++i) refits_[i].model.reset();
+}
+
+void Search::refit_singles(const std::vector<std::string>& wanted) {
+  std::vector<std::vector<Addition>> list;
+  for (const Ranked& r : look_.ranked) {
+    const bool asked = std::find(wanted.begin(), wanted.end(), r.effect) != wanted.end();
+    if (!asked && (!r.declared || !worth_full_runs(r) || list.size() >= kRefits || !wanted.empty())) continue;
+    list.push_back({{r.best, r.score.amplitude}});
+  }
+  refit_all(list);
+}
+
+// What correlated errors could have made as well; and other ways of the leading effects.
+void Search::refit_others() {
+  std::vector<std::vector<Addition>> list;
+  std::size_t others = 0;
+  for (const Ranked& r : look_.ranked) {
+    if (&r - look_.ranked.data() < kWaysOf && r.promising) add_other_way(r, list);
+    if (r.promising && !r.declared && worth_full_runs(r) && others++ < kOthers)
+      list.push_back({{r.best, r.score.amplitude}});
+  }
+  refit_all(list);
+}
+
+// Of the leading effects also the best of the ways that look different: tangents choose badly between directions.
+void Search::add_other_way(const Ranked& r, std::vector<std::vector<Addition>>& list) const {
+  const Candidate* other = nullptr;
+  Score best;
+  for (const Candidate& candidate : look_.candidates) {
+    if (candidate.effect != r.effect || &candidate == r.best) continue;
+    Score score = look_.scorer->score(candidate.tangent);
+    if (score.cosine_with(r.score) > kSameWay || !candidate.allows(score.amplitude)) continue;
+    if (other != nullptr && score.log_bayes_factor <= best.log_bayes_factor) continue;
+    other = &candidate;
+    best = std::move(score);
+  }
+  if (other != nullptr && best.log_bayes_factor > kSameEvidence) list.push_back({{other, best.amplitude}});
+}
+
+// The leading refits in other directions, or on other regions, from the rhythm (or what else is scanned) that they found.
+void Search::refit_other_kinds() {
+  std::vector<std::vector<Addition>> list;
+  for (std::size_t i = 0; i < std::min(kKindsOf, refits_.size()); ++i) {
+    const Refit& leader = refits_[i];
+    if (leader.effects.size() > 1 || leader.way->proposal.kind.empty()) continue;
+    for (const Candidate& candidate : look_.candidates) {
+      if (candidate.effect == leader.way->effect && candidate.proposal.is_other_kind_of(leader.way->proposal)) {
+        list.push_back({{&candidate, {}, leader.parameters}});
+      }
+    }
+  }
+  refit_all(list);
+}
+
+// One refit an effect, the best.
+void Search::drop_worse_ways() {
+  for (auto refit = refits_.begin(); refit != refits_.end();) {
+    const bool known = std::any_of(refits_.begin(), refit, [&](const Refit& r) { return r.effects == refit->effects; });
+    refit = known ? refits_.erase(refit) : refit + 1;
+  }
+}
+
+// What tangents at the end leave may still be a single effect's.
+void Search::refit_rest() {
+  std::vector<std::vector<Addition>> list;
+  for (const Ranked& r : look_.ranked) {
+    if (r.best->linear && r.evidence > kSameEvidence && !refitted(r.effect)) list.push_back({{r.best, r.score.amplitude}});
+  }
+  refit_all(list);
+}
+
+// Where phases have drifted apart a tangent says little: what is unexplained may be any effect's, of any direction and
+// strength. The best fits of the recording's beginning tell where to start.
+void Search::refit_from_beginning() {
+  const std::vector<const Candidate*> ways = different_ways();
+  std::vector<std::optional<BeginningFit>> fits(ways.size());
+  try_each(
+      ways.size(), [&](std::size_t i) { return "beginning with " + ways[i]->effect; },
+      [&](std::size_t i) { fits[i] = fit_beginning(look_.base, *ways[i]); });
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    if (fits[i]) order.push_back(i);
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return fits[a]->deviance < fits[b]->deviance; });
+  std::vector<std::vector<Addition>> list;
+  std::map<std::string, std::size_t> taken;
+  for (const std::size_t i : order) {
+    if (list.size() < kBegun && taken[ways[i]->effect]++ < kBegunOf)
+      list.push_back({{ways[i], {}, fits[i]->parameters, true}});
+  }
+  refit_all(list);
+}
+
+// Of each effect and kind the most evident ways that look different from one another, as the recording begins.
+std::vector<const Candidate*> Search::different_ways() const {
+  std::vector<Eigen::Index> offsets = look_.base.rows.offsets;
+  offsets.resize(1 + static_cast<std::size_t>(kBeginning * static_cast<double>(offsets.size() - 1)));
+  const Eigen::Index rows = offsets.back();
+  const Scorer scorer((look_.base.rows.error - look_.mesh_change).head(rows), look_.known.topRows(rows), offsets, 1.0);
+  std::vector<std::pair<const Candidate*, Score>> ways;
+  for (const Candidate& candidate : look_.candidates) {
+    if (!candidate.linear) continue;
+    const Tangent beginning{candidate.tangent.columns.topRows(rows), candidate.tangent.prior_std};
+    ways.emplace_back(&candidate, scorer.score(beginning));
+  }
+  std::stable_sort(ways.begin(), ways.end(),
+                   [](const auto& a, const auto& b) { return a.second.log_bayes_factor > b.second.log_bayes_factor; });
+  std::vector<const Candidate*> out;
+  std::map<std::string, std::vector<const Score*>> kept;
+  for (const auto& [way, score] : ways) {
+    std::vector<const Score*>& like = kept[way->effect + " " + way->proposal.kind];
+    const bool known =
+        std::any_of(like.begin(), like.end(), [&, &now = score](const Score* s) { return now.cosine_with(*s) > kSameWay; });
+    if (known || like.size() == kMostWays) continue;
+    like.push_back(&score);
+    out.push_back(way);
+  }
+  return out;
+}
+
+void Search::refit_pairs() {
+  std::vector<std::vector<Addition>> list;
+  std::set<std::string> alone;
+  std::size_t done = 0;
+  for (const RankedPair& pair : rank_pairs(*look_.scorer, look_.candidates)) {
+    if (done++ == kPairs) break;
+    if (pair.gain < kSameEvidence || !pair.first.way->linear || !pair.second.way->linear) continue;
+    for (const Addition* member : {&pair.first, &pair.second}) {  // a pair has to beat its better half
+      const std::string& effect = member->way->effect;
+      if (!refitted(effect) && alone.insert(effect).second) list.push_back({*member});
+    }
+    list.push_back({pair.first, pair.second});
+  }
+  refit_all(list);
+}
+
+void Search::sort_refits() {
+  double lowest = look_.cost;
+  for (const Refit& r : refits_) lowest = std::min(lowest, r.cost);
+  const double variance = std::max(1.0, lowest / look_.rows);
+  std::stable_sort(refits_.begin(), refits_.end(), [&](const Refit& a, const Refit& b) {
+    return evidence(a, look_.rows, variance) > evidence(b, look_.rows, variance);
+  });
+  drop_worse_ways();
+}
+
+}  // namespace
+
+double evidence(const Refit& refit, double rows, double variance) {
+  return -0.5 * refit.cost / variance - 0.5 * refit.added_parameters * std::log(rows);
+}
+
+std::vector<Refit> search_refits(const FirstLook& look, const std::vector<std::string>& wanted,
+                                 const DiagnosisOptions& options) {
+  return Search(look, options)(wanted);
+}
+
+}  // namespace tissue_stiffness
