@@ -160,6 +160,8 @@ std::unique_ptr<Track> Track::changed(const std::vector<Frame>& frames, const Ch
 
 std::unique_ptr<Track> Track::rolled(const std::vector<Frame>& frames, std::size_t first,
                                      const Checkpoint& checkpoint) const {
+  // Runs in full would never catch up with a camera, and corrected ones start at rest.
+  if (model_.nonlinear() || force_) return nullptr;
   const auto middle = frames.begin() + static_cast<std::ptrdiff_t>(first);
   const std::vector<Frame> early(frames.begin(), middle), later(middle, frames.end());
   try {

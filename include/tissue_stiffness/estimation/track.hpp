@@ -60,7 +60,8 @@ class Track {
   std::unique_ptr<Track> changed(const std::vector<Frame>& frames, const ChangeQuestion& question,
                                  const Checkpoint& checkpoint, std::size_t& first) const;
   /// The same track without its first `first` frames, at the last frame: they are its prior, and its start the motion after
-  /// them. Null when a run diverges or the checkpoint throws a NumericalError.
+  /// them. Null for a nonlinear model and for corrected runs, and when a run diverges or the checkpoint throws a
+  /// NumericalError.
   std::unique_ptr<Track> rolled(const std::vector<Frame>& frames, std::size_t first, const Checkpoint& checkpoint) const;
   /// Of a twin whose look changed nothing: not to be repeated.
   void take_notes(const Track& other) { notes_ = other.notes_; }
