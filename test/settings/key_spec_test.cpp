@@ -29,6 +29,7 @@ time: {start: 0.09, step: 0.004}
 initial: {velocity: [0, 0, -4]}
 estimator: paper
 map: {cells: 8, length: 0.02, factor: 3}
+window: 200
 )",
     R"(mesh: {revolve: {contour: first, axis: [0, 0, 1], max_edge_length: 0.01}}
 effects: [inertia: {density: 1060}]
