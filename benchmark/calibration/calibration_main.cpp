@@ -137,7 +137,7 @@ Trial run(const Scene& scene, const TetMesh& mesh, const TetMesh& filmed, bool m
   if (pressed) estimator.add_load({"/force", 0.0, wrench});
   modulus_after(estimator, frames, kFrames);
   const ParameterEstimate& e = estimator.estimate().parameters.front();
-  Estimator from_far(settings(scene, uniform(engine) < 0.5 ? 10.0 * modulus : 0.1 * modulus, load), mesh);
+  Estimator from_far(settings(scene, uniform(engine) < 0.5 ? 10.0 * modulus : 0.1 * modulus, load, mesh_error), mesh);
   if (pressed) from_far.add_load({"/force", 0.0, wrench});
   Trial out;
   out.error = e.mean / modulus - 1.0;
