@@ -36,6 +36,12 @@ StepResult Estimator::step(const Frame& frame) {
 StepResult Estimator::replay(const std::vector<Frame>& frames) {
   return implementation_->scheme->replay(frames);
 }
+std::optional<StepResult> Estimator::catch_up() {
+  return implementation_->scheme->catch_up();
+}
+bool Estimator::looks_back() const {
+  return implementation_->scheme->looks_back();
+}
 void Estimator::reset() {
   implementation_->scheme->reset();
 }

@@ -110,6 +110,14 @@ StepResult Scheme::step(const Frame& frame) {
   }
 }
 
+std::optional<StepResult> Scheme::catch_up() {
+  try {
+    return take_look();
+  } catch (const std::exception&) {
+    return std::nullopt;  // a look that cannot follow; what is known stays
+  }
+}
+
 StepResult Scheme::replay(const std::vector<Frame>& frames) {
   replaying_ = true;
   StepResult last;

@@ -55,6 +55,20 @@ class UnscentedScheme : public Scheme {
 
   void stop() override { revisit_ = nullptr; }
 
+  bool looks_back() const override { return revisit_ != nullptr || study_.valid(); }
+
+  std::optional<StepResult> take_look() override {
+    const bool looked = revisit_ && revisit_->finished(), studied = study_is_over();
+    if (frames_.empty() || !(looked || studied)) return std::nullopt;
+    if (looked) adopt(std::exchange(revisit_, nullptr)->take());
+    const Frame frame = frames_.back();
+    revisit();
+    study_mesh();
+    StepResult result;
+    publish(frame, track_->predict(frame), {}, result);
+    return result;
+  }
+
   void forget() override {
     frames_.clear();
     waiting_.clear();
@@ -220,9 +234,13 @@ class UnscentedScheme : public Scheme {
     return MeshError::why_not(model_->mesh());
   }
 
+  bool study_is_over() const {
+    return study_.valid() && study_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  }
+
   // What the mesh does to the estimate, asked anew whenever the recording has doubled; in the background when a node runs.
   void study_mesh() {
-    if (study_.valid() && (!background() || study_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)) {
+    if (study_.valid() && (!background() || study_is_over())) {
       try {
         study_.get();
         shift_ = studied_.believed(track_->filter().misfit_scale());

@@ -116,7 +116,9 @@ void EstimatorNode::work() {
     if (take_changes()) {
       diagnostics_.set("frames waiting", std::to_string(queue_.waiting() + 1));  // this one included
       process(*work);
+      if (work->observations.empty()) catch_up();
       diagnostics_.set("frames waiting", std::to_string(queue_.waiting()));
+      diagnostics_.set("looking back", estimator_->looks_back() ? "yes" : "no");
     }
   }
 }
@@ -150,6 +152,7 @@ bool EstimatorNode::take_changes() {
 
 void EstimatorNode::build(const TetMesh& mesh) {
   estimator_ = std::make_unique<Estimator>(running_, mesh);
+  last_.reset();
   estimator_->work_in_background();
   services_->start(running_, mesh);
   inputs_.set_vertex_count(mesh.corner_count);
@@ -170,6 +173,8 @@ void EstimatorNode::run_again() {
   const auto last = std::find_if(recording.frames.begin(), recording.frames.end(),
                                  [&](const Frame& frame) { return frame.time == result.misfit.time; });
   outputs_.publish(*estimator_, result, *last, ros::Time(last->time));
+  last_ = *last;
+  last_stamp_ = ros::Time(last->time);
 }
 
 void EstimatorNode::start_lap(const ros::Time& first_stamp) {
@@ -180,6 +185,7 @@ void EstimatorNode::start_lap(const ros::Time& first_stamp) {
     diagnostics_.count("restarts");
   }
   estimator_->reset();
+  last_.reset();
   estimator_->set_first_stamp(first_stamp.toSec());
   services_->check().start_lap(first_stamp.toSec());
   map_.start_lap();
@@ -212,6 +218,17 @@ void EstimatorNode::process(const FrameQueue::Work& work) {
     map_.add_frame(result.estimate, [this] { return services_->check().recording(); });
   }
   outputs_.publish(*estimator_, result, frame, work.stamp);
+  last_ = std::move(frame);
+  last_stamp_ = work.stamp;
+}
+
+// When a recording is over, the last look at it is not.
+void EstimatorNode::catch_up() {
+  if (!last_) return;
+  const auto result = estimator_->catch_up();
+  if (!result) return;
+  diagnostics_.set("estimate", shown(result->estimate));
+  outputs_.publish(*estimator_, *result, *last_, last_stamp_);
 }
 
 void EstimatorNode::report(const StepResult& result) {

@@ -7,6 +7,7 @@ namespace {
 
 const ros::Duration kJumpBack(0.5);
 const ros::Duration kJumpAhead(60.0);
+constexpr std::chrono::seconds kIdle{1};
 constexpr std::size_t kMostLoads = 100000;  // a load at 1 kHz without a frame for 100 s
 
 }  // namespace
@@ -75,7 +76,7 @@ std::optional<FrameQueue::Work> FrameQueue::take() {
   while (!stopped_) {
     if (std::exchange(woken_, false)) return Work();
     if (frames_.empty()) {
-      changed_.wait(lock);
+      if (changed_.wait_for(lock, kIdle) == std::cv_status::timeout) return Work();
       continue;
     }
     const auto& [place, frame] = *frames_.begin();

@@ -56,6 +56,26 @@ TEST(Background, ComesToTheSameEstimate) {
   EXPECT_LT(last.misfit.rms_sigma, 1.2);
 }
 
+TEST(Background, CatchesUpAfterTheLastFrame) {
+  const std::vector<Frame> frames = recording();
+  Estimator waiting(box_settings(kPulled), bar_mesh());
+  const ParameterEstimate at_once = step_with_loads(waiting, frames, {}).estimate.parameters.front();
+  Estimator estimator(box_settings(kPulled), bar_mesh());
+  estimator.work_in_background();
+  StepResult last = step_with_loads(estimator, frames, {});  // so fast that looks do not end in time
+  const double time = last.estimate.time;
+  EXPECT_TRUE(estimator.looks_back());
+  for (int k = 0; k < 1000 && estimator.looks_back(); ++k) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    if (const auto result = estimator.catch_up()) last = *result;
+  }
+  EXPECT_FALSE(estimator.looks_back());
+  EXPECT_EQ(last.estimate.time, time);
+  EXPECT_NEAR(last.estimate.parameters.front().mean, at_once.mean, 0.3 * at_once.std);
+  EXPECT_NEAR(value(estimator), at_once.mean, 0.3 * at_once.std);
+  EXPECT_FALSE(estimator.catch_up());
+}
+
 TEST(Background, HoldsUpNoFrame) {
   Estimator estimator(box_settings(kPulled), bar_mesh());
   estimator.work_in_background();

@@ -60,6 +60,12 @@ class Estimator {
   /// throws on data.
   StepResult step(const Frame& frame);
 
+  /// What a look that ended after the last frame makes of that frame; empty when there is nothing new. For whoever works in
+  /// the background and has no frame to step with: never throws on data.
+  std::optional<StepResult> catch_up();
+  /// Such a look is under way.
+  bool looks_back() const;
+
   /// Steps through frames that were measured before, waiting for every look back, and with one look at
   /// the mesh's error, at the end; the last used one's result, or the last's.
   StepResult replay(const std::vector<Frame>& frames);

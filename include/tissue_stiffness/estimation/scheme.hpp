@@ -22,6 +22,7 @@ class Scheme {
 
   StepResult step(const Frame& frame);
   StepResult replay(const std::vector<Frame>& frames);
+  std::optional<StepResult> catch_up();
   void reset();
   void set_first_stamp(double time);
   void add_load(const LoadSample& sample);
@@ -37,9 +38,12 @@ class Scheme {
   /// Of the reduced basis [m], kBasisDoubt included; none for a model that runs in full, or before frames told.
   virtual std::optional<double> basis_error() const { return std::nullopt; }
   const Prediction& prediction() const { return prediction_; }
+  virtual bool looks_back() const { return false; }
 
  protected:
   virtual StepResult process(const Frame& frame) = 0;
+  /// What came of looks at the past since the last frame, if one has ended.
+  virtual std::optional<StepResult> take_look() { return std::nullopt; }
   virtual void forget() = 0;
   /// Ends what runs of the model are under way beside the frames, before anything that they read is changed.
   virtual void stop() {}

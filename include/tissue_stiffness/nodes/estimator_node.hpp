@@ -55,6 +55,7 @@ class EstimatorNode {
   void run_again();
   void start_lap(const ros::Time& first_stamp);
   void process(const FrameQueue::Work& work);
+  void catch_up();
   void report(const StepResult& result);
 
   const ModelSettings settings_;  ///< as given
@@ -67,6 +68,8 @@ class EstimatorNode {
   MapPublisher map_;
   ModelSettings running_;  ///< with what was added; the worker's alone, as the estimator
   std::unique_ptr<Estimator> estimator_;
+  std::optional<Frame> last_;  ///< used
+  ros::Time last_stamp_;
 
   std::mutex changes_mutex_;
   std::condition_variable mesh_arrived_;

@@ -49,7 +49,8 @@ class FrameQueue {
   void add_observation(const std::string& topic, const ros::Time& stamp, MakeObservation make);
   void add_load(const std::string& topic, const ros::Time& stamp, MakeLoad make);
 
-  /// Waits for the next frame. Nothing after stop(); work without observations after wake().
+  /// Waits for the next frame. Nothing after stop(); work without observations after wake(), and after a second without
+  /// any.
   std::optional<Work> take();
   /// Lets take() return although no frame is there.
   void wake();
