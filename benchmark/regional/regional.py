@@ -127,6 +127,9 @@ def main():
     parser.add_argument('which', nargs='*', default=list(TITLES), help='thirds, slices, map, flat (default: all)')
     parser.add_argument('--keep', help='folder for the recordings')
     options = parser.parse_args()
+    for which in options.which:
+        if which not in TITLES:
+            parser.error('%s: one of %s' % (which, ', '.join(TITLES)))
     global TOOLS
     TOOLS = os.path.join(options.root, 'build', 'devel', 'lib', 'tissue_stiffness')
     with tempfile.TemporaryDirectory() as temporary:
