@@ -33,12 +33,8 @@ Fitted extended(const Fitted& base, const Refit& refit) {
   ModelSettings settings = base.study->model().settings();
   for (const std::string& entry : refit.entries) add_effect(settings, entry);
   out.study = std::make_unique<Study>(settings, *base.study);
-  Eigen::VectorXd start = out.study->model().prior_mean();
-  for (const auto& [name, value] : refit.parameters) {
-    const Eigen::Index i = out.study->index(name);
-    if (i >= 0) start[i] = out.study->model().free_parameters()[static_cast<std::size_t>(i)].to_coordinate(value);
-  }
-  out.fit = out.study->fit(start, kAddedSpread * out.study->model().prior_std());
+  const Model& model = out.study->model();
+  out.fit = out.study->fit(model.coordinates(refit.parameters, model.prior_mean()), kAddedSpread * model.prior_std());
   out.rows = out.study->rows(out.fit.w);
   return out;
 }
@@ -46,10 +42,7 @@ Fitted extended(const Fitted& base, const Refit& refit) {
 DiagnosisStep step_of(const Fitted& model, const Recording& recording, const std::vector<std::string>& effects) {
   DiagnosisStep step;
   step.effects = effects;
-  const auto& free = model.study->model().free_parameters();
-  for (std::size_t i = 0; i < free.size(); ++i) {
-    step.parameters[free[i].name] = free[i].to_value(model.fit.w[static_cast<Eigen::Index>(i)]);
-  }
+  step.parameters = model.study->model().values(model.fit.w);
   step.train_rms = rms_error(model.rows, recording, false);
   step.held_out_rms = rms_error(model.rows, recording, true);
   step.noise_floor = noise_floor(model.rows);
@@ -75,16 +68,8 @@ void describe_residual(const Fitted& model, double floor, Diagnosis& out) {
 
 // The model's parameters as the best explanation has them: without it they make up for what is missing.
 Eigen::VectorXd believed(const Fitted& model, const Finding& finding) {
-  Eigen::VectorXd w = model.fit.w;
-  if (finding.verdict != "missing") return w;
-  const auto& free = model.study->model().free_parameters();
-  for (std::size_t i = 0; i < free.size(); ++i) {
-    const auto value = finding.refits.front().parameters.find(free[i].name);
-    if (value != finding.refits.front().parameters.end()) {
-      w[static_cast<Eigen::Index>(i)] = free[i].to_coordinate(value->second);
-    }
-  }
-  return w;
+  if (finding.verdict != "missing") return model.fit.w;
+  return model.study->model().coordinates(finding.refits.front().parameters, model.fit.w);
 }
 
 }  // namespace

@@ -42,18 +42,12 @@ BeginningFit fit_beginning(const Fitted& base, const Candidate& way) {
   const Study& known = *base.study;
   ModelSettings settings = known.model().settings();
   add_effect(settings, way.proposal.refine);
-  const Study study(settings, known.model().mesh(), known.recording());
-  const auto& free = study.model().free_parameters();
-  Eigen::VectorXd w = study.model().prior_mean(), spread = kAddedSpread * study.model().prior_std();
-  std::vector<Eigen::Index> shared;  // with the base
-  for (std::size_t i = 0; i < free.size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    const Eigen::Index there = known.index(free[i].name);
-    if (there < 0) continue;
-    shared.push_back(k);
-    w[k] = base.fit.w[there];
-    spread[k] = kBaseSpread * study.model().prior_std()[k];
-  }
+  const Study study(settings, known);
+  const Model& model = study.model();
+  const Eigen::VectorXd w = model.coordinates(known.model().values(base.fit.w), model.prior_mean());
+  const std::vector<Eigen::Index> shared = study.shared_with(known);
+  Eigen::VectorXd spread = kAddedSpread * model.prior_std();
+  for (const Eigen::Index i : shared) spread[i] = kBaseSpread * model.prior_std()[i];
   std::vector<Study::Place> places;
   for (const Eigen::VectorXd& start : strengths(study, w, way))
     places.push_back(study.scan_near(start, shared, kBeginning));
@@ -65,11 +59,9 @@ BeginningFit fit_beginning(const Fitted& base, const Candidate& way) {
     if (fit.w.size() == 0 || now.cost < fit.cost) fit = std::move(now);
   }
   BeginningFit out;
-  const double added = static_cast<double>(free.size() - known.model().free_parameters().size());
+  const auto added = static_cast<double>(model.free_parameters().size() - known.model().free_parameters().size());
   out.deviance = fit.cost + added * std::log(kBeginning * base.rows.count());
-  for (std::size_t i = 0; i < free.size(); ++i) {
-    out.parameters[free[i].name] = free[i].to_value(fit.w[static_cast<Eigen::Index>(i)]);
-  }
+  out.parameters = model.values(fit.w);
   return out;
 }
 

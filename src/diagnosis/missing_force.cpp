@@ -157,10 +157,7 @@ MissingForce missing_force(const Study& study, const Eigen::VectorXd& w) {
   if (!(best.deviance < without - kLikelier)) return out;
 
   const Eigen::Index count = modes.shapes.cols(), frames = modes.displacement.cols();
-  for (Eigen::Index i = 0; i < w.size(); ++i) {
-    const FreeParameter& free = study.model().free_parameters()[static_cast<std::size_t>(i)];
-    out.parameters[free.name] = free.to_value(w[i]);
-  }
+  out.parameters = study.model().values(w);
   out.nodes = spread_nodes(mesh, kNodes);
   out.places = at(out.nodes, Eigen::Map<const Eigen::VectorXd>(mesh.nodes.data(), mesh.nodes.size()));
   Eigen::MatrixXd force(count, frames), q(count, frames), v(count, frames);

@@ -75,12 +75,8 @@ std::vector<Start> starts(const Study& study, const Study& base, const Eigen::Ve
 
 // Where the beginning's fit left all parameters.
 Start start_of(const Study& study, const std::map<std::string, double>& parameters) {
-  Start out{study.model().prior_mean(), kBaseSpread * study.model().prior_std(), {}};
-  for (std::size_t i = 0; i < study.model().free_parameters().size(); ++i) {
-    const FreeParameter& p = study.model().free_parameters()[i];
-    out.w[static_cast<Eigen::Index>(i)] = p.to_coordinate(parameters.at(p.name));
-  }
-  return out;
+  const Model& model = study.model();
+  return {model.coordinates(parameters, model.prior_mean()), kBaseSpread * model.prior_std(), {}};
 }
 
 // Where `key: {` begins among an entry's arguments; the effect's own name may end like a key.
@@ -127,10 +123,7 @@ std::string fitted_entry(const Study& study, const Study& base, const BatchFit& 
 // The start whose fit without full runs is best. A run that rings may need the base's parameters in another minimum.
 std::optional<Start> quick_start(const Study& study, const Study& base, const std::vector<Start>& starts,
                                  std::string& reason) {
-  std::vector<Eigen::Index> shared;  // with the base
-  for (std::size_t i = 0; i < study.model().free_parameters().size(); ++i) {
-    if (base.index(study.model().free_parameters()[i].name) >= 0) shared.push_back(static_cast<Eigen::Index>(i));
-  }
+  const std::vector<Eigen::Index> shared = study.shared_with(base);
   std::optional<Start> best;
   for (Start start : starts) {
     try {
@@ -186,10 +179,7 @@ Refit refit(const Fitted& base, const std::vector<Addition>& additions) {
     out.effects.push_back(addition.way->effect);
     out.entries.push_back(fitted_entry(study, known, start->fit, *addition.way));
   }
-  for (std::size_t i = 0; i < study.model().free_parameters().size(); ++i) {
-    const FreeParameter& p = study.model().free_parameters()[i];
-    out.parameters[p.name] = p.to_value(start->fit.w[static_cast<Eigen::Index>(i)]);
-  }
+  out.parameters = study.model().values(start->fit.w);
   out.train_rms = rms_error(rows, known.recording(), false);
   out.held_out_rms = rms_error(rows, known.recording(), true);
   out.train_sigmas = rms_sigmas(rows, known.recording(), false);

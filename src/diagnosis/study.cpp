@@ -52,11 +52,7 @@ Study::Study(const ModelSettings& settings, const TetMesh& mesh, std::map<std::s
       training_(recording.training()),
       model_(settings, mesh, std::move(regions)),
       operators_(make_observation_operators(model_)) {
-  model_.set_first_stamp(recording.first_stamp);
-  for (const LoadSample& sample : recording.loads) {
-    const auto course = model_.courses().find(sample.topic);
-    if (course != model_.courses().end()) course->second->add(sample.time, sample.value);
-  }
+  model_.drive(recording.first_stamp, recording.loads);
   BasisOptions whole = basis;
   whole.steps_per_frame = kSteps;
   forward_ = make_forward_model(model_, whole, relative);
@@ -156,13 +152,16 @@ BatchFit Study::fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread)
   return quick_ ? fit_from_run_to_run(start, spread) : quick_fit(start, spread);
 }
 
-std::vector<Frame> Study::first_of_training(double share) const {
+const std::vector<Frame>& Study::first_of_training(double share, std::vector<Frame>& room) const {
+  if (share >= 1.0) return training_;
   const auto count = static_cast<std::ptrdiff_t>(std::ceil(share * static_cast<double>(training_.size())));
-  return {training_.begin(), training_.begin() + count};
+  room.assign(training_.begin(), training_.begin() + count);
+  return room;
 }
 
 BatchFit Study::quick_fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread, double share) const {
-  const std::vector<Frame> frames = first_of_training(share);
+  std::vector<Frame> room;
+  const std::vector<Frame>& frames = first_of_training(share, room);
   return fit_batch(problem(quick(), frames), start, spread);
 }
 
@@ -211,7 +210,8 @@ Eigen::VectorXd Study::scan(const Eigen::VectorXd& start) const {
 
 Study::Place Study::scan_near(const Eigen::VectorXd& start, const std::vector<Eigen::Index>& coordinates,
                               double share) const {
-  const std::vector<Frame> frames = first_of_training(share);
+  std::vector<Frame> room;
+  const std::vector<Frame>& frames = first_of_training(share, room);
   const FitProblem train = problem(quick(), frames);
   const Eigen::VectorXd std = model_.prior_std();
   Place best{start, std::numeric_limits<double>::infinity()};
@@ -228,6 +228,14 @@ Study::Place Study::scan_near(const Eigen::VectorXd& start, const std::vector<Ei
     best.w = place(static_cast<int>(lowest) - kNearPoints);
   }
   return best;
+}
+
+std::vector<Eigen::Index> Study::shared_with(const Study& base) const {
+  std::vector<Eigen::Index> shared;
+  for (std::size_t i = 0; i < model_.free_parameters().size(); ++i) {
+    if (base.index(model_.free_parameters()[i].name) >= 0) shared.push_back(static_cast<Eigen::Index>(i));
+  }
+  return shared;
 }
 
 Eigen::Index Study::index(const std::string& parameter) const {

@@ -42,11 +42,7 @@ MapLevel::MapLevel(const MapQuestion& question, const Model& base, std::vector<P
       patch_model_(with_patches(base, patches_, log_modulus)),
       model_(patch_model_.settings, base.mesh(), patch_model_.regions),
       operators_(make_observation_operators(model_)) {
-  model_.set_first_stamp(question.first_stamp);
-  for (const LoadSample& sample : question.loads) {
-    const auto course = model_.courses().find(sample.topic);
-    if (course != model_.courses().end()) course->second->add(sample.time, sample.value);
-  }
+  model_.drive(question.first_stamp, question.loads);
   const auto count = static_cast<Eigen::Index>(patches_.size());
   const MapSettings& map = *question.settings.map;
   prior_mean_ = model_.prior_mean();

@@ -29,14 +29,9 @@ std::vector<Frame> usable(const std::vector<Frame>& frames, double rest) {
 
 // Filter coordinates of what an estimator found; its prior for what it does not tell.
 Eigen::VectorXd coordinates(const Model& model, const Estimate& estimate) {
-  Eigen::VectorXd w = model.prior_mean();
-  for (Eigen::Index i = 0; i < w.size(); ++i) {
-    const FreeParameter& free = model.free_parameters()[static_cast<std::size_t>(i)];
-    for (const ParameterEstimate& p : estimate.parameters) {
-      if (p.name == free.name) w[i] = free.to_coordinate(p.mean);
-    }
-  }
-  return w;
+  std::map<std::string, double> values;
+  for (const ParameterEstimate& p : estimate.parameters) values[p.name] = p.mean;
+  return model.coordinates(values, model.prior_mean());
 }
 
 // By more than what the mesh alone may leave of a misfit, which patches would take up, too.

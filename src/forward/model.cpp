@@ -201,4 +201,30 @@ void Model::set_first_stamp(double time) {
   for (auto& course : courses_) course.second->shift(time);
 }
 
+void Model::drive(double first_stamp, const std::vector<LoadSample>& loads) {
+  set_first_stamp(first_stamp);
+  for (const LoadSample& sample : loads) {
+    const auto course = courses_.find(sample.topic);
+    if (course != courses_.end()) course->second->add(sample.time, sample.value);
+  }
+}
+
+std::map<std::string, double> Model::values(const Eigen::VectorXd& w) const {
+  std::map<std::string, double> out;
+  for (Eigen::Index i = 0; i < w.size(); ++i) {
+    const FreeParameter& free = free_[static_cast<std::size_t>(i)];
+    out[free.name] = free.to_value(w[i]);
+  }
+  return out;
+}
+
+Eigen::VectorXd Model::coordinates(const std::map<std::string, double>& values, Eigen::VectorXd w) const {
+  for (Eigen::Index i = 0; i < w.size(); ++i) {
+    const FreeParameter& free = free_[static_cast<std::size_t>(i)];
+    const auto value = values.find(free.name);
+    if (value != values.end()) w[i] = free.to_coordinate(value->second);
+  }
+  return w;
+}
+
 }  // namespace tissue_stiffness

@@ -72,12 +72,15 @@ class Study {
 
   /// Index of a free parameter by name; -1 when there is none.
   Eigen::Index index(const std::string& parameter) const;
+  /// Indices of the free parameters that a model with fewer effects has, too.
+  std::vector<Eigen::Index> shared_with(const Study& base) const;
 
  private:
   Study(const ModelSettings& settings, const TetMesh& mesh, std::map<std::string, Region> regions,
         const Recording& recording, const BasisOptions& basis, const ForwardModel* relative);
   FitProblem problem(const ForwardModel& forward, const std::vector<Frame>& frames) const;
-  std::vector<Frame> first_of_training(double share) const;
+  /// All of them, or copies in `room`.
+  const std::vector<Frame>& first_of_training(double share, std::vector<Frame>& room) const;
   BatchFit fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd spread) const;
   const ForwardModel& quick() const { return anchored_ ? *anchored_ : quick_ ? *quick_ : *forward_; }
 

@@ -50,6 +50,8 @@ class Model {
 
   /// Time of the recording's first stamp [s]: courses from files and rhythms count from it. 0 until it is set.
   void set_first_stamp(double time);
+  /// The same, and the loads of a whole recording; those of topics that nothing listens to are left out.
+  void drive(double first_stamp, const std::vector<LoadSample>& loads);
   double first_stamp() const { return first_stamp_; }
 
   /// A flag a degree of freedom: held at rest by a `fixed` effect; and held at theta, when some of them give way there.
@@ -60,6 +62,10 @@ class Model {
   Eigen::VectorXd theta(const Eigen::VectorXd& w) const;
   /// Prior in the filter's coordinates.
   Eigen::VectorXd prior_mean() const;
+  /// Free parameters in their own units, by name; w: filter coordinates.
+  std::map<std::string, double> values(const Eigen::VectorXd& w) const;
+  /// `w` with the free parameters that `values` names where it has them.
+  Eigen::VectorXd coordinates(const std::map<std::string, double>& values, Eigen::VectorXd w) const;
   Eigen::VectorXd prior_std() const;
   /// By how much each coordinate may have changed after a second, 1 sigma; 0 for what is constant.
   Eigen::VectorXd drift() const;
