@@ -16,9 +16,7 @@ namespace {
 
 constexpr int kVectorsAPatch = 4;    // of the reduced basis
 constexpr int kMostGrowths = 3;      // of the basis, by half each
-constexpr double kBasisShare = 0.1;  // of the noise: what the basis may leave out
 constexpr double kSpread = 0.05;     // prior standard deviations that the first slopes are read over
-constexpr double kShiftDoubt = 0.5;  // of the mesh's effect, once it is corrected for
 
 double log_determinant(const Eigen::MatrixXd& covariance) {
   return covariance.ldlt().vectorD().array().abs().log().sum();
@@ -137,7 +135,7 @@ double MapLevel::told() const {
 
 std::vector<StiffnessPatch> MapLevel::describe(const Eigen::VectorXd& shift) const {
   const Eigen::VectorXd w = filter_->anchor() - shift;
-  const Eigen::MatrixXd covariance = filter_->robust_covariance() + kShiftDoubt * kShiftDoubt * shift * shift.transpose();
+  const Eigen::MatrixXd covariance = filter_->robust_covariance() + mesh_doubt(model_, shift);
   std::vector<StiffnessPatch> out;
   for (Eigen::Index r = 0; r < centers_.cols(); ++r) {
     const Eigen::Index i = patch_model_.first + r;

@@ -10,6 +10,7 @@
 #include "tissue_stiffness/meshing/build_mesh.hpp"
 #include "tissue_stiffness/meshing/refine.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "tissue_stiffness/types/estimate.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -20,6 +21,7 @@ constexpr double kSettled = 0.1;      // of the shift
 constexpr double kNegligible = 1e-5;  // prior standard deviations
 constexpr double kLongestStep = 0.1;  // prior standard deviations at once
 constexpr double kTelling = 0.1;      // mean square of a mesh's misfit in sigmas that a recording would show
+constexpr double kShiftDoubt = 0.5;   // of the mesh's effect, once it is corrected for
 constexpr int kMostNodes = 6000;      // refined eightfold: what still factorises in seconds and within 2 GB
 
 void drive(const MeshError::Question& question, Model& model) {
@@ -56,6 +58,17 @@ TetMesh finer(const TetMesh& mesh, const MeshSettings& settings) {
   TetMesh smooth = mesh;
   smooth_boundary(smooth);
   return refine(smooth);
+}
+
+Eigen::MatrixXd mesh_doubt(const Model& model, const Eigen::VectorXd& shift) {
+  Eigen::VectorXd modulus = Eigen::VectorXd::Zero(shift.size());
+  for (Eigen::Index i = 0; i < shift.size(); ++i) {
+    if (is_young_modulus(model.free_parameters()[static_cast<std::size_t>(i)].name)) modulus[i] = 1.0;
+  }
+  const double mean_square = modulus.dot(shift.cwiseAbs2()) / std::max(1.0, modulus.sum());
+  Eigen::MatrixXd doubt = shift * shift.transpose();
+  doubt.diagonal().array() += modulus.array() * (mean_square - shift.array().square()).max(0.0);
+  return kShiftDoubt * kShiftDoubt * doubt;
 }
 
 struct MeshError::Studies {

@@ -27,7 +27,6 @@ constexpr int kScanPoints = 25;             // on either side of the prior's mea
 constexpr double kUnexplained = 0.1;        // of the motion's mean square: more, and a free run's fit is badly biased
 constexpr std::size_t kCorrectFrom = 16;    // frames before which a misfit is not taken for missing physics
 constexpr std::size_t kFirstBasisLook = 4;  // frames
-constexpr double kBasisShare = 0.1;         // of the noise: what the reduced basis may leave out
 constexpr int kMostGrowths = 4;             // of the basis at once, by half each
 constexpr double kChangedSpread = 0.05;     // prior standard deviations, of the sigma points after a change
 constexpr double kGrowthHelps = 0.7;        // of the error: what a growth leaves, if it is worth another

@@ -22,7 +22,6 @@ namespace {
 constexpr int kVelocityFrames = 4;           // frames that the initial velocity is read from
 constexpr std::size_t kFirstMeshStudy = 16;  // frames
 constexpr double kConverged = 0.05;          // relative standard deviation
-constexpr double kShiftDoubt = 0.5;          // of the mesh's effect, once it is corrected for
 constexpr double kInvalidSigmas = 10.0;      // rms error over noise at which the model says nothing about the body
 
 class UnscentedScheme : public Scheme {
@@ -206,26 +205,12 @@ class UnscentedScheme : public Scheme {
     result.misfit.nis = innovation.nis;
     result.misfit.dof = innovation.dof;
     const Eigen::VectorXd shift = shift_.size() > 0 ? shift_ : Eigen::VectorXd::Zero(w.size());
-    estimate_ = summarise(model_->free_parameters(), w - shift, track_->covariance() + mesh_doubt(shift));
+    estimate_ = summarise(model_->free_parameters(), w - shift, track_->covariance() + mesh_doubt(*model_, shift));
     estimate_.time = frame.time;
     validity_.add(result.misfit);
     watch_.add(result.misfit.rms_sigma * result.misfit.rms_sigma, filter);
     estimate_.state = state(result.misfit);
     result.estimate = estimate_;
-  }
-
-  // Part of the shift; and of the moduli's rms shift for one whose own happens to be small.
-  Eigen::MatrixXd mesh_doubt(const Eigen::VectorXd& shift) const {
-    Eigen::VectorXd modulus = Eigen::VectorXd::Zero(shift.size());
-    for (Eigen::Index i = 0; i < shift.size(); ++i) {
-      const std::string& name = model_->free_parameters()[static_cast<std::size_t>(i)].name;
-      if (name.find(".young_modulus") != std::string::npos) modulus[i] = 1.0;
-    }
-    const double mean_square = modulus.dot(shift.cwiseAbs2()) / std::max(1.0, modulus.sum());
-    const Eigen::VectorXd less = modulus.array() * (mean_square - shift.array().square()).max(0.0);
-    Eigen::MatrixXd doubt = shift * shift.transpose();
-    doubt.diagonal() += less;
-    return kShiftDoubt * kShiftDoubt * doubt;
   }
 
   EstimateState state(const Misfit& misfit) const {

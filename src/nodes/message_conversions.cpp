@@ -139,9 +139,8 @@ StiffnessEstimate to_message(const Estimate& estimate, const std_msgs::Header& h
   }
   const Eigen::MatrixXd rows = estimate.covariance.transpose();
   out.covariance.assign(rows.data(), rows.data() + rows.size());
-  const auto modulus = std::find_if(estimate.parameters.begin(), estimate.parameters.end(), [](const ParameterEstimate& p) {
-    return p.name.size() >= 14 && p.name.compare(p.name.size() - 14, 14, ".young_modulus") == 0;
-  });
+  const auto modulus = std::find_if(estimate.parameters.begin(), estimate.parameters.end(),
+                                    [](const ParameterEstimate& p) { return is_young_modulus(p.name); });
   const bool found = modulus != estimate.parameters.end();
   const double nan = std::numeric_limits<double>::quiet_NaN();
   out.young_modulus = found ? modulus->mean : nan;

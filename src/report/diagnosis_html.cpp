@@ -42,7 +42,7 @@ std::string verdict_badge(const std::string& verdict) {
 std::string moduli(const std::map<std::string, double>& parameters) {
   std::string text;
   for (const auto& [name, value] : parameters) {
-    if (name.find(".young_modulus") == std::string::npos) continue;
+    if (!is_young_modulus(name)) continue;
     const ShownUnit unit = shown_unit(value, "Pa");
     text += (text.empty() ? "" : ", ") + short_number(unit.scale * value, 4) + " " + unit.name;
   }
@@ -53,7 +53,7 @@ std::string moduli(const std::map<std::string, double>& parameters) {
 std::string modulus_answer(const std::string& name, const Diagnosis& d) {
   std::string text = moduli(d.steps.back().parameters), interval, comma;
   for (const ParameterEstimate& p : d.estimate.parameters) {
-    if (p.name.find(".young_modulus") == std::string::npos) continue;
+    if (!is_young_modulus(p.name)) continue;
     const ShownUnit unit = shown_unit(p.mean, p.unit);
     const double half_width = 0.5 * unit.scale * (p.upper95 - p.lower95);
     if (comma.empty()) text.clear();

@@ -48,15 +48,11 @@ std::string identifiability_badge(const IdentifiabilityRecord& record) {
   return badge(record.verdict == "none" ? "bad" : "warn", record.verdict == "none" ? "not determined" : "only a ratio");
 }
 
-bool is_modulus(const std::string& name) {
-  return name.find(".young_modulus") != std::string::npos;
-}
-
 /// Young's moduli; without one the first parameters. Three at most; the table has all.
 std::vector<ParameterEstimate> headline(const std::vector<ParameterEstimate>& parameters) {
   std::vector<ParameterEstimate> shown;
   for (const ParameterEstimate& p : parameters) {
-    if (is_modulus(p.name)) shown.push_back(p);
+    if (is_young_modulus(p.name)) shown.push_back(p);
   }
   if (shown.empty()) shown = parameters;
   if (shown.size() > 3) shown.resize(3);

@@ -44,8 +44,7 @@ void print_diagnosis(const Diagnosis& d, const Paint& paint, std::ostream& out) 
     out << line("%-24s %14.3f  %12.3f  %11.3f%.0s\n", name, 1e3 * s.held_out_rms, 1e3 * s.train_rms, 1e3 * s.noise_floor,
                 0.0);
     for (const auto& [parameter, value] : s.parameters) {
-      if (parameter.find("young_modulus") != std::string::npos)
-        out << "  " << parameter << " = " << value / 1e3 << " kPa\n";
+      if (is_young_modulus(parameter)) out << "  " << parameter << " = " << value / 1e3 << " kPa\n";
     }
   }
   out << "final         " << painted(d.final_verdict, paint) << "; " << std::lround(d.seconds) << " s\n";

@@ -18,4 +18,9 @@ std::string to_string(EstimateState state) {
   return "model_invalid";
 }
 
+bool is_young_modulus(const std::string& name) {
+  const std::string end = ".young_modulus";
+  return name.size() > end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
+}
+
 }  // namespace tissue_stiffness

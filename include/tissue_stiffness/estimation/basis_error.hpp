@@ -13,6 +13,7 @@ struct BasisError {
   double sigmas = 0.0;  ///< the same in standard deviations of the most precise sensor's noise
 };
 constexpr double kBasisDoubt = 2.0;
+constexpr double kBasisShare = 0.1;  ///< of the noise: what a basis may leave out
 
 /// Over some thirty of the problem's frames, at filter coordinates w.
 BasisError basis_error(const ReducedModel& reduced, const FitProblem& problem, const Eigen::VectorXd& w);

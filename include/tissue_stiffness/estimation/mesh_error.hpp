@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tissue_stiffness/effects/course.hpp"
+#include "tissue_stiffness/forward/model.hpp"
 #include "tissue_stiffness/forward/reduced_basis.hpp"
 #include "tissue_stiffness/settings/model_settings.hpp"
 #include "tissue_stiffness/types/observation.hpp"
@@ -18,6 +19,10 @@ namespace tissue_stiffness {
 /// unless the settings say that they are the body's own.
 /// Nodes keep their numbers.
 TetMesh finer(const TetMesh& mesh, const MeshSettings& settings);
+
+/// Covariance of what stays wrong after a correction by `shift` (filter coordinates): half of it, 1 sigma, and half of the
+/// moduli's rms shift for a modulus whose own happens to be small.
+Eigen::MatrixXd mesh_doubt(const Model& model, const Eigen::VectorXd& shift);
 
 /// What the mesh does to the parameters. The model runs once more on a mesh with every tetrahedron cut into eight and flat
 /// facets bent to the smooth surface they stand for; fitted to that run, the estimator's own mesh would be off by a shift.

@@ -22,6 +22,9 @@ struct ParameterEstimate {
   double upper95 = 0.0;
 };
 
+/// True of "elasticity.young_modulus", "elasticity#2.young_modulus", ...
+bool is_young_modulus(const std::string& name);
+
 /// Posterior after a frame.
 struct Estimate {
   double time = 0.0;  ///< [s] on the recording's clock
