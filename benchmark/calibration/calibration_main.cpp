@@ -81,27 +81,14 @@ BasisOptions whole() {
   return options;
 }
 
-/// What a recording from a fine mesh shows of a coarse mesh's surface vertices.
-std::vector<Frame> seen_on(const TetMesh& coarse, const Experiment& truth, const Scene& scene, std::mt19937& engine) {
-  std::vector<int> ids, there;
-  const TetMesh& fine = truth.mesh();
-  const Eigen::Vector3d low = coarse.nodes.rowwise().minCoeff(), high = coarse.nodes.rowwise().maxCoeff();
-  for (int i = 0; i < coarse.corner_count; ++i) {
-    const Eigen::Vector3d x = coarse.nodes.col(i);
-    const bool surface = ((x - low).cwiseMin(high - x).array() < 1e-9).any();
-    if (!surface) continue;
-    Eigen::Index nearest = 0;
-    (fine.nodes.leftCols(fine.corner_count).colwise() - x).colwise().squaredNorm().minCoeff(&nearest);
-    ids.push_back(i);
-    there.push_back(static_cast<int>(nearest));
+std::vector<int> surface_vertices(const TetMesh& mesh) {
+  std::vector<int> ids;
+  const Eigen::Vector3d low = mesh.nodes.rowwise().minCoeff(), high = mesh.nodes.rowwise().maxCoeff();
+  for (int i = 0; i < mesh.corner_count; ++i) {
+    const Eigen::Vector3d x = mesh.nodes.col(i);
+    if (((x - low).cwiseMin(high - x).array() < 1e-9).any()) ids.push_back(i);
   }
-  std::vector<Frame> frames;
-  for (const Experiment::Moment& moment : truth.film(0.0, scene.interval, kFrames)) {
-    Frame frame = see_vertices(truth, moment, there, scene.noise, engine);
-    for (std::size_t i = 0; i < ids.size(); ++i) frame.observations.front().ids[static_cast<Eigen::Index>(i)] = ids[i];
-    frames.push_back(std::move(frame));
-  }
-  return frames;
+  return ids;
 }
 
 struct Trial {
@@ -131,7 +118,8 @@ Trial run(const Scene& scene, const TetMesh& mesh, const TetMesh& filmed, bool m
   Eigen::VectorXd wrench = Eigen::VectorXd::Zero(6);
   wrench.head(3) = load;
   if (pressed) truth.add_load({"/force", 0.0, wrench});
-  const std::vector<Frame> frames = seen_on(mesh, truth, scene, engine);
+  const std::vector<Frame> frames =
+      see_on(mesh, surface_vertices(mesh), truth, truth.film(0.0, scene.interval, kFrames), scene.noise, engine);
   // The prior means what it says: the truth is drawn from it.
   Estimator estimator(settings(scene, modulus * std::exp(std::log(kFactor) * normal(engine)), load, mesh_error), mesh);
   if (pressed) estimator.add_load({"/force", 0.0, wrench});

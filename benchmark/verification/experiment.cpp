@@ -1,8 +1,15 @@
 #include "experiment.hpp"
 
 #include <numeric>
+#include <stdexcept>
+#include <string>
 
 namespace tissue_stiffness {
+namespace {
+
+constexpr double kSamePlace = 1e-9;  // [m]
+
+}  // namespace
 
 Experiment::Experiment(const ModelSettings& settings, const TetMesh& mesh, const std::vector<double>& truth,
                        const BasisOptions& basis)
@@ -47,10 +54,36 @@ Frame see_vertices(const Experiment& experiment, const Experiment::Moment& momen
   return {moment.time, {seen}};
 }
 
+std::vector<int> corners(const TetMesh& mesh) {
+  std::vector<int> ids(static_cast<std::size_t>(mesh.corner_count));
+  std::iota(ids.begin(), ids.end(), 0);
+  return ids;
+}
+
+std::vector<Frame> see_on(const TetMesh& coarse, const std::vector<int>& ids, const Experiment& finer,
+                          const std::vector<Experiment::Moment>& moments, double noise, std::mt19937& engine) {
+  const TetMesh& fine = finer.mesh();
+  std::vector<int> there;
+  for (const int id : ids) {
+    Eigen::Index nearest = 0;
+    const auto offsets = fine.nodes.leftCols(fine.corner_count).colwise() - coarse.nodes.col(id);
+    if (offsets.colwise().squaredNorm().minCoeff(&nearest) > kSamePlace * kSamePlace) {
+      throw std::invalid_argument("the finer mesh has no vertex at the coarser one's vertex " + std::to_string(id));
+    }
+    there.push_back(static_cast<int>(nearest));
+  }
+  std::vector<Frame> frames;
+  for (const Experiment::Moment& moment : moments) {
+    frames.push_back(see_vertices(finer, moment, there, noise, engine));
+    frames.back().observations.front().ids =
+        Eigen::Map<const Eigen::VectorXi>(ids.data(), static_cast<Eigen::Index>(ids.size()));
+  }
+  return frames;
+}
+
 std::vector<Frame> see_all(const Experiment& experiment, const std::vector<Experiment::Moment>& moments, double noise,
                            unsigned seed) {
-  std::vector<int> ids(static_cast<std::size_t>(experiment.mesh().corner_count));
-  std::iota(ids.begin(), ids.end(), 0);
+  const std::vector<int> ids = corners(experiment.mesh());
   std::mt19937 engine(seed);
   std::vector<Frame> frames;
   for (const Experiment::Moment& moment : moments) {

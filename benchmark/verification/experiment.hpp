@@ -44,6 +44,14 @@ Eigen::Matrix3Xd draw(Eigen::Index count, double sigma, std::mt19937& engine);
 Frame see_vertices(const Experiment& experiment, const Experiment::Moment& moment, const std::vector<int>& ids,
                    double noise, std::mt19937& engine);
 
+/// Every moment of a body on a finer mesh seen at the vertices `ids` of a coarser one. Throws std::invalid_argument where
+/// the finer mesh has no vertex there.
+std::vector<Frame> see_on(const TetMesh& coarse, const std::vector<int>& ids, const Experiment& finer,
+                          const std::vector<Experiment::Moment>& moments, double noise, std::mt19937& engine);
+
+/// 0, 1, ... of all corner vertices.
+std::vector<int> corners(const TetMesh& mesh);
+
 /// Every moment seen like that, all corner vertices of the mesh.
 std::vector<Frame> see_all(const Experiment& experiment, const std::vector<Experiment::Moment>& moments, double noise,
                            unsigned seed);

@@ -146,22 +146,10 @@ TEST(Diagnose, CountsTheRefitsOfEachRound) {
 
 // Filmed on a mesh three times as fine, seen at the coarse one's vertices.
 Recording film_finer(const ModelSettings& settings, const TetMesh& coarse) {
-  const TetMesh fine = bar_mesh(24, 6, 6);
-  const Experiment experiment(settings, fine, {kTruth});
+  const Experiment experiment(settings, bar_mesh(24, 6, 6), {kTruth});
+  std::mt19937 engine(1);
   Recording recording;
-  recording.frames = see_all(experiment, experiment.film(0.0, 0.02, 60), 0.1 * kNoise, 1);
-  for (Frame& frame : recording.frames) {
-    Observation& seen = frame.observations.front();
-    const Eigen::Matrix3Xd all = seen.points;
-    seen.points.resize(3, coarse.corner_count);
-    seen.ids.resize(coarse.corner_count);
-    for (int i = 0; i < coarse.corner_count; ++i) {
-      Eigen::Index nearest = 0;
-      (fine.nodes.colwise() - coarse.nodes.col(i)).leftCols(fine.corner_count).colwise().squaredNorm().minCoeff(&nearest);
-      seen.points.col(i) = all.col(nearest);
-      seen.ids[i] = i;
-    }
-  }
+  recording.frames = see_on(coarse, corners(coarse), experiment, experiment.film(0.0, 0.02, 60), 0.1 * kNoise, engine);
   return recording;
 }
 

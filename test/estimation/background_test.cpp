@@ -42,10 +42,23 @@ StepResult step_with_loads(Estimator& estimator, const std::vector<Frame>& frame
   return last;
 }
 
+ParameterEstimate estimated_at_once(const std::vector<Frame>& frames) {
+  Estimator waiting(box_settings(kPulled), bar_mesh());
+  return step_with_loads(waiting, frames, {}).estimate.parameters.front();
+}
+
+/// The longest that a look back took within a frame [s]; all loads are known before.
+double longest_revisit(Estimator& estimator, const std::vector<Frame>& frames) {
+  estimator.set_first_stamp(0.0);
+  for (int k = 0; k <= kFrames; ++k) estimator.add_load(wrench(kFilmed * k));
+  double longest = 0.0;
+  for (const Frame& frame : frames) longest = std::max(longest, estimator.step(frame).seconds.at("revisit"));
+  return longest;
+}
+
 TEST(Background, ComesToTheSameEstimate) {
   const std::vector<Frame> frames = recording();
-  Estimator waiting(box_settings(kPulled), bar_mesh());
-  const ParameterEstimate at_once = step_with_loads(waiting, frames, {}).estimate.parameters.front();
+  const ParameterEstimate at_once = estimated_at_once(frames);
   Estimator estimator(box_settings(kPulled), bar_mesh());
   estimator.work_in_background();
   const StepResult last = step_with_loads(estimator, frames, std::chrono::milliseconds(5));
@@ -58,8 +71,7 @@ TEST(Background, ComesToTheSameEstimate) {
 
 TEST(Background, CatchesUpAfterTheLastFrame) {
   const std::vector<Frame> frames = recording();
-  Estimator waiting(box_settings(kPulled), bar_mesh());
-  const ParameterEstimate at_once = step_with_loads(waiting, frames, {}).estimate.parameters.front();
+  const ParameterEstimate at_once = estimated_at_once(frames);
   Estimator estimator(box_settings(kPulled), bar_mesh());
   estimator.work_in_background();
   StepResult last = step_with_loads(estimator, frames, {});  // so fast that looks do not end in time
@@ -77,17 +89,10 @@ TEST(Background, CatchesUpAfterTheLastFrame) {
 }
 
 TEST(Background, HoldsUpNoFrame) {
-  Estimator estimator(box_settings(kPulled), bar_mesh());
+  const std::vector<Frame> frames = recording();
+  Estimator estimator(box_settings(kPulled), bar_mesh()), waiting(box_settings(kPulled), bar_mesh());
   estimator.work_in_background();
-  estimator.set_first_stamp(0.0);
-  for (int k = 0; k <= kFrames; ++k) estimator.add_load(wrench(kFilmed * k));
-  double revisits = 0.0;
-  for (const Frame& frame : recording()) revisits = std::max(revisits, estimator.step(frame).seconds.at("revisit"));
-  Estimator waiting(box_settings(kPulled), bar_mesh());
-  waiting.set_first_stamp(0.0);
-  for (int k = 0; k <= kFrames; ++k) waiting.add_load(wrench(kFilmed * k));
-  double waited = 0.0;
-  for (const Frame& frame : recording()) waited = std::max(waited, waiting.step(frame).seconds.at("revisit"));
+  const double revisits = longest_revisit(estimator, frames), waited = longest_revisit(waiting, frames);
   std::printf("longest revisit within a frame: %.2f ms in the background, %.2f ms at once\n", 1e3 * revisits, 1e3 * waited);
   EXPECT_LT(revisits, 0.5 * waited);
 }

@@ -20,23 +20,9 @@ TetMesh coarse() {
 
 // Filmed on a mesh three times as fine, seen at the coarse one's vertices.
 std::vector<Frame> recording(int count) {
-  const TetMesh mesh = coarse(), fine = bar_mesh(24, 6, 6);
-  const Experiment bar(settings(false), fine, {kTruth});
-  Eigen::VectorXi own(mesh.corner_count);
-  std::vector<int> ids;
-  for (int i = 0; i < mesh.corner_count; ++i) {
-    Eigen::Index nearest = 0;
-    EXPECT_LT((fine.nodes.colwise() - mesh.nodes.col(i)).colwise().squaredNorm().minCoeff(&nearest), 1e-18);
-    ids.push_back(static_cast<int>(nearest));
-    own[i] = i;
-  }
+  const Experiment bar(settings(false), bar_mesh(24, 6, 6), {kTruth});
   std::mt19937 engine(1);
-  std::vector<Frame> frames;
-  for (const auto& moment : bar.film(0.0, kFilmed, count)) {
-    frames.push_back(see_vertices(bar, moment, ids, kNoise, engine));
-    frames.back().observations.front().ids = own;
-  }
-  return frames;
+  return see_on(coarse(), corners(coarse()), bar, bar.film(0.0, kFilmed, count), kNoise, engine);
 }
 
 TEST(MeshError, OfACoarseMeshIsCorrectedAndInTheInterval) {

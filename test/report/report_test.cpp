@@ -1,14 +1,13 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "example.hpp"
 #include "tissue_stiffness/report/course.hpp"
-#include "tissue_stiffness/report/map_vtk.hpp"
 #include "tissue_stiffness/report/page.hpp"
 #include "tissue_stiffness/report/text.hpp"
 #include "tissue_stiffness/report/write_diagnosis.hpp"
@@ -21,103 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-ParameterEstimate young(double mean, double std) {
-  return {"elasticity.young_modulus", "Pa", mean, std, mean - 1.96 * std, mean + 1.96 * std};
-}
-
-/// A run that settles on 412 kPa, with a few frames lost.
-Results example(int frames) {
-  Results results;
-  results.model = "model.yaml";
-  results.recording = "recording.bag";
-  results.state = EstimateState::converged;
-  for (int i = 0; i < frames; ++i) {
-    FrameRecord frame;
-    frame.time = 1500000000.0 + 0.02 * i;
-    if (i % 17 == 9) {
-      frame.used = false;
-      frame.reason = i % 2 ? "no contour: contrast, \"too low\" & <dark>" : "late";
-    } else {
-      const double std = 3e5 / (1.0 + 0.5 * i);
-      frame.misfit_rms = 3e-4 * (1.0 + 0.2 * std::sin(i) + 3.0 * std::exp(-0.3 * i));
-      frame.misfit_sigma = frame.misfit_rms / 3e-4;
-      frame.nis = 100.0 + 10.0 * std::sin(2.0 * i);
-      frame.dof = 100;
-      frame.outliers = i % 3;
-      results.frame_seconds.push_back(0.001 * (1 + i % 7));
-      frame.parameters = {young(4.12e5 + 2e5 * std::exp(-0.2 * i), std), {"mass_damping.alpha", "1/s", 2.0, nan, 1.0, 3.0}};
-    }
-    frame.state = i < 20 ? EstimateState::converging : EstimateState::converged;
-    results.frames.push_back(frame);
-  }
-  results.parameters = {young(4.1234e5, 2.1e3), {"mass_damping.alpha", "1/s", 2.0, 0.5, 1.2, 3.1}};
-  results.identifiable = {{"elasticity.young_modulus", {"absolute", "gravity is known"}},
-                          {"mass_damping.alpha", {"ratio_only", "only its product with <density> matters"}}};
-  results.rms_error = 3.1e-4;
-  results.noise_rms = 3e-4;
-  results.relative_error = 0.021;
-  results.nis_mean_per_dof = 1.02;
-  results.nis_p_value = 0.4;
-  results.stage_seconds = {{"predict", 1.5}, {"observe", 0.3}, {"update", 0.02}};
-  results.description = {"reduced basis of 24 vectors", "step 0.005 s"};
-  results.model_text = "mesh: {file: mesh.vtk}  # <b>&\"quoted\"</b>\neffects:\n- inertia: {density: 1060}\n";
-  results.command_line = "estimate model.yaml recording.bag --output out";
-  results.versions = {{"tissue_stiffness", "0.1.0"}, {"Eigen", "3.4.0"}};
-  return results;
-}
-
-/// Two patches on two tetrahedra, the second at its prior.
-StiffnessMap example_map() {
-  StiffnessMap map;
-  map.levels = {{1, 4.0, 0.0, true}, {2, 1.1, 250.0, true}};
-  map.patches = {{{0.1, 0.2, 0.3}, 30e3, 0.01, 29e3, 31e3, true}, {{0.4, 0.5, 0.6}, 50e3, 0.7, 12e3, 2e5, false}};
-  map.patch_of_tet = {1, 0, -1};
-  return map;
-}
-
-TEST(ResultsJson, HoldsTheMapWhereThereIsOne) {
-  Results results = example(20);
-  EXPECT_FALSE(json::parse(results_json(results)).contains("map"));
-  results.map = example_map();
-  const json map = json::parse(results_json(results))["map"];
-  EXPECT_EQ(map["levels"][1]["patches"], 2);
-  EXPECT_EQ(map["levels"][1]["log_evidence"], 250.0);
-  EXPECT_EQ(map["patches"][0]["center"], json({0.1, 0.2, 0.3}));
-  EXPECT_EQ(map["patches"][0]["young_modulus"], 30e3);
-  EXPECT_EQ(map["patches"][1]["interval95"], json({12e3, 2e5}));
-  EXPECT_EQ(map["patches"][1]["identified"], false);
-  EXPECT_EQ(map["identified"], 1);
-  EXPECT_EQ(map["mesh_error"], "assessed");
-}
-
-TEST(ReportHtml, SaysHowMuchOfTheBodyTheMapIdentifies) {
-  Results results = example(20);
-  EXPECT_EQ(report_html(results, {}).find("id=\"map\""), std::string::npos);
-  results.map = example_map();
-  const std::string page = report_html(results, {});
-  EXPECT_NE(page.find("1 of the body&#39;s 2 parts are identified; of the others"), std::string::npos);
-  EXPECT_NE(page.find("at its prior</span>"), std::string::npos);
-  EXPECT_NE(page.find("and the error of the mesh."), std::string::npos);
-  results.map->mesh_error = "the mesh has more than 6000 nodes";
-  EXPECT_NE(report_html(results, {}).find("not the error of the mesh: the mesh has more"), std::string::npos);
-}
-
-TEST(MapVtk, HoldsTheBodyAndItsPatches) {
-  TetMesh mesh;
-  mesh.nodes = Eigen::Matrix3Xd::Zero(3, 7);
-  mesh.nodes.row(1) << 0, 1, 2, 3, 4, 5, 6.25;
-  mesh.tets.resize(4, 3);
-  mesh.tets << 0, 1, 2, 1, 2, 3, 2, 3, 4, 3, 4, 5;
-  const std::string whole = map_vtk(example_map(), mesh);
-  const auto holds = [&](const std::string& text) { return whole.find(text) != std::string::npos; };
-  EXPECT_TRUE(holds("POINTS 7 double\n0 0 0\n0 1 0\n"));
-  EXPECT_TRUE(holds("\n0 6.25 0\nCELLS 3 15\n4 0 1 2 3\n"));
-  EXPECT_TRUE(holds("CELL_TYPES 3\n10\n10\n10\nCELL_DATA 3\n"));
-  EXPECT_TRUE(holds("SCALARS patch int 1\nLOOKUP_TABLE default\n1\n0\n-1\n"));
-  EXPECT_TRUE(holds("SCALARS young_modulus double 1\nLOOKUP_TABLE default\n50000\n30000\n0\n"));
-  EXPECT_TRUE(holds("SCALARS identified int 1\nLOOKUP_TABLE default\n0\n1\n0\n"));
-}
 
 TEST(ResultsJson, HoldsTheContract) {
   const Results results = example(60);
