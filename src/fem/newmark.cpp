@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "tissue_stiffness/types/error.hpp"
 
@@ -14,11 +15,11 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr int kMaxIterations = 40;
-constexpr int kPatience = 12;       // iterations of a step before the factor is renewed within it
-constexpr int kMostRenewals = 6;    // of the factor within a step
-constexpr double kGrowth = 2.0;     // of a correction, at which iterations are taken to diverge
-constexpr int kYoung = 4;           // steps that a factor's first iterations are counted over
-constexpr double kLeastRate = 0.3;  // at which another system's corrections are expected to shrink
+constexpr int kPatience = 12;     // iterations of a step before the factor is renewed within it
+constexpr int kMostRenewals = 6;  // of the factor within a step
+constexpr double kGrowth = 2.0;   // of a correction, at which iterations are taken to diverge
+constexpr int kYoung = 4;         // steps that a factor's first iterations are counted over
+constexpr double kOlder = 0.2;    // share of the last step's acceleration in the first guess
 constexpr int kMaxHalvings = 10;
 constexpr int kMostCuts = 6;  // of a correction that turns an element inside out
 constexpr std::size_t kMostUpdates = 8;
@@ -186,17 +187,19 @@ void Newmark::turn() {
   }
 }
 
-// From what displacement, velocity and acceleration promise, and what the balance added to that elsewhere.
-bool Newmark::start(std::size_t begin, std::size_t end, const Eigen::VectorXd& head_start) {
-  std::vector<char> fine(end, 1);
-  tbb::parallel_for(begin, end, [&](std::size_t i) {
+// From what displacement, velocity and acceleration promise. The acceleration rings in modes that the steps do not resolve:
+// with a part of the one before it promises better.
+bool Newmark::start() {
+  std::vector<char> fine(columns_.size(), 1);
+  tbb::parallel_for(std::size_t{0}, columns_.size(), [&](std::size_t i) {
     Column& c = columns_[i];
-    c.increment = c.step * c.before->velocity + 0.5 * c.step * c.step * c.before->acceleration;
-    if (head_start.size() > 0) c.increment += head_start;
+    const DynamicState& s = *c.before;
+    c.increment = c.step * s.velocity + 0.5 * c.step * c.step * s.acceleration;
+    if (c.reached == s.time) c.increment -= 0.5 * kOlder * c.step * c.step * (s.acceleration - c.earlier_acceleration);
     c.last = kInfinity;
+    c.rate = 1.0;
     c.done = false;
-    c.rate = i > 0 ? std::max(columns_.front().rate, kLeastRate) : 1.0;
-    c.updates = i > 0 ? columns_.front().updates : decltype(c.updates)();
+    c.updates.clear();
     try {
       c.residual = residual(c, c.increment);
     } catch (const NumericalError&) {
@@ -288,13 +291,13 @@ void Newmark::learn(Column& c) {
   c.residual.swap(c.next);
 }
 
-int Newmark::iterate(std::size_t begin, std::size_t end) {
+int Newmark::iterate() {
   int renewals = 0;
   for (int k = 0, since = 0; k < kMaxIterations; ++k, ++since) {
     ++iterations_;
     std::vector<Column*> active;
-    for (std::size_t i = begin; i < end; ++i) {
-      if (!columns_[i].done) active.push_back(&columns_[i]);
+    for (Column& column : columns_) {
+      if (!column.done) active.push_back(&column);
     }
     find_directions(active);
     const Progress progress = judge(active, since);
@@ -317,21 +320,15 @@ bool Newmark::try_step(std::vector<DynamicState>& states, const std::vector<doub
     columns_[i].step = steps[i];
   }
   try {
-    if (!start(0, 1, {})) return false;
+    if (!start()) return false;
     const bool other_step = std::abs(steps.front() - factored_step_) > kSameStep * factored_step_;
     if (!solver_.ready() || other_step || excess_ > kWorthIterations * worth_ * solver_.cost()) {
       factorize(columns_.front());
     } else {
       turn();
     }
-    const int iterations = iterate(0, 1);
+    const int iterations = iterate();
     if (iterations == 0) return false;
-    if (columns_.size() > 1) {
-      const Column& c = columns_.front();
-      const Eigen::VectorXd found =
-          c.increment - c.step * c.before->velocity - 0.5 * c.step * c.step * c.before->acceleration;
-      if (!start(1, columns_.size(), found) || iterate(1, columns_.size()) == 0) return false;
-    }
     note_age(iterations);
   } catch (const NumericalError&) {
     return false;
@@ -350,14 +347,15 @@ void Newmark::note_age(int iterations) {
   excess_ = std::max(0.0, excess_ + iterations - young_);
 }
 
-void Newmark::accept(const Column& c, DynamicState& state) const {
+void Newmark::accept(Column& c, DynamicState& state) const {
   const Eigen::VectorXd a = acceleration(c, c.increment);
   state.velocity += c.step * ((1.0 - gamma_) * state.acceleration + gamma_ * a);
   state.relaxed =
       relax(c.system->relaxations(), c.step, state.displacement, state.displacement + c.increment, state.relaxed);
   state.displacement += c.increment;
-  state.acceleration = a;
+  c.earlier_acceleration = std::exchange(state.acceleration, a);
   state.time += c.step;
+  c.reached = state.time;
 }
 
 }  // namespace tissue_stiffness

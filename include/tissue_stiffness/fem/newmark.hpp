@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <deque>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -41,12 +42,12 @@ struct DynamicState {
 /// linear system.
 ///
 /// The balance is solved by quasi-Newton iterations (BFGS: Matthies & Strang 1979) around one Jacobian of an earlier
-/// instant, turned with the material. Their updates are carried from step to step; the factor is renewed when the
-/// iterations that its age has cost outweigh a factorisation, or when they diverge. A step that still fails is cut in
+/// instant, turned with the material. The factor is renewed when the iterations that its age has cost outweigh a
+/// factorisation, or when they diverge. A step that still fails is cut in
 /// halves.
 ///
-/// Systems of one size that differ little - a model at several parameters - step side by side: the first one's factor and
-/// updates serve all, and what its iterations found starts those of the others, which go through the factor together.
+/// Systems of one size that differ little - a model at several parameters - step side by side: the first one's factor
+/// serves all, and they go through it together.
 class Newmark {
  public:
   /// `tolerance`: largest correction that is left out [m]. Systems must hold the same degrees of freedom.
@@ -81,14 +82,16 @@ class Newmark {
     double last = 0.0;  ///< size of the last correction
     double rate = 1.0;  ///< at which they shrink
     bool done = false;
+    Eigen::VectorXd earlier_acceleration;                       ///< before the last step
+    double reached = std::numeric_limits<double>::quiet_NaN();  ///< time after it [s]
   };
   enum class Progress { going, done, slow, failed };
 
   bool try_step(std::vector<DynamicState>& states, const std::vector<double>& steps);
   void cut_step(std::vector<DynamicState>& states, const std::vector<double>& steps, int depth);
-  /// Iterates over columns of `columns_` until all are done; the number of iterations, 0 when they diverge.
-  int iterate(std::size_t begin, std::size_t end);
-  bool start(std::size_t begin, std::size_t end, const Eigen::VectorXd& head_start);
+  /// Until all columns are done; the number of iterations, 0 when they diverge.
+  int iterate();
+  bool start();
   void find_directions(const std::vector<Column*>& active);
   Progress judge(const std::vector<Column*>& active, int iteration) const;
   bool move(const std::vector<Column*>& active) const;
@@ -97,7 +100,7 @@ class Newmark {
   void note_age(int iterations);
   Eigen::VectorXd acceleration(const Column& column, const Eigen::VectorXd& increment) const;
   Eigen::VectorXd residual(Column& column, const Eigen::VectorXd& increment) const;
-  void accept(const Column& column, DynamicState& state) const;
+  void accept(Column& column, DynamicState& state) const;
   static void learn(Column& column);
 
   double alpha_m_ = 0.0, alpha_f_ = 0.0, beta_ = 0.25, gamma_ = 0.5;
