@@ -9,8 +9,9 @@ class AddedMass : public Effect {
  public:
   AddedMass(const Value& arguments, const EffectContext& context) {
     const Region& region = context.region(arguments.at("region"));
-    unit_mass_ = region.facets.empty() ? on_nodes(region, context.fem) : facet_mass(context.mesh, region.facets);
-    unit_mass_ *= 3.0 / unit_mass_.sum();
+    SparseMatrix mass = region.facets.empty() ? on_nodes(region, context.fem) : facet_mass(context.mesh, region.facets);
+    mass *= 3.0 / mass.sum();
+    unit_mass_ = std::make_shared<SparseMatrix>(std::move(mass));
   }
 
   void linear_terms(LinearTerms& out) const override {
@@ -26,7 +27,7 @@ class AddedMass : public Effect {
     return shares;
   }
 
-  SparseMatrix unit_mass_;
+  std::shared_ptr<const SparseMatrix> unit_mass_;
 };
 
 // On every named surface that nothing holds.

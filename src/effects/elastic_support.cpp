@@ -21,7 +21,7 @@ class ElasticSupport : public Effect {
     if (!is_fixed(context.settings, name.as_text())) {
       throw InputError(name.path(), name.shown(), "the region of a `fixed` effect");
     }
-    unit_ = facet_mass(context.mesh, region.facets);
+    unit_ = std::make_shared<SparseMatrix>(facet_mass(context.mesh, region.facets));
     nodes_ = region.nodes;
   }
 
@@ -32,7 +32,7 @@ class ElasticSupport : public Effect {
   bool releases(const Parameters& p) const override { return p[0] > 0.0; }
 
  private:
-  SparseMatrix unit_;
+  std::shared_ptr<const SparseMatrix> unit_;
   std::vector<int> nodes_;
 };
 

@@ -14,13 +14,15 @@ class Elasticity : public Effect {
     finite_strain_ = arguments.at("law").as_choice({"linear", "neo_hookean"}) == "neo_hookean";
     Eigen::VectorXd inside = Eigen::VectorXd::Zero(context.fem.element_count());
     for (const int e : elements_) inside[e] = 1.0;
-    volumetric_ = context.fem.volumetric_stiffness(inside);
-    shear_ = context.fem.shear_stiffness(inside);
-    if (!arguments.has("region")) return;
-    for (SparseMatrix* part : {&volumetric_, &shear_}) {  // of many regions each keeps its own entries alone
-      part->prune(0.0);
-      part->data().squeeze();
-    }
+    const auto kept = [&](SparseMatrix part) {
+      if (arguments.has("region")) {  // of many regions each keeps its own entries alone
+        part.prune(0.0);
+        part.data().squeeze();
+      }
+      return std::make_shared<SparseMatrix>(std::move(part));
+    };
+    volumetric_ = kept(context.fem.volumetric_stiffness(inside));
+    shear_ = kept(context.fem.shear_stiffness(inside));
   }
 
   void linear_terms(LinearTerms& out) const override {
@@ -41,7 +43,7 @@ class Elasticity : public Effect {
     double sum = 0.0;
     if (motion.finite_share > 0.0) sum += motion.finite_share * solid_.energy(c, u);
     if (motion.finite_share < 1.0) {
-      sum += (1.0 - motion.finite_share) * 0.5 * (c.lambda * u.dot(volumetric_ * u) + c.mu * u.dot(shear_ * u));
+      sum += (1.0 - motion.finite_share) * 0.5 * (c.lambda * u.dot(*volumetric_ * u) + c.mu * u.dot(*shear_ * u));
     }
     return sum;
   }
@@ -50,7 +52,7 @@ class Elasticity : public Effect {
   std::vector<int> elements_;
   NeoHookean solid_;
   bool finite_strain_ = false;
-  SparseMatrix volumetric_, shear_;
+  std::shared_ptr<const SparseMatrix> volumetric_, shear_;
 };
 
 }  // namespace

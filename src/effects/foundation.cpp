@@ -22,16 +22,16 @@ std::vector<int> loose_surface(const EffectContext& context) {
 class Foundation : public Effect {
  public:
   Foundation(const Value& arguments, const EffectContext& context)
-      : unit_(facet_mass(context.mesh, arguments.has("region")
-                                           ? find_surface(arguments.at("region"), context.regions).facets
-                                           : loose_surface(context))) {}
+      : unit_(std::make_shared<SparseMatrix>(
+            facet_mass(context.mesh, arguments.has("region") ? find_surface(arguments.at("region"), context.regions).facets
+                                                             : loose_surface(context)))) {}
 
   void linear_terms(LinearTerms& out) const override {
     out.stiffness.push_back({unit_, [](const Parameters& p) { return p[0]; }});
   }
 
  private:
-  SparseMatrix unit_;
+  std::shared_ptr<const SparseMatrix> unit_;
 };
 
 // On the whole loose surface and on every named one that nothing holds.

@@ -7,14 +7,14 @@ namespace {
 class Inertia : public Effect {
  public:
   Inertia(const Value&, const EffectContext& context)
-      : unit_mass_(context.fem.mass(Eigen::VectorXd::Ones(context.fem.element_count()))) {}
+      : unit_mass_(std::make_shared<SparseMatrix>(context.fem.mass(Eigen::VectorXd::Ones(context.fem.element_count())))) {}
 
   void linear_terms(LinearTerms& out) const override {
     out.mass.push_back({unit_mass_, [](const Parameters& p) { return p[0]; }});
   }
 
  private:
-  SparseMatrix unit_mass_;
+  std::shared_ptr<const SparseMatrix> unit_mass_;
 };
 
 }  // namespace

@@ -178,6 +178,10 @@ SparseMatrix Discretisation::shear_stiffness(const Eigen::VectorXd& element_weig
 }
 
 void add_scaled(SparseMatrix& to, double scale, const SparseMatrix& part) {
+  if (part.nonZeros() == to.nonZeros()) {  // all of its places
+    to.coeffs() += scale * part.coeffs();
+    return;
+  }
   double* values = to.valuePtr();
   const int* rows = to.innerIndexPtr();
   for (Eigen::Index column = 0; column < part.outerSize(); ++column) {

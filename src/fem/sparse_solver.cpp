@@ -4,11 +4,13 @@
 #include <cholmod.h>
 
 #include <mutex>
+#include <thread>
 
 #include "tissue_stiffness/fem/single_factor.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
-// Trajectories run in parallel, one solver each: threads inside BLAS or CHOLMOD would only get in their way.
+// Trajectories run in parallel, one solver each: threads inside BLAS or CHOLMOD would only get in their way. All else waits
+// for a large factor, which takes all cores.
 extern "C" void openblas_set_num_threads(int) __attribute__((weak));
 extern "C" void omp_set_max_active_levels(int) __attribute__((weak));
 
@@ -16,8 +18,10 @@ namespace tissue_stiffness {
 
 namespace {
 
-void take_one_thread() {
-  if (openblas_set_num_threads != nullptr) openblas_set_num_threads(1);
+constexpr double kWorthThreads = 1e10;  // operations of a factorisation
+
+void take_threads(int count) {
+  if (openblas_set_num_threads != nullptr) openblas_set_num_threads(count);
   if (omp_set_max_active_levels != nullptr) omp_set_max_active_levels(0);  // CHOLMOD asks for 4 threads by name
 }
 
@@ -32,7 +36,7 @@ struct SparseSolver::Data {
   mutable std::mutex busy;                             ///< CHOLMOD's workspace is one for all solves
 
   Data() {
-    take_one_thread();
+    take_threads(1);
     cholmod_start(&common);
 #ifdef TISSUE_STIFFNESS_CHOLMOD_SUPERNODAL
     common.supernodal = CHOLMOD_SUPERNODAL;
@@ -148,7 +152,10 @@ void SparseSolver::factorize(const SparseMatrix& matrix) {
   if (data_->factor == nullptr) data_->factor = data_->analyse(a);
   data_->numeric = false;
   data_->single = nullptr;
+  const bool large = data_->common.fl > kWorthThreads;
+  if (large) take_threads(static_cast<int>(std::thread::hardware_concurrency()));
   const bool failed = data_->factor == nullptr || cholmod_factorize(&a, data_->factor, &data_->common) == 0;
+  if (large) take_threads(1);
   if (failed) throw NumericalError("sparse factorisation failed: out of memory or a pattern that changed");
   if (data_->common.status == CHOLMOD_NOT_POSDEF) {
     throw NumericalError("matrix is not positive definite (column " + std::to_string(data_->factor->minor) + ")");

@@ -24,13 +24,8 @@ double product_of(const std::vector<Model::Part>& parts, const Eigen::VectorXd& 
   return product;
 }
 
-void add(SparseMatrix& to, double scale, const SparseMatrix& part) {
-  if (scale == 0.0) return;
-  if (part.nonZeros() == to.nonZeros()) {
-    to += scale * part;
-  } else {
-    add_scaled(to, scale, part);
-  }
+void add(SparseMatrix& to, double scale, const MatrixTerm& term) {
+  if (scale != 0.0) add_scaled(to, scale, *term.matrix);
 }
 
 }  // namespace
@@ -59,7 +54,7 @@ SparseMatrix Model::mass(const Eigen::VectorXd& theta) const {
   for (const Part& part : parts_) {
     if (part.terms.mass.empty()) continue;
     const Eigen::VectorXd p = part.parameters(theta);
-    for (const MatrixTerm& term : part.terms.mass) add(m, factor * term.coefficient(p), term.matrix);
+    for (const MatrixTerm& term : part.terms.mass) add(m, factor * term.coefficient(p), term);
   }
   return m;
 }
@@ -71,7 +66,7 @@ SparseMatrix Model::sum_stiffness(const Eigen::VectorXd& theta, bool reference) 
     const double share = reference ? 1.0 : 1.0 - finite_share(part, theta);
     if (share == 0.0) continue;
     const Eigen::VectorXd p = part.parameters(theta);
-    for (const MatrixTerm& term : part.terms.stiffness) add(k, share * term.coefficient(p), term.matrix);
+    for (const MatrixTerm& term : part.terms.stiffness) add(k, share * term.coefficient(p), term);
     for (const StrainTerm& term : part.terms.strain_stiffness) {
       const double scale = share * term.coefficient(p);
       if (scale != 0.0) add_strain_stiffness(fem_, term.at(p), scale, k);

@@ -132,7 +132,7 @@ std::vector<SparseMatrix> stiffness_groups(const Model& model, const PriorView& 
     const Eigen::VectorXd p = part.parameters(prior.theta), generic = part.parameters(prior.generic);
     for (const auto& term : part.terms.stiffness) {
       const double c = term.coefficient(p);
-      if (c != 0.0) add_scaled(group(term.coefficient(generic) / c), c, term.matrix);
+      if (c != 0.0) add_scaled(group(term.coefficient(generic) / c), c, *term.matrix);
     }
     for (const auto& term : part.terms.strain_stiffness) {
       const double c = term.coefficient(p);
@@ -156,7 +156,7 @@ std::vector<SparseMatrix> sleeping_stiffness(const Model& model, const PriorView
     const auto sleeps = [&](const Coefficient& c) { return c(p) == 0.0 && c(generic) != 0.0; };
     for (const auto& term : part.terms.stiffness) {
       if (!sleeps(term.coefficient)) continue;
-      add_scaled(sum, term.coefficient(generic), term.matrix);
+      add_scaled(sum, term.coefficient(generic), *term.matrix);
       any = true;
     }
     for (const auto& term : part.terms.strain_stiffness) {
@@ -176,7 +176,7 @@ Eigen::MatrixXd sleeping_forces(const Model& model, const PriorView& prior, std:
   Eigen::MatrixXd forces(u.rows(), 0), sum = Eigen::MatrixXd::Zero(u.rows(), u.cols());
   const auto sleeps = [&](const Coefficient& c) { return c(p) == 0.0 && c(generic) != 0.0; };
   for (const auto& term : part.terms.stiffness) {
-    if (sleeps(term.coefficient)) sum += term.coefficient(generic) * (term.matrix * u);
+    if (sleeps(term.coefficient)) sum += term.coefficient(generic) * (*term.matrix * u);
   }
   for (const auto& term : part.terms.strain_stiffness) {
     if (sleeps(term.coefficient)) {
@@ -189,7 +189,7 @@ Eigen::MatrixXd sleeping_forces(const Model& model, const PriorView& prior, std:
   }
   if (!sum.isZero(0.0)) append(forces, sum);
   for (const auto& term : part.terms.mass) {
-    if (sleeps(term.coefficient)) append(forces, term.matrix * u);
+    if (sleeps(term.coefficient)) append(forces, *term.matrix * u);
   }
   return forces;
 }

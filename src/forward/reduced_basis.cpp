@@ -250,7 +250,7 @@ class Builder {
   }
 
   static SparseMatrix springs(const Model::Part& part, const Eigen::VectorXd& p) {
-    SparseMatrix sum = part.terms.stiffness.front().matrix;
+    SparseMatrix sum = *part.terms.stiffness.front().matrix;
     sum *= part.terms.stiffness.front().coefficient(p);
     return sum;
   }

@@ -98,11 +98,11 @@ void ReducedModel::project_part(std::size_t index) {
     for (Eigen::Index i = 0; i < loose.rows(); ++i) {
       if (model_.fixed()[static_cast<std::size_t>(i)] != 0) loose.row(i).setZero();
     }
-    out.mass.push_back(project_matrix(term.matrix, b));
-    out.weight.push_back(b.transpose() * (term.matrix * unit));
-    out.momentum.push_back(b.transpose() * (term.matrix * loose));
+    out.mass.push_back(project_matrix(*term.matrix, b));
+    out.weight.push_back(b.transpose() * (*term.matrix * unit));
+    out.momentum.push_back(b.transpose() * (*term.matrix * loose));
   }
-  for (const auto& term : part.terms.stiffness) out.stiffness.push_back(project_matrix(term.matrix, b));
+  for (const auto& term : part.terms.stiffness) out.stiffness.push_back(project_matrix(*term.matrix, b));
   for (const auto& term : part.terms.strain_stiffness) {
     out.strain_stiffness.emplace_back();
     if (model_.estimated(part, term.shape)) continue;

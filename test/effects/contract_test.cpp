@@ -286,7 +286,7 @@ TEST(EveryEffect, FiniteStrainTendsToTheLinearTerms) {
     if (!part.effect->has_finite_form()) continue;
     const Eigen::VectorXd p = part.parameters(model.theta(model.prior_mean()));
     SparseMatrix k = model.fem().pattern();
-    for (const MatrixTerm& term : part.terms.stiffness) add_scaled(k, term.coefficient(p), term.matrix);
+    for (const MatrixTerm& term : part.terms.stiffness) add_scaled(k, term.coefficient(p), *term.matrix);
     for (const StrainTerm& term : part.terms.strain_stiffness) {
       add_strain_stiffness(model.fem(), term.at(p), term.coefficient(p), k);
     }

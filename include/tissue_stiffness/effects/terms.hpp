@@ -18,7 +18,7 @@ using Coefficient = std::function<double(const Parameters&)>;
 
 /// Contributions that are linear in displacement and velocity: coefficient(parameters) times a constant.
 struct MatrixTerm {
-  SparseMatrix matrix;  ///< 3n x 3n; a local term stores its own non-zeros only
+  std::shared_ptr<const SparseMatrix> matrix;  ///< 3n x 3n, the effect's; a local term stores its own non-zeros only
   Coefficient coefficient;
 };
 
