@@ -53,7 +53,7 @@ MissingEffect describe(const FirstLook& look, const std::vector<Refit>& refits, 
   out.effect = r.effect;
   out.entry = r.best->proposal.yaml;
   out.log_bayes_factor = r.evidence;
-  out.p_value = r.score.p_value;
+  out.p_value = r.p_value;
   out.size = r.score.size;
   out.explained = r.score.explained;
   for (Eigen::Index i = 0; i < r.score.amplitude.size(); ++i) {

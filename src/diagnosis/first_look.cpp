@@ -29,7 +29,7 @@ FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Eige
   by_mesh = cost - (r.error - mesh_change).squaredNorm();
   floor = Scorer(r.error, known, r.offsets, 1.0).remaining(mesh_change);
   // An effect has to explain what the mesh does not.
-  scorer = std::make_unique<Scorer>(r.error - mesh_change, known, r.offsets, 1.0);
+  scorer = std::make_unique<Scorer>(r.error - mesh_change, known, r.offsets, 1.0, kRemainder * mesh_change);
   ranked = rank(*scorer, candidates, kRemainder * floor);
 }
 

@@ -24,21 +24,22 @@ std::vector<Ranked> rank(const Scorer& scorer, const std::vector<Candidate>& can
   });
   std::vector<Ranked> ranked;
   std::map<std::string, std::vector<double>> factors;
+  std::map<std::string, std::vector<const Score*>> ways;
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     factors[candidates[c].effect].push_back(scores[c].log_bayes_factor);
+    if (scores[c].log_bayes_factor > kImpossible) ways[candidates[c].effect].push_back(&scores[c]);
     auto at = std::find_if(ranked.begin(), ranked.end(), [&](const Ranked& r) { return r.effect == candidates[c].effect; });
-    if (at == ranked.end()) at = ranked.insert(ranked.end(), {candidates[c].effect, nullptr, {}, 0.0, false, false});
+    if (at == ranked.end()) at = ranked.insert(ranked.end(), {candidates[c].effect, nullptr, {}, 0.0, 1.0, false, false});
     if (at->best != nullptr && scores[c].log_bayes_factor <= at->score.log_bayes_factor) continue;
     at->best = &candidates[c];
     at->score = scores[c];
   }
   const double effects = static_cast<double>(ranked.size());
   for (Ranked& r : ranked) {
-    const std::vector<double>& ways = factors[r.effect];
-    r.evidence = log_mean_exp(ways);
-    const double p = std::min(1.0, r.score.p_value * effects * static_cast<double>(ways.size()));
+    r.evidence = log_mean_exp(factors[r.effect]);
+    r.p_value = combined_p_value(ways[r.effect]);
     r.promising = r.evidence > kEvidence && r.score.size > std::max(kOverFloor * floor, kLeastSize);
-    r.declared = r.promising && p < kSignificance;
+    r.declared = r.promising && r.p_value * effects < kSignificance;
   }
   std::stable_sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) { return a.evidence > b.evidence; });
   return ranked;

@@ -1,11 +1,12 @@
 #include "tissue_stiffness/diagnosis/scores.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
+#include <boost/math/special_functions/beta.hpp>
 #include <cmath>
 
-#include "tissue_stiffness/filter/consistency.hpp"
 #include "tissue_stiffness/filter/long_run_variance.hpp"
 
 namespace tissue_stiffness {
@@ -15,10 +16,14 @@ constexpr double kGone = 1e-6;  // a tangent of which less than this share is le
 
 constexpr double kBandwidth = 1.3;  // of the root of the number of frames, at least: Lazarus et al. 2018, sec. 3
 
-// How much wider than the normal's the statistic is when the bandwidth is the share b of the series: Kiefer & Vogelsang
-// 2005, table 1, Bartlett kernel at 5 %.
-double fixed_b_widening(double b) {
-  return (1.96 + b * (2.9694 + b * (0.4160 - 0.5324 * b))) / 1.96;
+// P(q F > wald) where the covariance of `q` scores came with the bandwidth b of the series: Sun 2014 (Journal of
+// Econometrics 178), eq. 16-18, for the Bartlett kernel.
+double fixed_b_p_value(double wald, double q, double b) {
+  constexpr double mean = 1.0, square = 2.0 / 3.0;  // of the kernel
+  const double dof = std::max(std::ceil(1.0 / (b * square)), q), second = dof - q + 1.0;
+  const double shift = b * (mean + (q - 1.0) * square), widening = 0.5 * (std::exp(shift) + 1.0 + shift);
+  const double f = wald / q * second / (dof * widening);
+  return boost::math::ibeta(0.5 * second, 0.5 * q, second / (second + q * f));
 }
 
 Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& a) {
@@ -35,9 +40,10 @@ Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& a) {
 }  // namespace
 
 Scorer::Scorer(const Eigen::VectorXd& residual, const Eigen::MatrixXd& known, std::vector<Eigen::Index> offsets,
-               double variance)
+               double variance, const Eigen::VectorXd& doubt)
     : basis_(orthonormal(known)), offsets_(std::move(offsets)), variance_(std::max(1.0, variance)) {
   residual_ = project(residual);
+  if (doubt.size() > 0) doubt_ = project(doubt);
 }
 
 Eigen::MatrixXd Scorer::project(const Eigen::MatrixXd& x) const {
@@ -50,21 +56,27 @@ double Scorer::remaining(const Eigen::VectorXd& column) const {
   return project(column).norm() / std::sqrt(static_cast<double>(column.size()));
 }
 
-double Scorer::p_value(const Eigen::VectorXd& x, const Eigen::VectorXd& left) const {
+double Scorer::p_value(const Eigen::MatrixXd& x, const Eigen::VectorXd& left) const {
   const auto frames = static_cast<Eigen::Index>(offsets_.size()) - 1;
-  Eigen::VectorXd g(frames);
+  Eigen::MatrixXd g(frames, x.cols());
   for (Eigen::Index t = 0; t < frames; ++t) {
     const Eigen::Index from = offsets_[static_cast<std::size_t>(t)],
                        count = offsets_[static_cast<std::size_t>(t) + 1] - from;
-    g[t] = x.segment(from, count).dot(left.segment(from, count));
+    g.row(t) = left.segment(from, count).transpose() * x.middleRows(from, count);
   }
   const double n = static_cast<double>(frames);
-  const int lags =
-      std::min(std::max(bartlett_lags(g), static_cast<int>(kBandwidth * std::sqrt(n))), static_cast<int>(n) - 1);
-  const double variance = n * long_run_variance(g, lags);
-  if (!(variance > 0.0)) return 1.0;
-  const double z = x.dot(residual_) / std::sqrt(variance);
-  return 2.0 * (1.0 - normal_cdf(std::abs(z) / fixed_b_widening((lags + 1.0) / n)));
+  int lags = static_cast<int>(kBandwidth * std::sqrt(n));
+  for (Eigen::Index k = 0; k < g.cols(); ++k) lags = std::max(lags, bartlett_lags(g.col(k)));
+  lags = std::min(lags, static_cast<int>(n) - 1);
+  Eigen::MatrixXd covariance = n * long_run_covariance(g, lags);
+  if (doubt_.size() > 0) {
+    const Eigen::VectorXd may_be = x.transpose() * doubt_;
+    covariance += may_be * may_be.transpose();
+  }
+  const Eigen::LDLT<Eigen::MatrixXd> factor(covariance);
+  if (!factor.isPositive() || !(factor.vectorD().minCoeff() > 0.0)) return 1.0;
+  const Eigen::VectorXd sum = x.transpose() * residual_;
+  return fixed_b_p_value(sum.dot(factor.solve(sum)), static_cast<double>(x.cols()), (lags + 1.0) / n);
 }
 
 Score Scorer::score(const Tangent& tangent) const {
@@ -87,7 +99,7 @@ Score Scorer::score(const Tangent& tangent) const {
   out.explained = 1.0 - (residual_ - fit).squaredNorm() / residual_.squaredNorm();
   if (fit.norm() > 0.0) {
     out.direction = fit.normalized();
-    out.p_value = std::min(1.0, static_cast<double>(components) * p_value(fit, residual_ - fit));
+    out.p_value = p_value(x * x.colwise().norm().cwiseInverse().asDiagonal(), residual_ - fit);
   }
   return out;
 }
@@ -103,6 +115,29 @@ Score Scorer::score(const Tangent& a, const Tangent& b) const {
 
 double Score::cosine_with(const Score& other) const {
   return std::abs(direction.dot(other.direction));
+}
+
+double combined_p_value(const std::vector<const Score*>& ways) {
+  std::vector<const Score*> telling;
+  double best = 1.0;
+  for (const Score* way : ways) {
+    if (way->direction.isZero(0.0)) continue;
+    telling.push_back(way);
+    best = std::min(best, way->p_value);
+  }
+  const auto count = static_cast<Eigen::Index>(telling.size());
+  if (count < 2) return best;
+  Eigen::MatrixXd cosines(count, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (Eigen::Index j = 0; j <= i; ++j) {
+      cosines(i, j) = cosines(j, i) =
+          telling[static_cast<std::size_t>(i)]->cosine_with(*telling[static_cast<std::size_t>(j)]);
+    }
+  }
+  const Eigen::VectorXd values = cosines.selfadjointView<Eigen::Lower>().eigenvalues();
+  const double m = static_cast<double>(count), variance = (values.array() - 1.0).square().sum() / (m - 1.0);
+  const double tests = 1.0 + (m - 1.0) * std::max(0.0, 1.0 - variance / m);
+  return -std::expm1(tests * std::log1p(-std::min(best, 1.0 - 1e-15)));
 }
 
 double log_mean_exp(const std::vector<double>& values) {

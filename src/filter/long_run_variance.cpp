@@ -15,14 +15,19 @@ double autocovariance(const Eigen::VectorXd& series, Eigen::Index lag) {
 }  // namespace
 
 double long_run_variance(const Eigen::VectorXd& series, int lags) {
+  return std::max(0.0, long_run_covariance(series, lags)(0, 0));  // non-negative but for round-off
+}
+
+Eigen::MatrixXd long_run_covariance(const Eigen::MatrixXd& series, int lags) {
+  const Eigen::Index n = series.rows();
   if (series.size() == 0 || lags < 0) throw std::invalid_argument("long-run variance needs a series and lags >= 0");
-  double variance = autocovariance(series, 0);
-  const Eigen::Index last = std::min<Eigen::Index>(lags, series.size() - 1);
-  for (Eigen::Index lag = 1; lag <= last; ++lag) {
+  Eigen::MatrixXd sum = series.transpose() * series;
+  for (Eigen::Index lag = 1; lag <= std::min<Eigen::Index>(lags, n - 1); ++lag) {
     const double weight = 1.0 - static_cast<double>(lag) / (lags + 1.0);
-    variance += 2.0 * weight * autocovariance(series, lag);
+    const Eigen::MatrixXd product = series.topRows(n - lag).transpose() * series.bottomRows(n - lag);
+    sum += weight * (product + product.transpose());
   }
-  return std::max(0.0, variance);  // non-negative but for round-off
+  return sum / static_cast<double>(n);
 }
 
 int bartlett_lags(const Eigen::VectorXd& series) {

@@ -106,6 +106,52 @@ TEST(Scores, PValuesAreCalibratedForCorrelatedErrors) {
   }
 }
 
+// Of three directions, and of many ways that look alike, with an error of unknown sign that is allowed for.
+TEST(Scores, PValuesOfVectorsOfWaysAndUnderDoubtAreCalibrated) {
+  std::mt19937 engine(8);
+  std::normal_distribution<double> normal;
+  Eigen::MatrixXd vector(kRows, 3);
+  for (unsigned k = 0; k < 3; ++k) vector.col(k) = ringing(0.15 + 0.02 * k, 200.0, k + 1);
+  const Eigen::VectorXd doubt = 0.3 * ringing(0.15, 150.0).col(0);
+  int below[3] = {0, 0, 0};
+  const int draws = 600;
+  for (int k = 0; k < draws; ++k) {
+    const Eigen::VectorXd e = noise(engine, 0.3);
+    const Scorer scorer(e, Eigen::MatrixXd(kRows, 0), offsets(), 1.0);
+    below[0] += scorer.score(tangent(vector)).p_value < 0.05 ? 1 : 0;
+    std::vector<Score> ways;
+    for (int way = 0; way < 12; ++way) ways.push_back(scorer.score(tangent(ringing(0.1 + 0.02 * way, 200.0))));
+    std::vector<const Score*> all;
+    for (const Score& way : ways) all.push_back(&way);
+    below[1] += combined_p_value(all) < 0.05 ? 1 : 0;
+    const Scorer doubtful(e + normal(engine) * doubt, Eigen::MatrixXd(kRows, 0), offsets(), 1.0, doubt);
+    below[2] += doubtful.score(tangent(ringing(0.15, 200.0))).p_value < 0.05 ? 1 : 0;
+  }
+  for (const int count : below) {
+    std::printf("p < 5 %% in %.1f %% of draws\n", 100.0 * count / draws);
+    EXPECT_GT(count, 0.01 * draws);
+    EXPECT_LT(count, 0.10 * draws);
+  }
+}
+
+Score way(double p_value, const Eigen::Vector3d& direction) {
+  Score out;
+  out.p_value = p_value;
+  out.direction = direction;
+  return out;
+}
+
+TEST(CombinedPValue, CountsOnlyWaysThatLookDifferent) {
+  const Score x = way(0.03, {1, 0, 0}), same = way(0.04, {1, 0, 0}), y = way(0.5, {0, 1, 0}), none = way(1e-9, {0, 0, 0});
+  EXPECT_EQ(combined_p_value({}), 1.0);
+  EXPECT_NEAR(combined_p_value({&x}), 0.03, 1e-12);
+  EXPECT_NEAR(combined_p_value({&x, &none}), 0.03, 1e-12);
+  EXPECT_NEAR(combined_p_value({&x, &same}), 0.03, 1e-12);
+  EXPECT_NEAR(combined_p_value({&x, &y}), 1.0 - 0.97 * 0.97, 1e-12);
+  const Score sure = way(1e-40, {1, 0, 0});
+  EXPECT_NEAR(combined_p_value({&sure, &y}), 2e-40, 1e-44);
+}
+
 TEST(LogMeanExp, SurvivesLargeNumbers) {
   EXPECT_NEAR(log_mean_exp({1e5, 1e5}), 1e5, 1e-9);
   EXPECT_NEAR(log_mean_exp({0.0, std::log(3.0)}), std::log(2.0), 1e-12);

@@ -15,6 +15,7 @@ struct Ranked {
   const Candidate* best = nullptr;
   Score score;             ///< of the best way
   double evidence = 0.0;   ///< log-mean-exp of the log Bayes factors of all ways
+  double p_value = 1.0;    ///< of none of the ways being there
   bool promising = false;  ///< evidence and size speak for it
   bool declared = false;   ///< and the p-value after multiplicity too
 };

@@ -24,12 +24,14 @@ struct Score {
 
 /// Scores on the residual e, after what `known` (N x p) explains is projected off residual and tangents alike.
 ///   log BF = 1/2 b^T (I + G)^-1 b - 1/2 log |I + G|,  G = D x^T x D, b = D x^T e, D = diag(prior_std)
-/// with the squared sigma taken as max(1, `variance`); the p-value is Wald's with the Newey-West variance of the frames'
-/// scores g_t = x_t^T (e_t - x_t theta), its critical values widened for the bandwidth (Kiefer & Vogelsang 2005).
+/// with the squared sigma taken as max(1, `variance`); the p-value is Wald's with the Newey-West covariance of the frames'
+/// scores g_t = x_t^T (e_t - x_t theta), against the F distribution that goes with the bandwidth (Sun 2014). `doubt`
+/// (N, or nothing): an error of unknown sign that may be in e, 1 sigma; it widens the covariance by (x^T doubt)^2.
 /// `offsets`: first row of each frame, N at the end.
 class Scorer {
  public:
-  Scorer(const Eigen::VectorXd& residual, const Eigen::MatrixXd& known, std::vector<Eigen::Index> offsets, double variance);
+  Scorer(const Eigen::VectorXd& residual, const Eigen::MatrixXd& known, std::vector<Eigen::Index> offsets, double variance,
+         const Eigen::VectorXd& doubt = {});
 
   Score score(const Tangent& tangent) const;
   /// Two effects at once, for pairs that only explain the residual together.
@@ -40,13 +42,17 @@ class Scorer {
 
  private:
   Eigen::MatrixXd project(const Eigen::MatrixXd& x) const;
-  double p_value(const Eigen::VectorXd& x, const Eigen::VectorXd& left) const;
+  double p_value(const Eigen::MatrixXd& x, const Eigen::VectorXd& left) const;
 
   Eigen::MatrixXd basis_;  ///< orthonormal, of `known`
-  Eigen::VectorXd residual_;
+  Eigen::VectorXd residual_, doubt_;
   std::vector<Eigen::Index> offsets_;
   double variance_;
 };
+
+/// One p-value of several ways in which the same effect may be missing: Sidak's for the best of them, with the number of
+/// tests that so many directions amount to (Nyholt 2004). Ways that say nothing do not count. 1 without any.
+double combined_p_value(const std::vector<const Score*>& ways);
 
 /// log of the mean of exp(values), without overflow.
 double log_mean_exp(const std::vector<double>& values);

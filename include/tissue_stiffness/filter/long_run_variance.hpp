@@ -10,6 +10,9 @@ namespace tissue_stiffness {
 /// hypothesis.
 double long_run_variance(const Eigen::VectorXd& series, int lags);
 
+/// The same of vectors: `series` is n x k, the result k x k.
+Eigen::MatrixXd long_run_covariance(const Eigen::MatrixXd& series, int lags);
+
 /// Bandwidth of Andrews (1991) for the Bartlett kernel, from the series' first autocorrelation rho:
 /// 1.1447 (4 rho^2 n / ((1 - rho)^2 (1 + rho)^2))^(1/3), at most n - 1.
 int bartlett_lags(const Eigen::VectorXd& series);
