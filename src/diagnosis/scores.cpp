@@ -14,6 +14,8 @@ namespace {
 
 constexpr double kGone = 1e-6;  // a tangent of which less than this share is left says nothing of its own
 
+constexpr Eigen::Index kRowsAtOnce = 512;  // of directions that are compared
+
 constexpr double kBandwidth = 1.3;  // of the root of the number of frames, at least: Lazarus et al. 2018, sec. 3
 
 // P(q F > wald) where the covariance of `q` scores came with the bandwidth b of the series: Sun 2014 (Journal of
@@ -99,7 +101,8 @@ Score Scorer::score(const Tangent& tangent) const {
   out.explained = 1.0 - (residual_ - fit).squaredNorm() / residual_.squaredNorm();
   if (fit.norm() > 0.0) {
     out.direction = fit.normalized();
-    out.p_value = p_value(x * x.colwise().norm().cwiseInverse().asDiagonal(), residual_ - fit);
+    const Eigen::RowVectorXd scale = x.colwise().norm().cwiseInverse();
+    out.p_value = p_value(x * scale.asDiagonal(), residual_ - fit);
   }
   return out;
 }
@@ -127,12 +130,14 @@ double combined_p_value(const std::vector<const Score*>& ways) {
   }
   const auto count = static_cast<Eigen::Index>(telling.size());
   if (count < 2) return best;
-  Eigen::MatrixXd cosines(count, count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    for (Eigen::Index j = 0; j <= i; ++j) {
-      cosines(i, j) = cosines(j, i) =
-          telling[static_cast<std::size_t>(i)]->cosine_with(*telling[static_cast<std::size_t>(j)]);
+  const Eigen::Index rows = telling.front()->direction.size();
+  Eigen::MatrixXd cosines = Eigen::MatrixXd::Zero(count, count), part(kRowsAtOnce, count);
+  for (Eigen::Index at = 0; at < rows; at += kRowsAtOnce) {
+    const Eigen::Index height = std::min(kRowsAtOnce, rows - at);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      part.col(i).head(height) = telling[static_cast<std::size_t>(i)]->direction.segment(at, height);
     }
+    cosines.selfadjointView<Eigen::Lower>().rankUpdate(part.topRows(height).transpose());
   }
   const Eigen::VectorXd values = cosines.selfadjointView<Eigen::Lower>().eigenvalues();
   const double m = static_cast<double>(count), variance = (values.array() - 1.0).square().sum() / (m - 1.0);
