@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <set>
 
 #include "tissue_stiffness/effects/registry.hpp"
@@ -61,7 +62,7 @@ Eigen::VectorXd extend(const Study& study, const Study& base, const Eigen::Vecto
 
 // Tangents of the added parameters of one study, `components` columns for each candidate in turn.
 void read_tangents(const Study& study, const Study& base, const Eigen::VectorXd& w,
-                   const std::vector<Candidate*>& candidates) {
+                   const std::vector<Candidate*>& candidates, const std::function<void(double)>& over) {
   const Eigen::VectorXd start = extend(study, base, w);
   const Study::Rows rest = study.rows(start);
   const std::vector<Eigen::Index> added = added_parameters(study, base);
@@ -71,6 +72,7 @@ void read_tangents(const Study& study, const Study& base, const Eigen::VectorXd&
     Eigen::VectorXd moved = start;
     moved[added[j]] += amplitude;
     columns.col(static_cast<Eigen::Index>(j)) = difference(study.rows(moved), rest, amplitude);
+    over(static_cast<double>(candidates.size()) / static_cast<double>(added.size()));
   });
   Eigen::Index at = 0;
   const Eigen::Index each = static_cast<Eigen::Index>(added.size() / candidates.size());
@@ -118,8 +120,8 @@ bool Candidate::allows(const Eigen::VectorXd& amplitude) const {
   return amplitude.size() == 0 || (amplitude.minCoeff() >= lower && amplitude.maxCoeff() <= upper);
 }
 
-std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd& w,
-                                       const std::vector<std::string>& ignore) {
+std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd& w, const std::vector<std::string>& ignore,
+                                       const CountProgress& progress) {
   const ProposalContext context = context_of(base, w);
   std::vector<Candidate> all;
   for (const EffectSpec& spec : effect_specs()) {
@@ -139,6 +141,13 @@ std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd&
     all[c].linear = linear.count(all[c].effect) > 0;
     (all[c].linear ? linear_ones : others).push_back(c);
   }
+  std::mutex telling;
+  double done = 0.0;
+  const auto over = [&](double candidates) {
+    const std::lock_guard<std::mutex> lock(telling);
+    done += candidates;
+    progress(static_cast<std::size_t>(done + 1e-6), all.size());
+  };
   const auto study_of = [&](const std::vector<std::size_t>& members, int per_part, BasisOptions::Nonlinear nonlinear) {
     ModelSettings settings = base.model().settings();
     std::vector<Candidate*> candidates;
@@ -150,7 +159,7 @@ std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd&
     options.per_part = per_part;
     options.nonlinear = nonlinear;
     const Study study(settings, base, options);
-    read_tangents(study, base, w, candidates);
+    read_tangents(study, base, w, candidates, over);
   };
   tbb::parallel_invoke(
       [&] {

@@ -7,6 +7,7 @@
 #include "tissue_stiffness/diagnosis/missing_force.hpp"
 #include "tissue_stiffness/diagnosis/residual_views.hpp"
 #include "tissue_stiffness/effects/registry.hpp"
+#include "tissue_stiffness/estimation/posterior.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
@@ -118,6 +119,7 @@ Diagnosis diagnose(const ModelSettings& settings, const TetMesh& mesh, const Rec
     finding = look(model, {}, options, finding.by_mesh);
     out.final_verdict = finding.verdict;
   }
+  out.estimate = summarise(model.study->model().free_parameters(), model.fit.w, model.fit.covariance);
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
   return out;
 }

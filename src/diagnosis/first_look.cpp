@@ -16,11 +16,13 @@ constexpr double kExplains = 0.8;  // of the structured part: less is no explana
 
 FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Eigen::VectorXd change)
     : base(fitted), rows(fitted.rows.count()), cost(fitted.rows.error.squaredNorm()), mesh_change(std::move(change)) {
-  options.progress("tangents of the library, and what a finer mesh would change", 0, 0);
+  const std::string step = "tangents of the library, and what a finer mesh would change";
+  options.progress(step, 0, 0);
   const Study::Rows& r = base.rows;
   tbb::parallel_invoke(
       [&] {
-        candidates = find_candidates(*base.study, base.fit.w, options.ignore);
+        candidates = find_candidates(*base.study, base.fit.w, options.ignore,
+                                     [&](std::size_t done, std::size_t total) { options.progress(step, done, total); });
         known = base_tangents(*base.study, base.fit.w, base.fit.covariance.diagonal().cwiseSqrt(), r);
       },
       [&] {

@@ -49,7 +49,7 @@ std::string moduli(const std::map<std::string, double>& parameters) {
   return text;
 }
 
-/// A Young's modulus as the answer: the estimator's with its interval where it was asked, else the fit's.
+/// A Young's modulus as the answer, with its interval.
 std::string modulus_answer(const std::string& name, const Diagnosis& d) {
   std::string text = moduli(d.steps.back().parameters), interval, comma;
   for (const ParameterEstimate& p : d.estimate.parameters) {
@@ -63,6 +63,7 @@ std::string modulus_answer(const std::string& name, const Diagnosis& d) {
     comma = ", ";
   }
   if (text.empty()) return "";
+  if (!interval.empty() && d.estimate.state == EstimateState::no_data) interval += ", of the noise alone";
   if (d.final_verdict != "adequate") interval += std::string(interval.empty() ? "" : "; ") + "biased by what is missing";
   return "<p class=\"answer\"><span class=\"name\">" + escape_html(name) + "</span><b>" + escape_html(text) +
          "</b> <span class=\"interval\">" + escape_html(interval) + "</span></p>";

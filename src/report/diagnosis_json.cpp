@@ -76,7 +76,7 @@ json force_json(const MissingForce& f) {
 
 std::string diagnosis_json(const Diagnosis& d) {
   json final = {{"verdict", d.final_verdict}, {"effects", d.final_effects}};
-  if (!d.estimate.parameters.empty()) final["state"] = to_string(d.estimate.state);
+  if (d.estimate.state != EstimateState::no_data) final["state"] = to_string(d.estimate.state);
   for (const ParameterEstimate& p : d.estimate.parameters) {
     final["parameters"][p.name] = {
         {"unit", p.unit}, {"mean", number(p.mean)}, {"interval95", {number(p.lower95), number(p.upper95)}}};

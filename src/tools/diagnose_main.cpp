@@ -33,12 +33,12 @@ ModelSettings last_model(ModelSettings settings, const Diagnosis& diagnosis) {
   return settings;
 }
 
-/// What an estimator makes of the last step's model. Nothing for a model that is integrated in full: it would take as long
-/// as the diagnosis.
+/// What an estimator makes of the last step's model; of a model that is integrated in full what the fit made of it: that
+/// would take as long as the diagnosis.
 Estimate estimate_at_last(const ModelSettings& settings, const TetMesh& mesh, const Recording& recording,
                           const Diagnosis& diagnosis) {
   const ModelSettings last = last_model(settings, diagnosis);
-  if (Model(last, mesh).nonlinear()) return {};
+  if (Model(last, mesh).nonlinear()) return diagnosis.estimate;
   Estimator estimator(last, mesh);
   estimator.set_first_stamp(recording.first_stamp);
   for (const LoadSample& load : recording.loads) estimator.add_load(load);
@@ -106,7 +106,7 @@ int main(int argc, char** argv) {
     texts.versions = versions();
     say("run the models once more for the report");
     Showing showing;
-    Estimate estimate;
+    Estimate estimate = diagnosis.estimate;
     tbb::parallel_invoke(
         [&] {
           try_run("the estimator", [&] { estimate = estimate_at_last(settings, reader.mesh(), recording, diagnosis); });

@@ -13,6 +13,7 @@ namespace {
 constexpr double kBarInterval = 0.1;  // [s]
 constexpr double kLineInterval = 5.0;
 constexpr std::size_t kBarWidth = 30;
+constexpr std::size_t kTelling = 10;  // the part of all that must be done before its pace tells the rest's
 
 }  // namespace
 
@@ -59,10 +60,17 @@ StepProgress::StepProgress(std::ostream& out, Progress::Style style, std::string
 void StepProgress::show(const std::string& step, std::size_t done, std::size_t total) {
   if (style_ == Progress::Style::quiet) return;
   const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  const bool goes_on = step == last_step_ && done > 0;
+  if (goes_on && elapsed - last_shown_ < (style_ == Progress::Style::bar ? kBarInterval : kLineInterval)) return;
+  last_shown_ = elapsed;
+  last_step_ = step;
   if (done == 0) counted_since_ = elapsed;
+  if (!goes_on) ++steps_;
   char head[64], count[64] = "";
-  std::snprintf(head, sizeof head, "%s [step %d, %.1f s", what_.c_str(), ++steps_, elapsed);
-  if (done > 0) {
+  std::snprintf(head, sizeof head, "%s [step %d, %.1f s", what_.c_str(), steps_, elapsed);
+  if (done > 0 && done * kTelling < total) {
+    std::snprintf(count, sizeof count, "; %zu of %zu done", done, total);
+  } else if (done > 0) {
     const double left = (elapsed - counted_since_) / static_cast<double>(done) * static_cast<double>(total - done);
     std::snprintf(count, sizeof count, "; %zu of %zu done, %.0f s left", done, total, left);
   } else if (total > 0) {

@@ -35,6 +35,25 @@ TEST(StepProgress, CountsEachPhaseFromItsOwnBeginning) {
   EXPECT_NE(out.str().find("; 1 of 2 done, 0 s left] second"), std::string::npos) << out.str();
 }
 
+TEST(StepProgress, DoesNotGuessTheTimeLeftFromTheFirstFew) {
+  std::ostringstream out;
+  StepProgress progress(out, Style::lines, "work");
+  progress.show("one", 0, 100);
+  progress.show("two", 2, 100);
+  EXPECT_EQ(out.str().find("left"), std::string::npos);
+  progress.show("twelve", 12, 100);
+  EXPECT_NE(out.str().find("left"), std::string::npos);
+}
+
+TEST(StepProgress, SaysLittleWhileOneStepGoesOn) {
+  std::ostringstream out;
+  StepProgress progress(out, Style::lines, "work");
+  for (std::size_t done = 0; done <= 50; ++done) progress.show("tangents", done, 50);
+  EXPECT_EQ(out.str(), "work [step 1, 0.0 s; 0 of 50 done] tangents\n");
+  progress.show("next", 1, 50);
+  EXPECT_NE(out.str().find("work [step 2, "), std::string::npos);
+}
+
 TEST(StepProgress, KeepsToOneLineOnATerminal) {
   std::ostringstream out;
   StepProgress progress(out, Style::bar, "work");

@@ -33,7 +33,8 @@ class Progress {
 };
 
 /// Progress of work whose steps have names: which one, and for how long by now. Where steps are counted, how many of them
-/// are done and how long the others will take at that pace. One line that changes on a terminal, a line a step elsewhere.
+/// are done and how long the others will take at that pace. One line that changes on a terminal; elsewhere a line a step,
+/// and while one step goes on a line every 5 s.
 class StepProgress {
  public:
   StepProgress(std::ostream& out, Progress::Style style, std::string what);
@@ -49,6 +50,8 @@ class StepProgress {
   std::string what_;
   std::chrono::steady_clock::time_point start_;
   double counted_since_ = 0.0;  ///< when the count began [s]
+  double last_shown_ = 0.0;
+  std::string last_step_;
   int steps_ = 0;
 };
 

@@ -81,7 +81,8 @@ struct Diagnosis {
   std::vector<std::string> final_effects;
   std::vector<std::string> entries;  ///< of the accepted effects, for the model file
   double seconds = 0.0;
-  Estimate estimate;  ///< what an estimator makes of the last step's model; no parameters: it was not asked
+  Estimate
+      estimate;  ///< of the last step's model: an estimator's; in state no_data the fit's own, whose interval is noise's
 };
 
 }  // namespace tissue_stiffness
