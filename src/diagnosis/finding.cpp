@@ -69,6 +69,7 @@ MissingEffect describe(const FirstLook& look, const std::vector<Refit>& refits, 
     const auto at = std::find(refit->effects.begin(), refit->effects.end(), r.effect) - refit->effects.begin();
     out.parameters = refit->parameters;
     out.held_out_rms_after = refit->held_out_rms;
+    out.p_value = refit->p_value;
     out.explained = 1.0 - refit->cost / look.cost;
     out.entry = refit->entries[static_cast<std::size_t>(at)];
   }

@@ -184,6 +184,8 @@ Refit refit(const Fitted& base, const std::vector<Addition>& additions) {
   out.held_out_rms = rms_error(rows, known.recording(), true);
   out.train_sigmas = rms_sigmas(rows, known.recording(), false);
   out.held_out_sigmas = rms_sigmas(rows, known.recording(), true);
+  out.p_value =
+      prediction_p_value(held_out_squares(base.rows, known.recording()) - held_out_squares(rows, known.recording()));
   out.cost = rows.error.squaredNorm();
   out.added_parameters = static_cast<int>(study.model().free_parameters().size() - known.model().free_parameters().size());
   if (!only_quick) out.model = std::move(model);

@@ -28,6 +28,13 @@ double fixed_b_p_value(double wald, double q, double b) {
   return boost::math::ibeta(0.5 * second, 0.5 * q, second / (second + q * f));
 }
 
+int lags_for(const Eigen::MatrixXd& series) {
+  const auto n = static_cast<int>(series.rows());
+  int lags = static_cast<int>(kBandwidth * std::sqrt(n));
+  for (Eigen::Index k = 0; k < series.cols(); ++k) lags = std::max(lags, bartlett_lags(series.col(k)));
+  return std::min(lags, n - 1);
+}
+
 Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& a) {
   if (a.cols() == 0) return a;
   Eigen::MatrixXd scaled = a;
@@ -67,9 +74,7 @@ double Scorer::p_value(const Eigen::MatrixXd& x, const Eigen::VectorXd& left) co
     g.row(t) = left.segment(from, count).transpose() * x.middleRows(from, count);
   }
   const double n = static_cast<double>(frames);
-  int lags = static_cast<int>(kBandwidth * std::sqrt(n));
-  for (Eigen::Index k = 0; k < g.cols(); ++k) lags = std::max(lags, bartlett_lags(g.col(k)));
-  lags = std::min(lags, static_cast<int>(n) - 1);
+  const int lags = lags_for(g);
   Eigen::MatrixXd covariance = n * long_run_covariance(g, lags);
   if (doubt_.size() > 0) {
     const Eigen::VectorXd may_be = x.transpose() * doubt_;
@@ -143,6 +148,17 @@ double combined_p_value(const std::vector<const Score*>& ways) {
   const double m = static_cast<double>(count), variance = (values.array() - 1.0).square().sum() / (m - 1.0);
   const double tests = 1.0 + (m - 1.0) * std::max(0.0, 1.0 - variance / m);
   return -std::expm1(tests * std::log1p(-std::min(best, 1.0 - 1e-15)));
+}
+
+double prediction_p_value(const Eigen::VectorXd& gains) {
+  if (gains.size() < 2) return 1.0;
+  const double n = static_cast<double>(gains.size()), mean = gains.mean();
+  const Eigen::VectorXd around = gains.array() - mean;
+  const int lags = lags_for(around);
+  const double variance = long_run_variance(around, lags) / n;
+  if (!(variance > 0.0)) return mean > 0.0 ? 0.0 : 1.0;
+  const double both_sides = fixed_b_p_value(mean * mean / variance, 1.0, (lags + 1.0) / n);
+  return mean > 0.0 ? 0.5 * both_sides : 1.0 - 0.5 * both_sides;
 }
 
 double log_mean_exp(const std::vector<double>& values) {

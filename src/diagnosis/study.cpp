@@ -271,6 +271,15 @@ double rms_sigmas(const Study::Rows& rows, const Recording& recording, bool held
   return root_mean_square(rows, recording, held_out, [](Eigen::Index) { return 1.0; });
 }
 
+Eigen::VectorXd held_out_squares(const Study::Rows& rows, const Recording& recording) {
+  std::vector<double> squares;
+  for (std::size_t k = 0; k + 1 < rows.offsets.size(); ++k) {
+    if (!recording.held_out(k)) continue;
+    squares.push_back(rows.error.segment(rows.offsets[k], rows.offsets[k + 1] - rows.offsets[k]).squaredNorm());
+  }
+  return Eigen::Map<const Eigen::VectorXd>(squares.data(), static_cast<Eigen::Index>(squares.size()));
+}
+
 double noise_floor(const Study::Rows& rows) {
   return std::sqrt(rows.sigma.squaredNorm() / rows.count());
 }

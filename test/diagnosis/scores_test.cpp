@@ -152,6 +152,26 @@ TEST(CombinedPValue, CountsOnlyWaysThatLookDifferent) {
   EXPECT_NEAR(combined_p_value({&sure, &y}), 2e-40, 1e-44);
 }
 
+// Whether or not the frames' gains are correlated.
+TEST(PredictionPValue, IsCalibratedAndSeesABetterModel) {
+  EXPECT_EQ(prediction_p_value(Eigen::VectorXd(0)), 1.0);
+  for (const double memory : {0.0, 0.6}) {
+    std::mt19937 engine(9);
+    int below = 0, better = 0;
+    const int draws = 2000;
+    for (int k = 0; k < draws; ++k) {
+      const Eigen::VectorXd e = noise(engine, memory);
+      const Eigen::VectorXd gains = Eigen::Map<const Eigen::VectorXd, 0, Eigen::InnerStride<kRowsEach>>(e.data(), kFrames);
+      below += prediction_p_value(gains) < 0.05 ? 1 : 0;
+      better += prediction_p_value(gains.array() + 3.0) < 0.05 ? 1 : 0;
+    }
+    std::printf("memory %.1f: p < 5 %% in %.1f %% of draws\n", memory, 100.0 * below / draws);
+    EXPECT_GT(below, 0.03 * draws);
+    EXPECT_LT(below, 0.09 * draws);
+    EXPECT_GT(better, 0.99 * draws);
+  }
+}
+
 TEST(LogMeanExp, SurvivesLargeNumbers) {
   EXPECT_NEAR(log_mean_exp({1e5, 1e5}), 1e5, 1e-9);
   EXPECT_NEAR(log_mean_exp({0.0, std::log(3.0)}), std::log(2.0), 1e-12);

@@ -60,6 +60,7 @@ struct Refit {
   std::map<std::string, double> parameters;          ///< of the whole model, by name
   double train_rms = 0.0, held_out_rms = 0.0;        ///< [m]
   double train_sigmas = 0.0, held_out_sigmas = 0.0;  ///< the same over sigma
+  double p_value = 1.0;                              ///< of predicting the held-out frames no better
   double cost = 0.0;                                 ///< sum of squared errors over sigma, all frames
   int added_parameters = 0;
   std::shared_ptr<Fitted> model;  ///< null where it was only run quickly, and of all but the best

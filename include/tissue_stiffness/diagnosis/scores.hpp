@@ -54,6 +54,11 @@ class Scorer {
 /// tests that so many directions amount to (Nyholt 2004). Ways that say nothing do not count. 1 without any.
 double combined_p_value(const std::vector<const Score*>& ways);
 
+/// One-sided p-value of a model not predicting better than another: `gains` are the other's squared errors less its own,
+/// one a frame, correlated in time (Diebold & Mariano 1995, with the distribution that goes with the bandwidth). 1 without
+/// frames.
+double prediction_p_value(const Eigen::VectorXd& gains);
+
 /// log of the mean of exp(values), without overflow.
 double log_mean_exp(const std::vector<double>& values);
 

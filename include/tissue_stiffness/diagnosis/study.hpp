@@ -103,6 +103,8 @@ struct Fitted {
 /// Root mean square of the rows' errors over held-out (true) or training frames: in metres, and in sigmas.
 double rms_error(const Study::Rows& rows, const Recording& recording, bool held_out);
 double rms_sigmas(const Study::Rows& rows, const Recording& recording, bool held_out);
+/// Sum of squared errors [sigma^2] of each held-out frame, in their order.
+Eigen::VectorXd held_out_squares(const Study::Rows& rows, const Recording& recording);
 /// Root mean square of the noise that the model file states [m].
 double noise_floor(const Study::Rows& rows);
 

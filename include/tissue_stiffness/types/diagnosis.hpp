@@ -16,6 +16,7 @@ struct MissingEffect {
   std::string entry;                         ///< of the model file's `effects`, as its proposal was scored
   std::map<std::string, double> parameters;  ///< by name, of the refit where there was one, else the tangent's
   double log_bayes_factor = 0.0;             ///< over all ways in which the effect may be missing
+  /// Of its amplitude being zero, to first order; once it was refitted, of predicting held-out frames no better.
   double p_value = 1.0;
   double size = 0.0;                                                     ///< rms of what it explains [sigma]
   double explained = 0.0;                                                ///< share of the residual's sum of squares
