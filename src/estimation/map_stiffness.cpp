@@ -116,7 +116,10 @@ StiffnessMap map_stiffness(const MapQuestion& asked) {
     std::iota(kept_patch.begin(), kept_patch.end(), 0);
   }
   map.patches = combined(*kept, *last, kept_patch);
-  map.mesh_error = kept->mesh_study().why_not;
+  const MapLevel::MeshStudy& study = kept->mesh_study();
+  map.mesh_error = study.why_not;
+  map.misfit = std::sqrt(std::max(0.0, kept->mean_square() - (study.answer ? study.answer->left : 0.0)));
+  for (StiffnessPatch& patch : map.patches) patch.identified = patch.identified && map.explains();
   paint(map, last->patches(), base.mesh());
   return map;
 }

@@ -54,6 +54,7 @@ StiffnessMapMessage to_message(const StiffnessMap& map, const std_msgs::Header& 
     out.upper95.push_back(patch.upper95);
     out.identified.push_back(patch.identified ? 1 : 0);
   }
+  out.misfit = map.misfit;
   out.patch_of_tet.assign(map.patch_of_tet.begin(), map.patch_of_tet.end());
   return out;
 }

@@ -36,6 +36,7 @@ json map_json(const StiffnessMap& map) {
   return {{"levels", levels},
           {"patches", patches},
           {"identified", map.identified()},
+          {"misfit", number(map.misfit)},
           {"mesh_error", map.mesh_error.empty() ? "assessed" : "not assessed: " + map.mesh_error}};
 }
 

@@ -51,8 +51,13 @@ void print_parameters(const Results& results, const Paint& paint, std::ostream& 
 }
 
 void print_map(const StiffnessMap& map, std::ostream& out) {
-  print_line(out, "map           %d patches, %d identified, the others at their prior",
-             static_cast<int>(map.patches.size()), map.identified());
+  const auto count = static_cast<int>(map.patches.size());
+  if (!map.explains()) {
+    print_line(out, "map           %d patches, none to be used: the map leaves an error of %.2g of the noise", count,
+               map.misfit);
+  } else {
+    print_line(out, "map           %d patches, %d identified, the others at their prior", count, map.identified());
+  }
   for (const StiffnessPatch& patch : map.patches) {
     if (!patch.identified) continue;
     const ShownUnit unit = shown_unit(patch.young_modulus, "Pa");

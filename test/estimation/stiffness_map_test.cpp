@@ -106,6 +106,17 @@ TEST(StiffnessMap, SaysWhichPartsNothingMoves) {
   }
 }
 
+TEST(StiffnessMap, IdentifiesNothingWhereTheModelMissesMoreThanModuli) {
+  ModelSettings damped = bar_settings({modulus("30000")});
+  add_effect(damped, "viscous_damping: {beta: 0.01}");
+  const StiffnessMap map = mapped(unknown(), recording(damped, 40));
+  std::printf("misfit %.1f of the noise\n", map.misfit);
+  EXPECT_GT(map.misfit, StiffnessMap::kMostMisfit);
+  EXPECT_FALSE(map.explains());
+  EXPECT_EQ(map.identified(), 0);
+  EXPECT_TRUE(map.at_nodes.array().isNaN().all());
+}
+
 TEST(StiffnessMap, GivesUpWhenItIsAskedTo) {
   const auto frames = recording(bar_settings(kStiffHalf), 5);
   MapQuestion question{unknown(), coarse(), frames, {}, 0.0, {}};

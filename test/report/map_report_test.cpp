@@ -47,6 +47,9 @@ TEST(ReportHtml, SaysHowMuchOfTheBodyTheMapIdentifies) {
   EXPECT_NE(page.find("and the error of the mesh."), std::string::npos);
   results.map->mesh_error = "the mesh has more than 6000 nodes";
   EXPECT_NE(report_html(results, {}).find("not the error of the mesh: the mesh has more"), std::string::npos);
+  results.map->misfit = 3.04;
+  EXPECT_NE(report_html(results, {}).find("the map leaves an error of 3.0 times the noise"), std::string::npos);
+  EXPECT_NE(report_html(results, {}).find("not to be used</span>"), std::string::npos);
 }
 
 TEST(MapVtk, HoldsTheBodyAndItsPatches) {
