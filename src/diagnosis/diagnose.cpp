@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t kFewestFrames = 18;
 constexpr double kBaseSpread = 0.1;    // prior standard deviations, of the sigma points of the first fit
 constexpr double kLeastExcess = 0.01;  // of the mean squared error in sigmas: that of an effect of 0.1 sigma
+constexpr double kWorthAdding = 0.2;
 constexpr double kAddedSpread = 0.02;  // and of a model's that starts from a refit
 
 Fitted fit_model(const ModelSettings& settings, const TetMesh& mesh, const Recording& recording) {
@@ -67,6 +68,12 @@ void describe_residual(const Fitted& model, double floor, Diagnosis& out) {
   out.metres = {total, sigma, floor * sigma, std::sqrt(std::max(0.0, total * total - sigma * sigma))};
 }
 
+// Of the held-out error beyond noise. Where nothing explains the error, what takes less of it is not what is missing.
+bool takes_a_part(const Fitted& model, const Refit& refit, const Recording& recording) {
+  const auto beyond = [](double sigmas) { return std::max(0.0, sigmas * sigmas - 1.0); };
+  return beyond(refit.held_out_sigmas) < (1.0 - kWorthAdding) * beyond(rms_sigmas(model.rows, recording, true));
+}
+
 // The model's parameters as the best explanation has them: without it they make up for what is missing.
 Eigen::VectorXd believed(const Fitted& model, const Finding& finding) {
   if (finding.verdict != "missing") return model.fit.w;
@@ -105,6 +112,7 @@ Diagnosis diagnose(const ModelSettings& settings, const TetMesh& mesh, const Rec
     const std::vector<Refit> refits =
         k < asked ? look(model, {options.add[k]}, options, finding.by_mesh).refits : finding.refits;
     if (refits.empty() || (k >= asked && !proven(model, refits.front()))) break;
+    if (k >= asked && finding.verdict == "unexplained" && !takes_a_part(model, refits.front(), recording)) break;
     const Refit& best = refits.front();
     for (const std::string& effect : best.effects) options.progress("add " + effect, 0, 0);
     Fitted next = extended(model, best);

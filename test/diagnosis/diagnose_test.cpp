@@ -57,8 +57,15 @@ TEST(Diagnose, NamesHiddenDampingAndAddsIt) {
 TEST(Diagnose, DoesNotLookForWhatItIsToldToIgnore) {
   DiagnosisOptions options;
   options.ignore = {"viscous_damping", "mass_damping", "viscoelasticity"};
+  options.automatic = true;
   const Diagnosis d = diagnose_bar(film({"viscous_damping: {beta: 6.0e-3}"}, 1), options);
   EXPECT_EQ(d.verdict, "unexplained");
+  for (std::size_t k = 1; k < d.steps.size(); ++k) {  // nothing is added for a few percent
+    const auto beyond_noise = [&](const DiagnosisStep& s) {
+      return std::pow(s.held_out_rms, 2) - std::pow(s.noise_floor, 2);
+    };
+    EXPECT_LT(beyond_noise(d.steps[k]), 0.8 * beyond_noise(d.steps[k - 1])) << d.steps[k].effects.back();
+  }
   for (const MissingEffect& effect : d.candidates) EXPECT_NE(effect.effect, "viscous_damping");
   options.ignore = {"magic"};
   EXPECT_NE(refusal([&] { diagnose_bar(film({}, 1), options); }).find("magic"), std::string::npos);
