@@ -12,6 +12,7 @@
 namespace tissue_stiffness {
 namespace {
 
+constexpr double kSame = 1e-9;  // sine of the angle below which directions are one
 constexpr double kGone = 1e-6;  // a tangent of which less than this share is left says nothing of its own
 
 constexpr Eigen::Index kRowsAtOnce = 512;  // of directions that are compared
@@ -42,7 +43,8 @@ Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& a) {
     const double norm = a.col(i).norm();
     if (norm > 0.0) scaled.col(i) /= norm;
   }
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scaled);
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scaled);
+  qr.setThreshold(kSame);
   return qr.householderQ() * Eigen::MatrixXd::Identity(a.rows(), qr.rank());
 }
 
@@ -106,8 +108,7 @@ Score Scorer::score(const Tangent& tangent) const {
   out.explained = 1.0 - (residual_ - fit).squaredNorm() / residual_.squaredNorm();
   if (fit.norm() > 0.0) {
     out.direction = fit.normalized();
-    const Eigen::RowVectorXd scale = x.colwise().norm().cwiseInverse();
-    out.p_value = p_value(x * scale.asDiagonal(), residual_ - fit);
+    out.p_value = p_value(orthonormal(x), residual_ - fit);
   }
   return out;
 }

@@ -106,6 +106,17 @@ TEST(Scores, PValuesAreCalibratedForCorrelatedErrors) {
   }
 }
 
+TEST(Scores, PValuesIgnoreComponentsThatSayNothingOfTheirOwn) {
+  std::mt19937 engine(10);
+  const Eigen::VectorXd e = noise(engine, 0.0);
+  const Scorer scorer(e, Eigen::MatrixXd(kRows, 0), offsets(), 1.0);
+  const Eigen::MatrixXd one = ringing(0.15, 200.0);
+  Eigen::MatrixXd three = Eigen::MatrixXd::Zero(kRows, 3);  // one, its double, and nothing
+  three.col(0) = one;
+  three.col(1) = 2.0 * one;
+  EXPECT_NEAR(scorer.score(tangent(three)).p_value, scorer.score(tangent(one)).p_value, 1e-6);
+}
+
 // Of three directions, and of many ways that look alike, with an error of unknown sign that is allowed for.
 TEST(Scores, PValuesOfVectorsOfWaysAndUnderDoubtAreCalibrated) {
   std::mt19937 engine(8);
