@@ -35,13 +35,16 @@ def run(arguments, name):
 def score(diagnosis, truth):
     hidden, last = truth['effect'], diagnosis['steps'][-1]
     found = diagnosis['set']
-    error = last['parameters'].get(MODULUS, float('nan')) / float(truth['young_modulus']) - 1
+    answer, modulus = diagnosis['final']['parameters'][MODULUS], float(truth['young_modulus'])
+    error = answer['mean'] / modulus - 1
+    low, high = answer['interval95']
     bound = FACETED_ERROR if FACETED in str(truth.get('scene', '')) else MODULUS_ERROR
     return {
         'verdict': diagnosis['verdict'] == ('adequate' if hidden == 'none' else 'missing'),
         'set': not found if hidden == 'none' else hidden in found,
         'first': not found if hidden == 'none' else found[:1] == [hidden],
         'E': abs(error) <= bound,
+        'interval': low <= modulus <= high,
         'held-out': last['held_out_rms'] <= HELD_OUT * last['noise_floor'],
         'time': diagnosis['seconds'] <= SECONDS,
     }, error

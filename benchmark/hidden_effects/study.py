@@ -120,7 +120,7 @@ def draw(task):
         return row
     last = found['steps'][-1]
     row.update(strength=strength, verdict=found['verdict'], set=found['set'], final=found['final'],
-               modulus_error=last['parameters'][MODULUS] / modulus - 1, seconds=found['seconds'],
+               modulus_error=found['final']['parameters'][MODULUS]['mean'] / modulus - 1, seconds=found['seconds'],
                given=found['steps'][0]['held_out_rms'] / found['steps'][0]['noise_floor'],
                held_out=last['held_out_rms'] / last['noise_floor'],
                p_values=[c['p_value'] for c in found['candidates']] if hidden == 'none' else [])
