@@ -14,9 +14,9 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr int kVectorsAPatch = 4;    // of the reduced basis
-constexpr int kMostGrowths = 3;      // of the basis, by half each
-constexpr double kSpread = 0.05;     // prior standard deviations that the first slopes are read over
+constexpr int kVectorsAPatch = 4;  // of the reduced basis
+constexpr int kMostGrowths = 3;    // of the basis, by half each
+constexpr double kSpread = 0.05;   // prior standard deviations that the first slopes are read over
 
 double log_determinant(const Eigen::MatrixXd& covariance) {
   return covariance.ldlt().vectorD().array().abs().log().sum();
