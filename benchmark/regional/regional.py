@@ -101,10 +101,10 @@ def map_table(body, found):
     for level in found['levels']:
         print('%d patch%s: mean square error %.2f of the noise%s' % (
             level['patches'], 'es' if level['patches'] > 1 else '', level['mean_square'], ', kept' if level['kept'] else ''))
-    print('\n| patch at x [mm] | truth [Pa] | ours [Pa] | error | 95 % interval | |')
-    print('|---|---|---|---|---|---|')
     print('\nbeside the mesh it leaves an error of %.1f of the noise: %d patches identified' % (
         found['misfit'], found['identified']))
+    print('\n| patch at x [mm] | truth [Pa] | ours [Pa] | error | 95 % interval | |')
+    print('|---|---|---|---|---|---|')
     patches = sorted(found['patches'], key=lambda patch: patch['center'][0])
     half = 0.15 / len(patches)
     held, whole, worst = 0, 0, 0.0
