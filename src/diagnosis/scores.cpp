@@ -89,6 +89,10 @@ double Scorer::p_value(const Eigen::MatrixXd& x, const Eigen::VectorXd& left) co
 }
 
 Score Scorer::score(const Tangent& tangent) const {
+  return score(tangent, true);
+}
+
+Score Scorer::score(const Tangent& tangent, bool with_p_value) const {
   Score out;
   const Eigen::Index n = residual_.size(), components = tangent.columns.cols();
   out.direction = Eigen::VectorXd::Zero(n);
@@ -108,7 +112,7 @@ Score Scorer::score(const Tangent& tangent) const {
   out.explained = 1.0 - (residual_ - fit).squaredNorm() / residual_.squaredNorm();
   if (fit.norm() > 0.0) {
     out.direction = fit.normalized();
-    out.p_value = p_value(orthonormal(x), residual_ - fit);
+    if (with_p_value) out.p_value = p_value(orthonormal(x), residual_ - fit);
   }
   return out;
 }
@@ -119,7 +123,7 @@ Score Scorer::score(const Tangent& a, const Tangent& b) const {
   both.columns << a.columns, b.columns;
   both.prior_std.resize(a.prior_std.size() + b.prior_std.size());
   both.prior_std << a.prior_std, b.prior_std;
-  return score(both);
+  return score(both, false);
 }
 
 double Score::cosine_with(const Score& other) const {

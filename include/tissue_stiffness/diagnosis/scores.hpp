@@ -34,13 +34,14 @@ class Scorer {
          const Eigen::VectorXd& doubt = {});
 
   Score score(const Tangent& tangent) const;
-  /// Two effects at once, for pairs that only explain the residual together.
+  /// Two effects at once, for pairs that only explain the residual together. Their evidence decides: no p-value.
   Score score(const Tangent& a, const Tangent& b) const;
   /// rms over rows of what is left of a column after the projection [its unit].
   double remaining(const Eigen::VectorXd& column) const;
   const Eigen::VectorXd& residual() const { return residual_; }
 
  private:
+  Score score(const Tangent& tangent, bool with_p_value) const;
   Eigen::MatrixXd project(const Eigen::MatrixXd& x) const;
   double p_value(const Eigen::MatrixXd& x, const Eigen::VectorXd& left) const;
 
