@@ -51,19 +51,10 @@ std::vector<Eigen::Index> added_parameters(const Study& study, const Study& base
   return added;
 }
 
-// The base's fit in the coordinates of a model that holds more; what is more stays at its prior.
-Eigen::VectorXd extend(const Study& study, const Study& base, const Eigen::VectorXd& w) {
-  Eigen::VectorXd out = study.model().prior_mean();
-  for (std::size_t i = 0; i < base.model().free_parameters().size(); ++i) {
-    out[study.index(base.model().free_parameters()[i].name)] = w[static_cast<Eigen::Index>(i)];
-  }
-  return out;
-}
-
 // Tangents of the added parameters of one study, `components` columns for each candidate in turn.
 void read_tangents(const Study& study, const Study& base, const Eigen::VectorXd& w,
                    const std::vector<Candidate*>& candidates, const std::function<void(double)>& over) {
-  const Eigen::VectorXd start = extend(study, base, w);
+  const Eigen::VectorXd start = study.extend(base, w);
   const Study::Rows rest = study.rows(start);
   const std::vector<Eigen::Index> added = added_parameters(study, base);
   Eigen::MatrixXd columns(rest.error.size(), static_cast<Eigen::Index>(added.size()));

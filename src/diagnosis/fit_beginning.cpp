@@ -44,7 +44,7 @@ BeginningFit fit_beginning(const Fitted& base, const Candidate& way) {
   add_effect(settings, way.proposal.refine);
   const Study study(settings, known);
   const Model& model = study.model();
-  const Eigen::VectorXd w = model.coordinates(known.model().values(base.fit.w), model.prior_mean());
+  const Eigen::VectorXd w = study.extend(known, base.fit.w);
   const std::vector<Eigen::Index> shared = study.shared_with(known);
   Eigen::VectorXd spread = kAddedSpread * model.prior_std();
   for (const Eigen::Index i : shared) spread[i] = kBaseSpread * model.prior_std()[i];

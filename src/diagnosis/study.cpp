@@ -238,6 +238,14 @@ std::vector<Eigen::Index> Study::shared_with(const Study& base) const {
   return shared;
 }
 
+Eigen::VectorXd Study::extend(const Study& base, const Eigen::VectorXd& w) const {
+  Eigen::VectorXd out = model_.prior_mean();
+  for (const Eigen::Index i : shared_with(base)) {
+    out[i] = w[base.index(model_.free_parameters()[static_cast<std::size_t>(i)].name)];
+  }
+  return out;
+}
+
 Eigen::Index Study::index(const std::string& parameter) const {
   const auto& free = model_.free_parameters();
   for (std::size_t i = 0; i < free.size(); ++i) {

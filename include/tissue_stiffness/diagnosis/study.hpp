@@ -74,6 +74,8 @@ class Study {
   Eigen::Index index(const std::string& parameter) const;
   /// Indices of the free parameters that a model with fewer effects has, too.
   std::vector<Eigen::Index> shared_with(const Study& base) const;
+  /// `w` of that model in the coordinates of this one; what is more stays at its prior.
+  Eigen::VectorXd extend(const Study& base, const Eigen::VectorXd& w) const;
 
  private:
   Study(const ModelSettings& settings, const TetMesh& mesh, std::map<std::string, Region> regions,
