@@ -13,6 +13,7 @@
 #include <exception>
 
 #include "export.hpp"
+#include "heap.hpp"
 #include "memory.hpp"
 #include "scene.hpp"
 #include "tissue_stiffness/fem/sparse_solver.hpp"
@@ -58,14 +59,17 @@ void run(benchmark::State& state, Scene::Law law, const Size& size) {
   estimator.set_first_stamp(0.0);
   estimator.step(frames.front());
   state.counters["start_s"] = seconds_since(start);
-  std::vector<double> times;
+  std::vector<double> times, requests, kilobytes;
   double revisit = 0.0;
   for (auto unused : state) {
     benchmark::DoNotOptimize(unused);
     const Clock::time_point before = Clock::now();
+    const Heap asked = heap();
     const StepResult result = estimator.step(frames[times.size() + 1]);
     if (!result.used) return state.SkipWithError(result.reason.c_str());
     const double all = seconds_since(before), again = result.seconds.at("revisit");
+    requests.push_back(static_cast<double>(heap().requests - asked.requests));
+    kilobytes.push_back(1e-3 * static_cast<double>(heap().bytes - asked.bytes));
     times.push_back(all - again);
     revisit += again;
     state.SetIterationTime(all);
@@ -74,6 +78,8 @@ void run(benchmark::State& state, Scene::Law law, const Size& size) {
   state.counters["median_ms"] = 1e3 * quantile(times, 0.5);
   state.counters["p99_ms"] = 1e3 * quantile(times, 0.99);
   state.counters["replay_s"] = revisit;
+  state.counters["heap_requests"] = quantile(requests, 0.5);
+  state.counters["heap_kB"] = quantile(kilobytes, 0.5);
   state.counters["peak_MB"] = peak_memory();
   state.counters["factor_MB"] = factor;
   state.counters["basis_um"] = 1e6 * estimator.basis_error().value_or(0.0);
