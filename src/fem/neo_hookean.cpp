@@ -5,7 +5,6 @@
 
 #include <Eigen/LU>
 #include <cmath>
-#include <memory>
 #include <numeric>
 #include <string>
 
@@ -104,7 +103,10 @@ double stored(const Discretisation& fem, const std::vector<int>& list, const Lam
 }  // namespace
 
 NeoHookean::NeoHookean(const Discretisation& fem, std::vector<int> elements)
-    : fem_(fem), elements_(std::move(elements)), first_share_(static_cast<std::size_t>(fem.node_count() + 1), 0) {
+    : fem_(fem),
+      elements_(std::move(elements)),
+      first_share_(static_cast<std::size_t>(fem.node_count() + 1), 0),
+      scratch_(std::make_unique<VectorPool>()) {
   const int n = fem.nodes_per_element();
   for (const int e : elements_) {
     for (int a = 0; a < n; ++a) ++first_share_[static_cast<std::size_t>(fem.elements()(a, e) + 1)];
@@ -123,7 +125,7 @@ NeoHookean::NeoHookean(const Discretisation& fem, std::vector<int> elements)
 // Elements in parallel, then nodes, each of which sums its shares in the same order whatever the threads do.
 template <int N, typename Law>
 void NeoHookean::force(const Lame& c, const Eigen::VectorXd& u, const Law& law, Eigen::VectorXd& f) const {
-  const std::unique_ptr<double[]> shares(new double[3 * shares_.size()]);
+  VectorPool::Loan shares(*scratch_, 3 * static_cast<Eigen::Index>(shares_.size()));
   const auto count = static_cast<int>(elements_.size());
   tbb::parallel_for(tbb::blocked_range<int>(0, count, kElements), [&](const tbb::blocked_range<int>& part) {
     for (int i = part.begin(); i < part.end(); ++i) {
@@ -136,7 +138,7 @@ void NeoHookean::force(const Lame& c, const Eigen::VectorXd& u, const Law& law, 
         const double scale = law(e, q, energy_density(c, d)).value;
         if (scale != 0.0) internal.noalias() += (scale * fem_.weight(e, q) * stress(c, d)) * g;
       }
-      Eigen::Map<Nodal<N>>(shares.get() + static_cast<std::ptrdiff_t>(3 * N) * i) = internal;
+      Eigen::Map<Nodal<N>>(shares->data() + static_cast<std::ptrdiff_t>(3 * N) * i) = internal;
     }
   });
   tbb::parallel_for(tbb::blocked_range<int>(0, fem_.node_count(), kNodes), [&](const tbb::blocked_range<int>& part) {
@@ -144,8 +146,7 @@ void NeoHookean::force(const Lame& c, const Eigen::VectorXd& u, const Law& law, 
       Eigen::Vector3d sum = Eigen::Vector3d::Zero();
       for (int k = first_share_[static_cast<std::size_t>(node)]; k < first_share_[static_cast<std::size_t>(node) + 1];
            ++k) {
-        sum += Eigen::Map<const Eigen::Vector3d>(shares.get() +
-                                                 3 * static_cast<std::ptrdiff_t>(shares_[static_cast<std::size_t>(k)]));
+        sum += shares->segment<3>(3 * static_cast<Eigen::Index>(shares_[static_cast<std::size_t>(k)]));
       }
       f.segment<3>(3 * node) -= sum;
     }

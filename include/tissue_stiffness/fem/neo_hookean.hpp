@@ -2,9 +2,11 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "tissue_stiffness/fem/discretisation.hpp"
+#include "tissue_stiffness/fem/vector_pool.hpp"
 
 namespace tissue_stiffness {
 
@@ -51,6 +53,7 @@ class NeoHookean {
   std::vector<int> elements_;
   /// Where a node's shares of the elements' forces stand, N to an element of the list: the next of `shares_`.
   std::vector<int> first_share_, shares_;
+  std::unique_ptr<VectorPool> scratch_;  ///< for those shares, of each force that is summed at the time
 };
 
 }  // namespace tissue_stiffness
