@@ -92,7 +92,8 @@ void SingleFactor::add_task(int root, int begin) {
 struct SingleFactor::Sweep {
   const SingleFactor& f;
   int columns;
-  float* x;
+  Workspace& w;
+  float* x = w.x.data();
 
   struct Supernode {
     int width, height, inside;
@@ -209,50 +210,48 @@ struct SingleFactor::Sweep {
 
   void run() const {
     const auto& tasks = f.tasks_;
-    std::vector<std::vector<float>> beyond(tasks.size());
+    w.beyond.resize(tasks.size());
+    w.supernode.resize(tasks.size() + 1);
     tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t i) {
       const auto stride = static_cast<long>(tasks[i].beyond.size());
-      beyond[i].assign(tasks[i].beyond.size() * static_cast<std::size_t>(columns), 0.0F);
-      std::vector<float> local;
-      for (int s = tasks[i].begin; s < tasks[i].end; ++s) forward(s, local, beyond[i].data(), stride);
+      w.beyond[i].assign(tasks[i].beyond.size() * static_cast<std::size_t>(columns), 0.0F);
+      for (int s = tasks[i].begin; s < tasks[i].end; ++s) forward(s, w.supernode[i], w.beyond[i].data(), stride);
     });
-    std::vector<float> local;
     for (std::size_t i = 0; i < tasks.size(); ++i) {
-      const float* from = beyond[i].data();
+      const float* from = w.beyond[i].data();
       for (int k = 0; k < columns; ++k) {
         for (const int row : tasks[i].beyond) x[static_cast<long>(k) * f.size_ + row] += *from++;
       }
     }
-    for (const int s : f.top_) forward(s, local, nullptr, 0);
-    for (std::size_t i = f.top_.size(); i-- > 0;) backward(f.top_[i], local, nullptr);
+    for (const int s : f.top_) forward(s, w.supernode.back(), nullptr, 0);
+    for (std::size_t i = f.top_.size(); i-- > 0;) backward(f.top_[i], w.supernode.back(), nullptr);
     tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t i) {
-      std::vector<float> own;
-      for (int s = tasks[i].end; s-- > tasks[i].begin;) backward(s, own, &tasks[i].beyond);
+      for (int s = tasks[i].end; s-- > tasks[i].begin;) backward(s, w.supernode[i], &tasks[i].beyond);
     });
   }
 };
 
-Eigen::MatrixXd SingleFactor::solve(const Eigen::MatrixXd& b) const {
-  Eigen::MatrixXd result(b.rows(), b.cols());
-  Eigen::MatrixXf x(size_, kPanelColumns);
-  for (Eigen::Index at = 0; at < b.cols(); at += kPanelColumns) {
-    const auto columns = std::min<Eigen::Index>(kPanelColumns, b.cols() - at);
+void SingleFactor::solve(Eigen::Ref<Eigen::MatrixXd> x, Workspace& workspace) const {
+  Eigen::MatrixXf& rows = workspace.x;
+  rows.resize(size_, kPanelColumns);
+  for (Eigen::Index at = 0; at < x.cols(); at += kPanelColumns) {
+    auto part = x.middleCols(at, std::min<Eigen::Index>(kPanelColumns, x.cols() - at));
     // Single precision reaches from 1e-38 to 1e38: scaled, no right-hand side leaves it.
-    Eigen::RowVectorXd scale = b.middleCols(at, columns).cwiseAbs().colwise().maxCoeff();
-    scale = (scale.array() > 0.0).select(scale, 1.0);
-    for (Eigen::Index k = 0; k < columns; ++k) {
+    double scale[kPanelColumns];
+    for (Eigen::Index k = 0; k < part.cols(); ++k) {
+      const double largest = part.col(k).cwiseAbs().maxCoeff();
+      scale[k] = largest > 0.0 ? largest : 1.0;
       for (int i = 0; i < size_; ++i) {
-        x(i, k) = static_cast<float>(b(l_.permutation[static_cast<std::size_t>(i)], at + k) / scale[k]);
+        rows(i, k) = static_cast<float>(part(l_.permutation[static_cast<std::size_t>(i)], k) / scale[k]);
       }
     }
-    Sweep{*this, static_cast<int>(columns), x.data()}.run();
-    for (Eigen::Index k = 0; k < columns; ++k) {
+    Sweep{*this, static_cast<int>(part.cols()), workspace}.run();
+    for (Eigen::Index k = 0; k < part.cols(); ++k) {
       for (int i = 0; i < size_; ++i) {
-        result(l_.permutation[static_cast<std::size_t>(i)], at + k) = scale[k] * static_cast<double>(x(i, k));
+        part(l_.permutation[static_cast<std::size_t>(i)], k) = scale[k] * static_cast<double>(rows(i, k));
       }
     }
   }
-  return result;
 }
 
 }  // namespace tissue_stiffness

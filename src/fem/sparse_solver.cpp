@@ -32,8 +32,9 @@ struct SparseSolver::Data {
   cholmod_common common{};
   cholmod_factor* factor = nullptr;
   bool numeric = false;
-  mutable std::unique_ptr<const SingleFactor> single;  ///< made when it is first asked for
-  mutable std::mutex busy;                             ///< CHOLMOD's workspace is one for all solves
+  std::unique_ptr<const SingleFactor> single;  ///< made when it is first asked for
+  std::mutex busy;                             ///< CHOLMOD's workspace is one for all solves
+  SingleFactor::Workspace workspace;
 
   Data() {
     take_threads(1);
@@ -61,6 +62,7 @@ struct SparseSolver::Data {
     return result;
   }
   std::vector<int> node_order(const cholmod_sparse& a);
+  const SingleFactor& single_factor();
   Data(const Data&) = delete;
   Data& operator=(const Data&) = delete;
   ~Data() {
@@ -142,6 +144,12 @@ std::vector<int> SparseSolver::Data::node_order(const cholmod_sparse& a) {
   return all;
 }
 
+const SingleFactor& SparseSolver::Data::single_factor() {
+  const std::lock_guard<std::mutex> lock(busy);
+  if (single == nullptr) single = std::make_unique<const SingleFactor>(layout(*factor));
+  return *single;
+}
+
 SparseSolver::SparseSolver() : data_(std::make_unique<Data>()) {}
 SparseSolver::~SparseSolver() = default;
 SparseSolver::SparseSolver(SparseSolver&&) noexcept = default;
@@ -187,11 +195,18 @@ Eigen::MatrixXd SparseSolver::solve(const Eigen::MatrixXd& b) const {
 
 Eigen::MatrixXd SparseSolver::solve_roughly(const Eigen::MatrixXd& b) const {
   if (!data_->numeric || data_->factor->is_super == 0) return solve(b);
-  {
-    const std::lock_guard<std::mutex> lock(data_->busy);
-    if (data_->single == nullptr) data_->single = std::make_unique<const SingleFactor>(layout(*data_->factor));
+  Eigen::MatrixXd x = b;
+  SingleFactor::Workspace workspace;
+  data_->single_factor().solve(x, workspace);
+  return x;
+}
+
+void SparseSolver::solve_roughly_in_place(Eigen::Ref<Eigen::MatrixXd> x) {
+  if (!data_->numeric || data_->factor->is_super == 0) {
+    x = solve(x);
+  } else {
+    data_->single_factor().solve(x, data_->workspace);
   }
-  return data_->single->solve(b);
 }
 
 double SparseSolver::cost() const {

@@ -33,6 +33,8 @@ TEST(SingleFactor, SolvesToSixDigits) {
         EXPECT_LT((rough.col(c) - exact.col(c)).norm(), 1e-4 * exact.col(c).norm()) << cells << " cells, column " << c;
         EXPECT_EQ(rough.col(c), solver.solve_roughly(b.middleCols(0, columns)).col(c)) << "not the same twice";
       }
+      solver.solve_roughly_in_place(b);
+      EXPECT_EQ(b, rough) << cells << " cells, in place";
     }
   }
 }

@@ -22,8 +22,14 @@ class SingleFactor {
   };
   explicit SingleFactor(Layout layout);
 
-  /// Solution of A x = b for every column of b, to about six digits.
-  Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
+  /// What a solution writes to on its way. Kept from one to the next, it asks the heap for memory only once.
+  struct Workspace {
+    Eigen::MatrixXf x;
+    std::vector<std::vector<float>> beyond;     ///< of each task: its share of the rows behind it
+    std::vector<std::vector<float>> supernode;  ///< of each task and of the rest: the rows of the supernode at hand
+  };
+  /// Replaces each column b of x by the solution of A x = b, to about six digits.
+  void solve(Eigen::Ref<Eigen::MatrixXd> x, Workspace& workspace) const;
 
  private:
   struct Task {

@@ -28,6 +28,9 @@ class SparseSolver {
 
   /// The same to about six digits and several times faster for several columns, for iterations that correct it.
   Eigen::MatrixXd solve_roughly(const Eigen::MatrixXd& b) const;
+  /// Replaces the columns of x, right-hand sides, in the same way. Not thread safe: works in buffers that stay, so that a
+  /// loop asks the heap for nothing (where CHOLMOD is supernodal).
+  void solve_roughly_in_place(Eigen::Ref<Eigen::MatrixXd> x);
 
   /// What a factorisation costs in solutions of one column, by their operations and their memory traffic.
   double cost() const;
