@@ -8,6 +8,7 @@
 #include "tissue_stiffness/fem/discretisation.hpp"
 #include "tissue_stiffness/fem/neo_hookean.hpp"
 #include "tissue_stiffness/fem/newmark.hpp"
+#include "tissue_stiffness/fem/products.hpp"
 #include "tissue_stiffness/meshing/box_mesh.hpp"
 #include "tissue_stiffness/meshing/elevate.hpp"
 
@@ -92,10 +93,9 @@ class ElasticBody : public DynamicSystem {
   bool damped() const override { return damping_.size() > 0; }
   const std::vector<char>& fixed() const override { return fixed_; }
 
-  Eigen::VectorXd force(double, const Eigen::VectorXd& u, const Eigen::VectorXd&) const override {
-    Eigen::VectorXd f = load_;
-    law_ == Law::linear ? void(f -= stiffness_ * u) : solid_.add_force(lame_, u, f);
-    return f;
+  void add_force(double, const Eigen::VectorXd& u, const Eigen::VectorXd&, Eigen::VectorXd& force) const override {
+    force += load_;
+    law_ == Law::linear ? subtract_product(stiffness_, u, force) : solid_.add_force(lame_, u, force);
   }
   SparseMatrix stiffness(double, const Eigen::VectorXd& u, const Eigen::VectorXd&) const override {
     if (law_ == Law::linear) return stiffness_;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "tissue_stiffness/fem/products.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
@@ -38,30 +39,33 @@ CentralDifference::CentralDifference(const DynamicSystem& system, double start) 
   largest_step_ = kSafety * 2.0 / omega * (std::sqrt(1.0 + damping_ratio * damping_ratio) - damping_ratio);
 }
 
-Eigen::VectorXd CentralDifference::acceleration(const DynamicState& state) const {
-  Eigen::VectorXd f = system_.force(state.time, state.displacement, state.velocity);
-  if (system_.damped()) f -= system_.damping() * state.velocity;
+void CentralDifference::find_acceleration(DynamicState& state) {
+  Eigen::VectorXd& f = state.acceleration;
+  f.setZero(state.displacement.size());
+  system_.add_force(state.time, state.displacement, state.velocity, f);
+  if (system_.damped()) subtract_product(system_.damping(), state.velocity, f);
   if (const auto& branches = system_.relaxations(); !branches.empty()) {
-    f -= system_.relaxing_stiffness() * overstretch(branches, state.displacement, state.relaxed);
+    overstretch(branches, state.displacement, state.relaxed, stretch_);
+    subtract_product(system_.relaxing_stiffness(), stretch_, f);
   }
-  return inverse_mass_.cwiseProduct(f);
+  f.array() *= inverse_mass_.array();
 }
 
-void CentralDifference::initialise(DynamicState& state) const {
+void CentralDifference::initialise(DynamicState& state) {
   state.relaxed.resize(system_.relaxations().size(), state.displacement);
-  state.acceleration = acceleration(state);
+  find_acceleration(state);
 }
 
-void CentralDifference::advance(DynamicState& state, double span) const {
+void CentralDifference::advance(DynamicState& state, double span) {
   const int steps = static_cast<int>(std::ceil(span / largest_step_));
   const double h = span / steps, start = state.time;
   for (int k = 1; k <= steps; ++k) {
     state.velocity += 0.5 * h * state.acceleration;
-    const Eigen::VectorXd next = state.displacement + h * state.velocity;
-    state.relaxed = relax(system_.relaxations(), h, state.displacement, next, state.relaxed);
-    state.displacement = next;
+    next_ = state.displacement + h * state.velocity;
+    relax(system_.relaxations(), h, state.displacement, next_, state.relaxed);
+    state.displacement.swap(next_);
     state.time = start + h * k;
-    state.acceleration = acceleration(state);
+    find_acceleration(state);
     state.velocity += 0.5 * h * state.acceleration;
   }
   if (!state.displacement.allFinite())

@@ -1,14 +1,15 @@
 #include "tissue_stiffness/fem/newmark.hpp"
 
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <Eigen/IterativeLinearSolvers>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "tissue_stiffness/fem/products.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
@@ -21,32 +22,16 @@ constexpr double kGrowth = 2.0;   // of a correction, at which iterations are ta
 constexpr int kYoung = 4;         // steps that a factor's first iterations are counted over
 constexpr double kOlder = 0.2;    // share of the last step's acceleration in the first guess
 constexpr int kMaxHalvings = 10;
-constexpr int kMostCuts = 6;  // of a correction that turns an element inside out
-constexpr std::size_t kMostUpdates = 8;
-constexpr double kFlat = 1e-8;            // relative curvature below which an update says nothing
+constexpr int kMostCuts = 6;              // of a correction that turns an element inside out
 constexpr double kSameStep = 0.02;        // relative change of the step that a factor survives
 constexpr double kWorthIterations = 0.6;  // iterations that a solution's time buys, with the forces that go with it
 constexpr double kMassTolerance = 1e-14;
-constexpr Eigen::Index kGrain = 512;  // rows of a product that are worth a task
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void zero_fixed(Eigen::VectorXd& x, const std::vector<char>& fixed) {
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     if (fixed[static_cast<std::size_t>(i)] != 0) x[i] = 0.0;
   }
-}
-
-// m x for a symmetric m, rows in parallel.
-Eigen::VectorXd product(const SparseMatrix& m, const Eigen::VectorXd& x) {
-  Eigen::VectorXd y(x.size());
-  tbb::parallel_for(tbb::blocked_range<Eigen::Index>(0, m.outerSize(), kGrain), [&](const auto& part) {
-    for (Eigen::Index j = part.begin(); j < part.end(); ++j) {
-      double sum = 0.0;
-      for (SparseMatrix::InnerIterator entry(m, j); entry; ++entry) sum += entry.value() * x[entry.row()];
-      y[j] = sum;
-    }
-  });
-  return y;
 }
 
 void turn_nodes(const Eigen::Matrix3Xd& turn, bool back, Eigen::Ref<Eigen::VectorXd> x) {
@@ -58,7 +43,7 @@ void turn_nodes(const Eigen::Matrix3Xd& turn, bool back, Eigen::Ref<Eigen::Vecto
   }
 }
 
-void find_acceleration(const DynamicSystem& system, DynamicState& state) {
+void initialise_one(const DynamicSystem& system, DynamicState& state) {
   state.relaxed.resize(system.relaxations().size(), state.displacement);
   Eigen::VectorXd f = system.force(state.time, state.displacement, state.velocity);
   if (system.damped()) f -= system.damping() * state.velocity;
@@ -72,6 +57,12 @@ void find_acceleration(const DynamicSystem& system, DynamicState& state) {
 }
 
 }  // namespace
+
+Eigen::VectorXd DynamicSystem::force(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const {
+  Eigen::VectorXd f = Eigen::VectorXd::Zero(u.size());
+  add_force(time, u, v, f);
+  return f;
+}
 
 const std::vector<Relaxation>& DynamicSystem::relaxations() const {
   static const std::vector<Relaxation> none;
@@ -94,12 +85,11 @@ Newmark::Newmark(const DynamicSystem& system, double spectral_radius, double tol
     : Newmark(std::vector<const DynamicSystem*>{&system}, spectral_radius, tolerance) {}
 
 void Newmark::initialise(std::vector<DynamicState>& states) const {
-  tbb::parallel_for(std::size_t{0}, states.size(),
-                    [&](std::size_t i) { find_acceleration(*columns_[i].system, states[i]); });
+  tbb::parallel_for(std::size_t{0}, states.size(), [&](std::size_t i) { initialise_one(*columns_[i].system, states[i]); });
 }
 
 void Newmark::initialise(DynamicState& state) const {
-  find_acceleration(*columns_.front().system, state);
+  initialise_one(*columns_.front().system, state);
 }
 
 void Newmark::step(std::vector<DynamicState>& states, const std::vector<double>& steps) {
@@ -126,31 +116,33 @@ void Newmark::cut_step(std::vector<DynamicState>& states, const std::vector<doub
   states = std::move(half_way);
 }
 
-Eigen::VectorXd Newmark::acceleration(const Column& c, const Eigen::VectorXd& x) const {
+void Newmark::find_acceleration(const Column& c, const Eigen::VectorXd& x, Eigen::VectorXd& a) const {
   const DynamicState& s = *c.before;
-  return (x - c.step * s.velocity) / (beta_ * c.step * c.step) - (0.5 / beta_ - 1.0) * s.acceleration;
+  a = (x - c.step * s.velocity) / (beta_ * c.step * c.step) - (0.5 / beta_ - 1.0) * s.acceleration;
 }
 
-// Residual of the balance at the weighted instants for the displacement increment x.
-Eigen::VectorXd Newmark::residual(Column& c, const Eigen::VectorXd& x) const {
+// Of the balance at the weighted instants, for the displacement increment x.
+void Newmark::find_residual(Column& c, const Eigen::VectorXd& x, Eigen::VectorXd& r) const {
   const DynamicState& s = *c.before;
   const DynamicSystem& system = *c.system;
   DynamicState& middle = c.middle;
   const double h = c.step;
-  middle.acceleration = acceleration(c, x);
+  find_acceleration(c, x, middle.acceleration);
   middle.velocity = s.velocity + (1.0 - alpha_f_) * h * ((1.0 - gamma_) * s.acceleration + gamma_ * middle.acceleration);
   middle.acceleration = (1.0 - alpha_m_) * middle.acceleration + alpha_m_ * s.acceleration;
   middle.time = s.time + (1.0 - alpha_f_) * h;
   middle.displacement = s.displacement + (1.0 - alpha_f_) * x;
-  Eigen::VectorXd r = system.force(middle.time, middle.displacement, middle.velocity);
-  r -= product(system.mass(), middle.acceleration);
-  if (system.damped()) r -= product(system.damping(), middle.velocity);
+  r.setZero(x.size());
+  system.add_force(middle.time, middle.displacement, middle.velocity, r);
+  subtract_product(system.mass(), middle.acceleration, r);
+  if (system.damped()) subtract_product(system.damping(), middle.velocity, r);
   if (const auto& branches = system.relaxations(); !branches.empty()) {
-    const auto z = relax(branches, (1.0 - alpha_f_) * h, s.displacement, middle.displacement, s.relaxed);
-    r -= system.relaxing_stiffness() * overstretch(branches, middle.displacement, z);
+    middle.relaxed = s.relaxed;
+    relax(branches, (1.0 - alpha_f_) * h, s.displacement, middle.displacement, middle.relaxed);
+    overstretch(branches, middle.displacement, middle.relaxed, c.stretch);
+    subtract_product(system.relaxing_stiffness(), c.stretch, r);
   }
   zero_fixed(r, system.fixed());
-  return r;
 }
 
 void Newmark::factorize(const Column& c) {
@@ -168,8 +160,8 @@ void Newmark::factorize(const Column& c) {
     column.updates.clear();
     column.last = kInfinity;
   }
-  factored_rotations_ = c.system->rotations(c.middle.displacement);
-  turn_ = {};
+  c.system->find_rotations(c.middle.displacement, factored_rotations_);
+  turned_ = false;
   factored_step_ = h;
   young_before_ = young_;
   young_ = excess_ = 0.0;
@@ -180,17 +172,18 @@ void Newmark::factorize(const Column& c) {
 // The factor's stiffness turns with the material.
 void Newmark::turn() {
   const Column& c = columns_.front();
-  turn_ = c.system->rotations(c.middle.displacement);
+  c.system->find_rotations(c.middle.displacement, turn_);
   for (Eigen::Index i = 0; i < turn_.cols(); i += 3) {
     const Eigen::Matrix3d now = turn_.middleCols<3>(i);
     turn_.middleCols<3>(i) = now * factored_rotations_.middleCols<3>(i).transpose();
   }
+  turned_ = true;
 }
 
 // From what displacement, velocity and acceleration promise. The acceleration rings in modes that the steps do not resolve:
 // with a part of the one before it promises better.
 bool Newmark::start() {
-  std::vector<char> fine(columns_.size(), 1);
+  std::atomic<bool> fine{true};
   tbb::parallel_for(std::size_t{0}, columns_.size(), [&](std::size_t i) {
     Column& c = columns_[i];
     const DynamicState& s = *c.before;
@@ -201,45 +194,35 @@ bool Newmark::start() {
     c.done = false;
     c.updates.clear();
     try {
-      c.residual = residual(c, c.increment);
+      find_residual(c, c.increment, c.residual);
     } catch (const NumericalError&) {
-      fine[i] = 0;
+      fine = false;
     }
   });
-  return std::all_of(fine.begin(), fine.end(), [](char flag) { return flag != 0; });
+  return fine;
 }
 
-// The two-loop recursion of L-BFGS (Nocedal & Wright 2006, alg. 7.4) around the factored Jacobian.
-void Newmark::find_directions(const std::vector<Column*>& active) {
-  std::vector<std::vector<double>> weights(active.size());
-  Eigen::MatrixXd q(active.front()->residual.size(), static_cast<Eigen::Index>(active.size()));
-  tbb::parallel_for(std::size_t{0}, active.size(), [&](std::size_t k) {
-    const Column& c = *active[k];
-    auto qk = q.col(static_cast<Eigen::Index>(k));
-    qk = c.residual;
-    weights[k].resize(c.updates.size());
-    for (std::size_t i = c.updates.size(); i-- > 0;) {
-      weights[k][i] = c.updates[i]->inverse_curvature * c.updates[i]->step.dot(qk);
-      qk -= weights[k][i] * c.updates[i]->change;
-    }
-    turn_nodes(turn_, true, qk);
+void Newmark::find_directions() {
+  directions_.resize(active_.front()->residual.size(), static_cast<Eigen::Index>(columns_.size()));
+  tbb::parallel_for(std::size_t{0}, active_.size(), [&](std::size_t k) {
+    auto d = directions_.col(static_cast<Eigen::Index>(k));
+    d = active_[k]->residual;
+    active_[k]->updates.before(d);
+    if (turned_) turn_nodes(turn_, true, d);
   });
-  const Eigen::MatrixXd d = solver_.solve_roughly(q);
-  tbb::parallel_for(std::size_t{0}, active.size(), [&](std::size_t k) {
-    Column& c = *active[k];
-    c.direction = d.col(static_cast<Eigen::Index>(k));
-    turn_nodes(turn_, false, c.direction);
-    for (std::size_t i = 0; i < c.updates.size(); ++i) {
-      const Update& u = *c.updates[i];
-      c.direction += (weights[k][i] - u.inverse_curvature * u.change.dot(c.direction)) * u.step;
-    }
+  solver_.solve_roughly_in_place(directions_.leftCols(static_cast<Eigen::Index>(active_.size())));
+  tbb::parallel_for(std::size_t{0}, active_.size(), [&](std::size_t k) {
+    Column& c = *active_[k];
+    c.direction = directions_.col(static_cast<Eigen::Index>(k));
+    if (turned_) turn_nodes(turn_, false, c.direction);
+    c.updates.after(c.direction);
   });
 }
 
 // Ends the columns whose next correction would be below the tolerance, as far as the last two tell.
-Newmark::Progress Newmark::judge(const std::vector<Column*>& active, int iteration) const {
+Newmark::Progress Newmark::judge(int iteration) {
   bool all = true, slow = iteration >= kPatience;
-  for (Column* column : active) {
+  for (Column* column : active_) {
     Column& c = *column;
     const double size = c.direction.cwiseAbs().maxCoeff();
     if (!std::isfinite(size)) return Progress::failed;
@@ -253,61 +236,49 @@ Newmark::Progress Newmark::judge(const std::vector<Column*>& active, int iterati
   return all ? Progress::done : slow ? Progress::slow : Progress::going;
 }
 
-// Takes the corrections, shortened where they turn an element inside out.
-bool Newmark::move(const std::vector<Column*>& active) const {
-  std::vector<char> fine(active.size(), 1);
-  tbb::parallel_for(std::size_t{0}, active.size(), [&](std::size_t i) {
-    Column& c = *active[i];
-    if (c.done) return;
-    for (int cut = 0;; ++cut) {
-      try {
-        c.next = residual(c, c.increment + c.direction);
-        break;
-      } catch (const NumericalError&) {
-        if (cut == kMostCuts) {
-          fine[i] = 0;
-          return;
-        }
-        c.direction *= 0.5;
-      }
-    }
-    c.increment += c.direction;
-    learn(c);
+bool Newmark::move() {
+  std::atomic<bool> fine{true};
+  tbb::parallel_for(std::size_t{0}, active_.size(), [&](std::size_t i) {
+    if (!active_[i]->done && !move(*active_[i])) fine = false;
   });
-  return std::all_of(fine.begin(), fine.end(), [](char flag) { return flag != 0; });
+  return fine;
 }
 
-void Newmark::learn(Column& c) {
-  c.residual -= c.next;  // the change
-  const double curvature = c.direction.dot(c.residual);
-  if (curvature > kFlat * c.direction.norm() * c.residual.norm()) {
-    auto update = std::make_shared<Update>();
-    update->step.swap(c.direction);
-    update->change.swap(c.residual);
-    update->inverse_curvature = 1.0 / curvature;
-    if (c.updates.size() == kMostUpdates) c.updates.pop_front();
-    c.updates.push_back(std::move(update));
+// Takes the correction, shortened where it turns an element inside out.
+bool Newmark::move(Column& c) const {
+  for (int cut = 0;; ++cut, c.direction *= 0.5) {
+    c.next_increment = c.increment + c.direction;
+    try {
+      find_residual(c, c.next_increment, c.next_residual);
+      break;
+    } catch (const NumericalError&) {
+      if (cut == kMostCuts) return false;
+    }
   }
-  c.residual.swap(c.next);
+  c.increment.swap(c.next_increment);
+  c.residual -= c.next_residual;  // the change
+  c.updates.learn(c.direction, c.residual);
+  c.residual.swap(c.next_residual);
+  return true;
 }
 
 int Newmark::iterate() {
   int renewals = 0;
   for (int k = 0, since = 0; k < kMaxIterations; ++k, ++since) {
     ++iterations_;
-    std::vector<Column*> active;
+    active_.clear();
     for (Column& column : columns_) {
-      if (!column.done) active.push_back(&column);
+      if (!column.done) active_.push_back(&column);
     }
-    find_directions(active);
-    const Progress progress = judge(active, since);
+    find_directions();
+    const Progress progress = judge(since);
     if (progress == Progress::done) return k + 1;
     if (progress == Progress::failed) return 0;
     if (progress == Progress::slow) {  // the factor is too old here: renew it and take this iteration again
       if (++renewals > kMostRenewals) return 0;
-      factorize(*active.front());
+      factorize(*active_.front());
       since = -1;
-    } else if (!move(active)) {
+    } else if (!move()) {
       return 0;
     }
   }
@@ -348,12 +319,14 @@ void Newmark::note_age(int iterations) {
 }
 
 void Newmark::accept(Column& c, DynamicState& state) const {
-  const Eigen::VectorXd a = acceleration(c, c.increment);
+  Eigen::VectorXd &a = c.middle.acceleration, &u = c.middle.displacement;
+  find_acceleration(c, c.increment, a);
+  u = state.displacement + c.increment;
   state.velocity += c.step * ((1.0 - gamma_) * state.acceleration + gamma_ * a);
-  state.relaxed =
-      relax(c.system->relaxations(), c.step, state.displacement, state.displacement + c.increment, state.relaxed);
-  state.displacement += c.increment;
-  c.earlier_acceleration = std::exchange(state.acceleration, a);
+  relax(c.system->relaxations(), c.step, state.displacement, u, state.relaxed);
+  state.displacement.swap(u);
+  c.earlier_acceleration.swap(state.acceleration);
+  state.acceleration.swap(a);
   state.time += c.step;
   c.reached = state.time;
 }

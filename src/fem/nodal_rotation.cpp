@@ -24,32 +24,31 @@ Eigen::Matrix3d rotation(const Eigen::Matrix3d& f) {
 
 }  // namespace
 
-Eigen::Matrix3Xd nodal_rotations(const Discretisation& fem, const Eigen::VectorXd& u) {
-  const int n = fem.nodes_per_element();
-  Eigen::Matrix3Xd sum = Eigen::Matrix3Xd::Zero(3, fem.dof_count());
-  Eigen::VectorXd volume = Eigen::VectorXd::Zero(fem.node_count());
+NodalRotations::NodalRotations(const Discretisation& fem) : fem_(fem), volume_(Eigen::VectorXd::Zero(fem.node_count())) {
   for (int e = 0; e < fem.element_count(); ++e) {
-    Eigen::Matrix3d gradient = Eigen::Matrix3d::Zero();
     double weight = 0.0;
-    for (int q = 0; q < fem.points_per_element(); ++q) {
-      const auto g = fem.gradient(e, q);
-      for (int a = 0; a < n; ++a) {
-        gradient += fem.weight(e, q) * u.segment<3>(3 * fem.elements()(a, e)) * g.col(a).transpose();
-      }
-      weight += fem.weight(e, q);
-    }
-    for (int a = 0; a < n; ++a) {
-      const int node = fem.elements()(a, e);
-      sum.middleCols<3>(3 * node) += gradient;
-      volume[node] += weight;
-    }
+    for (int q = 0; q < fem.points_per_element(); ++q) weight += fem.weight(e, q);
+    for (int a = 0; a < fem.nodes_per_element(); ++a) volume_[fem.elements()(a, e)] += weight;
   }
-  for (int node = 0; node < fem.node_count(); ++node) {
-    auto f = sum.middleCols<3>(3 * node);
-    if (volume[node] > 0.0) f /= volume[node];
+}
+
+void NodalRotations::find(const Eigen::VectorXd& u, Eigen::Matrix3Xd& rotations) const {
+  rotations.setZero(3, fem_.dof_count());
+  for (int e = 0; e < fem_.element_count(); ++e) {
+    Eigen::Matrix3d gradient = Eigen::Matrix3d::Zero();
+    for (int q = 0; q < fem_.points_per_element(); ++q) {
+      const auto g = fem_.gradient(e, q);
+      for (int a = 0; a < fem_.nodes_per_element(); ++a) {
+        gradient += fem_.weight(e, q) * u.segment<3>(3 * fem_.elements()(a, e)) * g.col(a).transpose();
+      }
+    }
+    for (int a = 0; a < fem_.nodes_per_element(); ++a) rotations.middleCols<3>(3 * fem_.elements()(a, e)) += gradient;
+  }
+  for (int node = 0; node < fem_.node_count(); ++node) {
+    auto f = rotations.middleCols<3>(3 * node);
+    if (volume_[node] > 0.0) f /= volume_[node];
     f = rotation(Eigen::Matrix3d(f + Eigen::Matrix3d::Identity()));
   }
-  return sum;
 }
 
 }  // namespace tissue_stiffness

@@ -13,6 +13,7 @@ namespace {
 
 constexpr Eigen::Index kBlock = 512;   // rows that are packed at once
 constexpr Eigen::Index kShare = 8192;  // rows of one summand
+constexpr Eigen::Index kGrain = 512;   // rows of a sparse product that are worth a task
 
 Eigen::Index panels(Eigen::Index columns, int width) {
   return (columns + width - 1) / width;
@@ -27,6 +28,14 @@ void pack(const Matrix& a, int width, std::vector<double>& out) {
     double* to = out.data() + (j / width) * rows * width + j % width;
     for (Eigen::Index r = 0; r < rows; ++r) to[r * width] = a(r, j);
   }
+}
+
+// Row j of a symmetric matrix times x.
+template <typename Vector>
+double row_product(const SparseMatrix& s, Eigen::Index j, const Vector& x) {
+  double sum = 0.0;
+  for (SparseMatrix::InnerIterator entry(s, j); entry; ++entry) sum += entry.value() * x[entry.row()];
+  return sum;
 }
 
 struct Packed {
@@ -52,30 +61,31 @@ void add_tiles(const Packed& packed, Eigen::Index rows, bool lower, Eigen::Matri
 }  // namespace
 
 Eigen::MatrixXd symmetric_product(const SparseMatrix& s, const Eigen::MatrixXd& x) {
-  constexpr Eigen::Index grain = 512;
   const Eigen::Index n = x.rows(), columns = kRowWidth * panels(x.cols(), kRowWidth);
   if (x.cols() < kRowWidth / 2) {  // padded it would be more work
     Eigen::MatrixXd out(n, x.cols());
-    tbb::parallel_for(tbb::blocked_range<Eigen::Index>(0, n, grain), [&](const auto& part) {
+    tbb::parallel_for(tbb::blocked_range<Eigen::Index>(0, n, kGrain), [&](const auto& part) {
       for (Eigen::Index c = 0; c < x.cols(); ++c) {
-        for (Eigen::Index j = part.begin(); j < part.end(); ++j) {
-          double sum = 0.0;
-          for (SparseMatrix::InnerIterator it(s, j); it; ++it) sum += it.value() * x(it.row(), c);
-          out(j, c) = sum;
-        }
+        for (Eigen::Index j = part.begin(); j < part.end(); ++j) out(j, c) = row_product(s, j, x.col(c));
       }
     });
     return out;
   }
   GramSum::Rows from = GramSum::Rows::Zero(n, columns), to(n, columns);
   from.leftCols(x.cols()) = x;
-  tbb::parallel_for(tbb::blocked_range<Eigen::Index>(0, n, grain), [&](const auto& part) {
+  tbb::parallel_for(tbb::blocked_range<Eigen::Index>(0, n, kGrain), [&](const auto& part) {
     for (Eigen::Index j = part.begin(); j < part.end(); ++j) {
       const int begin = s.outerIndexPtr()[j], end = s.outerIndexPtr()[j + 1];
       sum_rows(end - begin, s.valuePtr() + begin, s.innerIndexPtr() + begin, from.data(), columns, to.row(j).data());
     }
   });
   return to.leftCols(x.cols());
+}
+
+void subtract_product(const SparseMatrix& s, const Eigen::VectorXd& x, Eigen::VectorXd& y) {
+  tbb::parallel_for(tbb::blocked_range<Eigen::Index>(0, s.outerSize(), kGrain), [&](const auto& part) {
+    for (Eigen::Index j = part.begin(); j < part.end(); ++j) y[j] -= row_product(s, j, x);
+  });
 }
 
 Eigen::MatrixXd inner_products(const Eigen::Ref<const Eigen::MatrixXd>& a, const Eigen::Ref<const Eigen::MatrixXd>& b) {

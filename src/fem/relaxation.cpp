@@ -12,21 +12,18 @@ RelaxationStep::RelaxationStep(const Relaxation& relaxation, double step) {
   to = 1.0 - mean;
 }
 
-std::vector<Eigen::VectorXd> relax(const std::vector<Relaxation>& branches, double step, const Eigen::VectorXd& u0,
-                                   const Eigen::VectorXd& u1, const std::vector<Eigen::VectorXd>& z0) {
-  std::vector<Eigen::VectorXd> z1;
+void relax(const std::vector<Relaxation>& branches, double step, const Eigen::VectorXd& u0, const Eigen::VectorXd& u1,
+           std::vector<Eigen::VectorXd>& z) {
   for (std::size_t i = 0; i < branches.size(); ++i) {
     const RelaxationStep s(branches[i], step);
-    z1.emplace_back(s.decay * z0[i] + s.from * u0 + s.to * u1);
+    z[i] = s.decay * z[i] + s.from * u0 + s.to * u1;
   }
-  return z1;
 }
 
-Eigen::VectorXd overstretch(const std::vector<Relaxation>& branches, const Eigen::VectorXd& u,
-                            const std::vector<Eigen::VectorXd>& z) {
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(u.size());
+void overstretch(const std::vector<Relaxation>& branches, const Eigen::VectorXd& u, const std::vector<Eigen::VectorXd>& z,
+                 Eigen::VectorXd& sum) {
+  sum.setZero(u.size());
   for (std::size_t i = 0; i < branches.size(); ++i) sum += branches[i].modulus * (u - z[i]);
-  return sum;
 }
 
 }  // namespace tissue_stiffness

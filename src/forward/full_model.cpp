@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "tissue_stiffness/fem/central_difference.hpp"
-#include "tissue_stiffness/fem/nodal_rotation.hpp"
+#include "tissue_stiffness/fem/products.hpp"
 #include "tissue_stiffness/forward/for_each_index.hpp"
 
 namespace tissue_stiffness {
@@ -168,14 +168,14 @@ ModelSystem::ModelSystem(const Model& model, Eigen::VectorXd theta)
     if (beta > 0.0) damping_ += beta * reference_;
   }
   gravity_ = mass_ * model.body_acceleration(theta_).replicate(mass_.rows() / 3, 1);
+  if (!linear_part_) rotations_.emplace(model.fem());
 }
 
-Eigen::VectorXd ModelSystem::force(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const {
-  Eigen::VectorXd f = gravity_;
-  if (linear_part_) f -= stiffness_ * u;
-  model_.add_loads(theta_, time, f);
-  model_.add_nonlinear_force(theta_, {time, u, v}, f);
-  return f;
+void ModelSystem::add_force(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v, Eigen::VectorXd& force) const {
+  force += gravity_;
+  if (linear_part_) subtract_product(stiffness_, u, force);
+  model_.add_loads(theta_, time, force);
+  model_.add_nonlinear_force(theta_, {time, u, v}, force);
 }
 
 SparseMatrix ModelSystem::stiffness(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const {
@@ -184,8 +184,8 @@ SparseMatrix ModelSystem::stiffness(double time, const Eigen::VectorXd& u, const
   return k;
 }
 
-Eigen::Matrix3Xd ModelSystem::rotations(const Eigen::VectorXd& u) const {
-  return linear_part_ ? Eigen::Matrix3Xd() : nodal_rotations(model_.fem(), u);
+void ModelSystem::find_rotations(const Eigen::VectorXd& u, Eigen::Matrix3Xd& rotations) const {
+  rotations_ ? rotations_->find(u, rotations) : DynamicSystem::find_rotations(u, rotations);
 }
 
 double ModelSystem::energy(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const {

@@ -16,16 +16,17 @@ class CentralDifference {
 
   /// Step that is taken at most [s].
   double largest_step() const { return largest_step_; }
-  void initialise(DynamicState& state) const;
+  void initialise(DynamicState& state);
   /// Advances by `span` [s] in equal steps. Throws NumericalError when the motion blows up.
-  void advance(DynamicState& state, double span) const;
+  void advance(DynamicState& state, double span);
 
  private:
-  Eigen::VectorXd acceleration(const DynamicState& state) const;
+  void find_acceleration(DynamicState& state);
 
   const DynamicSystem& system_;
   Eigen::VectorXd inverse_mass_;  ///< 0 for fixed degrees of freedom
   double largest_step_ = 0.0;
+  Eigen::VectorXd next_, stretch_;  ///< displacement after a step; what relaxing branches pull at
 };
 
 }  // namespace tissue_stiffness

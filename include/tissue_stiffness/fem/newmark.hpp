@@ -1,11 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <deque>
 #include <limits>
-#include <memory>
 #include <vector>
 
+#include "tissue_stiffness/fem/bfgs_updates.hpp"
 #include "tissue_stiffness/fem/relaxation.hpp"
 #include "tissue_stiffness/fem/sparse_solver.hpp"
 
@@ -19,15 +18,16 @@ class DynamicSystem {
   virtual const SparseMatrix& damping() const = 0;  ///< read only when damped()
   virtual bool damped() const = 0;
   virtual const std::vector<char>& fixed() const = 0;
-  /// External minus internal force [N].
-  virtual Eigen::VectorXd force(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const = 0;
+  /// Adds external minus internal force [N].
+  virtual void add_force(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v, Eigen::VectorXd& force) const = 0;
+  Eigen::VectorXd force(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const;
   /// -df/du, symmetric [N/m].
   virtual SparseMatrix stiffness(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const = 0;
   /// Branches whose force the state's history carries, and the stiffness they share (read only when there are any).
   virtual const std::vector<Relaxation>& relaxations() const;
   virtual const SparseMatrix& relaxing_stiffness() const { return mass(); }
   /// How far the material turned at each node, 3 x 3n, where the stiffness turns with it; nothing where it does not.
-  virtual Eigen::Matrix3Xd rotations(const Eigen::VectorXd&) const { return {}; }
+  virtual void find_rotations(const Eigen::VectorXd&, Eigen::Matrix3Xd& rotations) const { rotations.resize(3, 0); }
 };
 
 /// Where a dynamic system stands.
@@ -43,11 +43,10 @@ struct DynamicState {
 ///
 /// The balance is solved by quasi-Newton iterations (BFGS: Matthies & Strang 1979) around one Jacobian of an earlier
 /// instant, turned with the material. The factor is renewed when the iterations that its age has cost outweigh a
-/// factorisation, or when they diverge. A step that still fails is cut in
-/// halves.
+/// factorisation, or when they diverge. A step that still fails is cut in halves.
 ///
 /// Systems of one size that differ little - a model at several parameters - step side by side: the first one's factor
-/// serves all, and they go through it together.
+/// serves all, and they go through it together. They step in buffers that stay: only a new factor asks the heap for memory.
 class Newmark {
  public:
   /// `tolerance`: largest correction that is left out [m]. Systems must hold the same degrees of freedom.
@@ -67,18 +66,16 @@ class Newmark {
   int iterations() const { return iterations_; }
 
  private:
-  struct Update {
-    Eigen::VectorXd step, change;  ///< of the unknown and of the residual, with its sign turned
-    double inverse_curvature;      ///< 1 / step . change
-  };
   /// One system within a step.
   struct Column {
     const DynamicSystem* system;
     const DynamicState* before = nullptr;
     double step = 0.0;
     DynamicState middle;  ///< at the weighted instants
-    Eigen::VectorXd increment, residual, next, direction;
-    std::deque<std::shared_ptr<const Update>> updates;
+    Eigen::VectorXd increment, residual, direction;
+    Eigen::VectorXd next_increment, next_residual;  ///< of the correction that is tried
+    Eigen::VectorXd stretch;                        ///< what relaxing branches pull at
+    BfgsUpdates updates;
     double last = 0.0;  ///< size of the last correction
     double rate = 1.0;  ///< at which they shrink
     bool done = false;
@@ -92,22 +89,26 @@ class Newmark {
   /// Until all columns are done; the number of iterations, 0 when they diverge.
   int iterate();
   bool start();
-  void find_directions(const std::vector<Column*>& active);
-  Progress judge(const std::vector<Column*>& active, int iteration) const;
-  bool move(const std::vector<Column*>& active) const;
+  void find_directions();
+  Progress judge(int iteration);
+  /// False when a column cannot move.
+  bool move();
+  bool move(Column& column) const;
   void factorize(const Column& column);
   void turn();
   void note_age(int iterations);
-  Eigen::VectorXd acceleration(const Column& column, const Eigen::VectorXd& increment) const;
-  Eigen::VectorXd residual(Column& column, const Eigen::VectorXd& increment) const;
+  void find_acceleration(const Column& column, const Eigen::VectorXd& increment, Eigen::VectorXd& acceleration) const;
+  void find_residual(Column& column, const Eigen::VectorXd& increment, Eigen::VectorXd& residual) const;
   void accept(Column& column, DynamicState& state) const;
-  static void learn(Column& column);
 
   double alpha_m_ = 0.0, alpha_f_ = 0.0, beta_ = 0.25, gamma_ = 0.5;
   double tolerance_;
   std::vector<Column> columns_;
+  std::vector<Column*> active_;  ///< those that are not done
+  Eigen::MatrixXd directions_;   ///< of the active ones, the first columns
   SparseSolver solver_;
   Eigen::Matrix3Xd factored_rotations_, turn_;  ///< of each node; the second: since the factor was made
+  bool turned_ = false;                         ///< in an earlier step, so that there is a turn
   double factored_step_ = 0.0;
   /// Iterations a step: over the first steps of this factor and of the last one, and what its age has cost beyond them.
   double young_ = 0.0, young_before_ = 0.0, excess_ = 0.0;

@@ -7,7 +7,16 @@
 namespace tissue_stiffness {
 
 /// How far the material turned at each node: the rotation in the polar decomposition of the deformation gradient's mean
-/// over the elements around it. 3 x 3n, a matrix a node; the identity where the mean is turned inside out.
-Eigen::Matrix3Xd nodal_rotations(const Discretisation& fem, const Eigen::VectorXd& u);
+/// over the elements around it. The identity where the mean is turned inside out.
+class NodalRotations {
+ public:
+  explicit NodalRotations(const Discretisation& fem);
+  /// 3 x 3n, a matrix a node, at displacement u (3n).
+  void find(const Eigen::VectorXd& u, Eigen::Matrix3Xd& rotations) const;
+
+ private:
+  const Discretisation& fem_;
+  Eigen::VectorXd volume_;  ///< of the elements around each node [m^3]
+};
 
 }  // namespace tissue_stiffness

@@ -10,6 +10,9 @@ namespace tissue_stiffness {
 /// parallel, and the same whatever the number of cores.
 Eigen::MatrixXd symmetric_product(const SparseMatrix& s, const Eigen::MatrixXd& x);
 
+/// y -= S x for one vector, in place.
+void subtract_product(const SparseMatrix& s, const Eigen::VectorXd& x, Eigen::VectorXd& y);
+
 /// A^T B of tall A (n x p) and B (n x q), in the widest instructions of the machine; sums of fixed blocks of rows, so that
 /// the result does not depend on the number of cores.
 Eigen::MatrixXd inner_products(const Eigen::Ref<const Eigen::MatrixXd>& a, const Eigen::Ref<const Eigen::MatrixXd>& b);

@@ -17,12 +17,12 @@ struct RelaxationStep {
   RelaxationStep(const Relaxation& relaxation, double step);
 };
 
-/// z of every branch after a step from u0 to u1.
-std::vector<Eigen::VectorXd> relax(const std::vector<Relaxation>& branches, double step, const Eigen::VectorXd& u0,
-                                   const Eigen::VectorXd& u1, const std::vector<Eigen::VectorXd>& z0);
+/// Takes z of every branch over a step from u0 to u1.
+void relax(const std::vector<Relaxation>& branches, double step, const Eigen::VectorXd& u0, const Eigen::VectorXd& u1,
+           std::vector<Eigen::VectorXd>& z);
 
 /// sum modulus (u - z): what the branches' stiffness acts on.
-Eigen::VectorXd overstretch(const std::vector<Relaxation>& branches, const Eigen::VectorXd& u,
-                            const std::vector<Eigen::VectorXd>& z);
+void overstretch(const std::vector<Relaxation>& branches, const Eigen::VectorXd& u, const std::vector<Eigen::VectorXd>& z,
+                 Eigen::VectorXd& sum);
 
 }  // namespace tissue_stiffness

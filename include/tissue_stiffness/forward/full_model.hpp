@@ -1,8 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "tissue_stiffness/fem/newmark.hpp"
+#include "tissue_stiffness/fem/nodal_rotation.hpp"
 #include "tissue_stiffness/forward/forward_model.hpp"
 
 namespace tissue_stiffness {
@@ -44,9 +46,9 @@ class ModelSystem : public DynamicSystem {
   const std::vector<char>& fixed() const override { return fixed_; }
   const std::vector<Relaxation>& relaxations() const override { return relaxations_; }
   const SparseMatrix& relaxing_stiffness() const override { return reference_; }
-  Eigen::VectorXd force(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const override;
+  void add_force(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v, Eigen::VectorXd& force) const override;
   SparseMatrix stiffness(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const override;
-  Eigen::Matrix3Xd rotations(const Eigen::VectorXd& u) const override;
+  void find_rotations(const Eigen::VectorXd& u, Eigen::Matrix3Xd& rotations) const override;
   /// Kinetic and stored energy less the work of gravity [J].
   double energy(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const;
 
@@ -57,6 +59,7 @@ class ModelSystem : public DynamicSystem {
   std::vector<char> fixed_;
   std::vector<Relaxation> relaxations_;
   Eigen::VectorXd gravity_;
+  std::optional<NodalRotations> rotations_;  ///< where the whole stiffness turns with the material
   bool damped_ = false, linear_part_ = false;
 };
 
