@@ -151,36 +151,36 @@ std::string FullModel::description() const {
   return "full: " + std::to_string(model_.fem().dof_count()) + " degrees of freedom, " + scheme + ", " + step;
 }
 
-ModelSystem::ModelSystem(const Model& model, Eigen::VectorXd theta)
+ModelSystem::ModelSystem(const Model& model, const Eigen::VectorXd& theta)
     : model_(model),
-      theta_(std::move(theta)),
-      mass_(model.mass(theta_)),
-      stiffness_(model.stiffness(theta_)),
-      fixed_(model.fixed(theta_)),
-      relaxations_(model.relaxations(theta_)) {
-  const double alpha = model.mass_damping(theta_), beta = model.stiffness_damping(theta_);
+      point_(model.point(theta)),
+      mass_(model.mass(theta)),
+      stiffness_(model.stiffness(theta)),
+      fixed_(model.fixed(theta)),
+      relaxations_(model.relaxations(theta)) {
+  const double alpha = model.mass_damping(theta), beta = model.stiffness_damping(theta);
   mass_.prune(0.0);  // of each pair of nodes' 3 x 3 block, a third
   linear_part_ = stiffness_.coeffs().cwiseAbs().maxCoeff() > 0.0;
   damped_ = alpha > 0.0 || beta > 0.0;
-  if (beta > 0.0 || !relaxations_.empty()) reference_ = model.reference_stiffness(theta_);
+  if (beta > 0.0 || !relaxations_.empty()) reference_ = model.reference_stiffness(theta);
   if (damped_) {
     damping_ = alpha * mass_;
     if (beta > 0.0) damping_ += beta * reference_;
   }
-  gravity_ = mass_ * model.body_acceleration(theta_).replicate(mass_.rows() / 3, 1);
+  gravity_ = mass_ * model.body_acceleration(theta).replicate(mass_.rows() / 3, 1);
   if (!linear_part_) rotations_.emplace(model.fem());
 }
 
 void ModelSystem::add_force(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v, Eigen::VectorXd& force) const {
   force += gravity_;
   if (linear_part_) subtract_product(stiffness_, u, force);
-  model_.add_loads(theta_, time, force);
-  model_.add_nonlinear_force(theta_, {time, u, v}, force);
+  model_.add_loads(point_, time, force);
+  model_.add_nonlinear_force(point_, {time, u, v}, force);
 }
 
 SparseMatrix ModelSystem::stiffness(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const {
   SparseMatrix k = stiffness_;
-  model_.add_nonlinear_stiffness(theta_, {time, u, v}, k);
+  model_.add_nonlinear_stiffness(point_, {time, u, v}, k);
   return k;
 }
 
@@ -189,7 +189,7 @@ void ModelSystem::find_rotations(const Eigen::VectorXd& u, Eigen::Matrix3Xd& rot
 }
 
 double ModelSystem::energy(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const {
-  return 0.5 * v.dot(mass_ * v) + model_.stored_energy(theta_, {time, u, v}) - gravity_.dot(u);
+  return 0.5 * v.dot(mass_ * v) + model_.stored_energy(point_, {time, u, v}) - gravity_.dot(u);
 }
 
 }  // namespace tissue_stiffness

@@ -130,66 +130,74 @@ double Model::load_value(const LoadTerm& term, const Eigen::VectorXd& p, double 
   return (term.course ? load_factor : 1.0) * term.value(time, time - first_stamp_, p);
 }
 
-void Model::add_loads(const Eigen::VectorXd& theta, double time, Eigen::VectorXd& force) const {
-  const double factor = load_factor(theta);
+Model::Point Model::point(const Eigen::VectorXd& theta) const {
+  Point at;
+  at.load_factor = load_factor(theta);
   for (const Part& part : parts_) {
-    if (part.terms.loads.empty()) continue;
-    const Eigen::VectorXd p = part.parameters(theta);
-    const double share = 1.0 - finite_share(part, theta);
+    Point::Part own{part.parameters(theta), finite_share(part, theta), {}};
     for (const LoadTerm& term : part.terms.loads) {
-      const double value = share * term.coefficient(p) * load_value(term, p, factor, time);
-      if (value == 0.0) continue;
-      if (term.shaped) {
-        force += value * term.shaped(p);
-      } else {
-        force += value * term.pattern;
-      }
+      own.shaped.push_back(term.shaped ? term.shaped(own.parameters) : Eigen::VectorXd());
+    }
+    at.parts.push_back(std::move(own));
+  }
+  return at;
+}
+
+void Model::add_loads(const Point& at, double time, Eigen::VectorXd& force) const {
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    const Point::Part& own = at.parts[i];
+    const std::vector<LoadTerm>& terms = parts_[i].terms.loads;
+    for (std::size_t k = 0; k < terms.size(); ++k) {
+      const LoadTerm& term = terms[k];
+      const double value = (1.0 - own.finite_share) * term.coefficient(own.parameters) *
+                           load_value(term, own.parameters, at.load_factor, time);
+      if (value != 0.0) force += value * (term.shaped ? own.shaped[k] : term.pattern);
     }
   }
 }
 
-void Model::add_nonlinear_force(const Eigen::VectorXd& theta, const Motion& at, Eigen::VectorXd& force) const {
-  Motion motion = at;
-  motion.load_factor = load_factor(theta);
+void Model::add_nonlinear_force(const Point& at, Motion motion, Eigen::VectorXd& force) const {
+  motion.load_factor = at.load_factor;
   motion.since = motion.time - first_stamp_;
-  for (const Part& part : parts_) {
-    const Eigen::VectorXd p = part.parameters(theta);
-    motion.finite_share = finite_share(part, theta);
-    if (part.effect->nonlinear()) part.effect->add_force(motion, p, force);
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    const Effect& effect = *parts_[i].effect;
+    const Eigen::VectorXd& p = at.parts[i].parameters;
+    motion.finite_share = at.parts[i].finite_share;
+    if (effect.nonlinear()) effect.add_force(motion, p, force);
     if (motion.finite_share == 1.0) {
-      part.effect->add_finite_force(motion, p, force);
+      effect.add_finite_force(motion, p, force);
     } else if (motion.finite_share > 0.0) {
-      Eigen::VectorXd finite = Eigen::VectorXd::Zero(force.size());
-      part.effect->add_finite_force(motion, p, finite);
-      force += motion.finite_share * finite;
+      VectorPool::Loan finite(scratch_, force.size());
+      finite->setZero();
+      effect.add_finite_force(motion, p, *finite);
+      force += motion.finite_share * *finite;
     }
   }
 }
 
-void Model::add_nonlinear_stiffness(const Eigen::VectorXd& theta, const Motion& at, SparseMatrix& stiffness) const {
-  Motion motion = at;
-  motion.load_factor = load_factor(theta);
+void Model::add_nonlinear_stiffness(const Point& at, Motion motion, SparseMatrix& stiffness) const {
+  motion.load_factor = at.load_factor;
   motion.since = motion.time - first_stamp_;
-  for (const Part& part : parts_) {
-    const Eigen::VectorXd p = part.parameters(theta);
-    motion.finite_share = finite_share(part, theta);
-    if (part.effect->nonlinear()) part.effect->add_stiffness(motion, p, stiffness);
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    const Effect& effect = *parts_[i].effect;
+    const Eigen::VectorXd& p = at.parts[i].parameters;
+    motion.finite_share = at.parts[i].finite_share;
+    if (effect.nonlinear()) effect.add_stiffness(motion, p, stiffness);
     if (motion.finite_share == 1.0) {
-      part.effect->add_finite_stiffness(motion, p, stiffness);
+      effect.add_finite_stiffness(motion, p, stiffness);
     } else if (motion.finite_share > 0.0) {
       SparseMatrix finite = fem_.pattern();
-      part.effect->add_finite_stiffness(motion, p, finite);
+      effect.add_finite_stiffness(motion, p, finite);
       stiffness += motion.finite_share * finite;
     }
   }
 }
 
-double Model::stored_energy(const Eigen::VectorXd& theta, const Motion& at) const {
-  Motion motion = at;
+double Model::stored_energy(const Point& at, Motion motion) const {
   double sum = 0.0;
-  for (const Part& part : parts_) {
-    motion.finite_share = finite_share(part, theta);
-    sum += part.effect->energy(motion, part.parameters(theta));
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    motion.finite_share = at.parts[i].finite_share;
+    sum += parts_[i].effect->energy(motion, at.parts[i].parameters);
   }
   return sum;
 }

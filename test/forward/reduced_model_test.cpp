@@ -156,7 +156,7 @@ TEST(ReducedModel, OneModeUnderARampIsTheClosedForm) {
   ASSERT_EQ(reduced.basis().cols(), 1);
   const Eigen::VectorXd b = reduced.basis().col(0);
   Eigen::VectorXd load = Eigen::VectorXd::Zero(b.size());
-  model.add_loads(prior(model), 1.0, load);
+  model.add_loads(model.point(prior(model)), 1.0, load);
   const double square = b.dot(model.stiffness(prior(model)) * b), w = std::sqrt(square);
   const auto run = reduced.start(prior(model), 0.0);
   for (const double t : {0.01, 0.13, 0.4, 0.99}) {

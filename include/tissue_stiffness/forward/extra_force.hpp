@@ -10,17 +10,18 @@ namespace tissue_stiffness {
 /// part that is even in the displacement.
 class ExtraForce {
  public:
-  ExtraForce(const Model& model, Eigen::VectorXd theta);
+  ExtraForce(const Model& model, const Eigen::VectorXd& theta);
 
   /// Those effects are absent at theta: the force is zero.
-  bool absent() const { return theta_ == without_; }
+  bool absent() const { return absent_; }
   Eigen::VectorXd operator()(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const;
 
  private:
   Eigen::VectorXd difference(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const;
 
   const Model& model_;
-  Eigen::VectorXd theta_, without_;
+  Model::Point with_, without_;  ///< the second: where those effects are absent
+  bool absent_;
   bool even_ = false, loaded_ = false;  ///< finite strain is among them; some load follows the body under it
 };
 

@@ -38,7 +38,7 @@ class FullModel : public ForwardModel {
 /// Model at one theta as the integrator sees it.
 class ModelSystem : public DynamicSystem {
  public:
-  ModelSystem(const Model& model, Eigen::VectorXd theta);
+  ModelSystem(const Model& model, const Eigen::VectorXd& theta);
 
   const SparseMatrix& mass() const override { return mass_; }
   const SparseMatrix& damping() const override { return damping_; }
@@ -54,7 +54,7 @@ class ModelSystem : public DynamicSystem {
 
  private:
   const Model& model_;
-  Eigen::VectorXd theta_;
+  Model::Point point_;
   SparseMatrix mass_, damping_, stiffness_, reference_;
   std::vector<char> fixed_;
   std::vector<Relaxation> relaxations_;

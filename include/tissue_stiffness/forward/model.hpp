@@ -9,6 +9,7 @@
 #include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/fem/discretisation.hpp"
 #include "tissue_stiffness/fem/relaxation.hpp"
+#include "tissue_stiffness/fem/vector_pool.hpp"
 #include "tissue_stiffness/settings/model_settings.hpp"
 #include "tissue_stiffness/types/load_sample.hpp"
 #include "tissue_stiffness/types/tet_mesh.hpp"
@@ -90,12 +91,23 @@ class Model {
   double mass_factor(const Eigen::VectorXd& theta) const;
   double load_factor(const Eigen::VectorXd& theta) const;
 
+  /// What the forces at theta need of it at every instant.
+  struct Point {
+    struct Part {
+      Eigen::VectorXd parameters;
+      double finite_share;
+      std::vector<Eigen::VectorXd> shaped;  ///< pattern of each load term, empty where that is constant
+    };
+    std::vector<Part> parts;
+    double load_factor;
+  };
+  Point point(const Eigen::VectorXd& theta) const;
   /// Sum of the load terms (not gravity) at an instant [N].
-  void add_loads(const Eigen::VectorXd& theta, double time, Eigen::VectorXd& force) const;
-  void add_nonlinear_force(const Eigen::VectorXd& theta, const Motion& motion, Eigen::VectorXd& force) const;
-  void add_nonlinear_stiffness(const Eigen::VectorXd& theta, const Motion& motion, SparseMatrix& stiffness) const;
+  void add_loads(const Point& at, double time, Eigen::VectorXd& force) const;
+  void add_nonlinear_force(const Point& at, Motion motion, Eigen::VectorXd& force) const;
+  void add_nonlinear_stiffness(const Point& at, Motion motion, SparseMatrix& stiffness) const;
   /// Elastic and contact energy [J].
-  double stored_energy(const Eigen::VectorXd& theta, const Motion& motion) const;
+  double stored_energy(const Point& at, Motion motion) const;
 
   /// Some effect is one of the observation.
   bool observes() const;
@@ -146,6 +158,7 @@ class Model {
   double first_stamp_ = 0.0;
   bool finite_law_ = false;  ///< the elasticity's law is one of finite strain
   bool nonlinear_ = false;
+  mutable VectorPool scratch_;  ///< for forces of finite strain that only count in part
 };
 
 }  // namespace tissue_stiffness
