@@ -25,7 +25,7 @@ Eigen::VectorXd end_weights(const TetMesh& mesh) {
   const FacetQuadrature rule(6);
   Eigen::VectorXd w = Eigen::VectorXd::Zero(3 * mesh.node_count());
   for (int f = 0; f < mesh.facet_count(); ++f) {
-    const Eigen::Matrix3Xd x = facet_nodes(mesh, f);
+    const FacetNodes x = facet_nodes(mesh, f);
     if (x.row(0).minCoeff() < kLength - 1e-9) continue;
     for (int q = 0; q < rule.points(); ++q) {
       const double area = rule.weight(q) * rule.normal(x, q).norm();

@@ -30,8 +30,10 @@ class ActiveContraction : public Effect {
     load.coefficient = [](const Parameters& p) { return p[kAmplitude]; };
     load.activation = [this](double time, const Parameters& p) { return activation(time, p); };
     load.shaped = [this](const Parameters& p) {
-      const FibreDirections along = directions(p);
-      return Eigen::VectorXd(-stress_force(fem_, [&](int e, int q) { return strain_of(along(e, q)); }));
+      const auto pull = [&](int e, int q) { return strain_of(fibres_.direction(e, q, p[kAngle], p[kTilt])); };
+      Eigen::VectorXd force = Eigen::VectorXd::Zero(fem_.dof_count());
+      add_stress_force(fem_, pull, force);
+      return force;
     };
     load.shape = {kAngle, kTilt};
     out.loads.push_back(std::move(load));
@@ -48,9 +50,9 @@ class ActiveContraction : public Effect {
 
  private:
   double activation(double time, const Parameters& p) const { return course_ ? course_->value(time, 0) : twitch(time, p); }
+  // Refers to p: a copy would ask the heap for room at every force.
   FibreDirections directions(const Parameters& p) const {
-    const double angle = p[kAngle], tilt = p[kTilt];
-    return [this, angle, tilt](int e, int q) { return fibres_.direction(e, q, angle, tilt); };
+    return [this, &p](int e, int q) { return fibres_.direction(e, q, p[kAngle], p[kTilt]); };
   }
   static FibreLaw constant(double tension) {
     return [tension](double) { return FibreTension{tension, 0.0}; };

@@ -66,8 +66,9 @@ class ContactPlane : public Effect {
   void visit(const Eigen::VectorXd& u, const Parameters& p, const Act& act) const {
     const double stiffness = p[0] > 0.0 ? p[0] : default_stiffness_;
     for (int f = 0; f < mesh_.facet_count(); ++f) {
-      const Eigen::Matrix3Xd x = facet_nodes(mesh_, f, &u);
-      const Eigen::RowVectorXd height = (normal_.transpose() * (x.colwise() - point_)).array() - p[1];
+      const FacetNodes x = facet_nodes(mesh_, f, &u);
+      const Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, 6> height =
+          (normal_.transpose() * (x.colwise() - point_)).array() - p[1];
       if (height.minCoeff() > 0.5 * (height.maxCoeff() - height.minCoeff())) continue;  // cannot dip between nodes
       for (int q = 0; q < rule_.points(); ++q) {
         const double gap = height * rule_.shape(q);

@@ -6,7 +6,7 @@ namespace {
 // At one quadrature point: stretched direction F a and the slope of each shape function along a.
 struct Stretched {
   Eigen::Vector3d direction;
-  Eigen::VectorXd slope;
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 10, 1> slope;
   FibreTension tension;
 };
 

@@ -28,9 +28,9 @@ class FibreReinforcement : public Effect {
   }
 
  private:
+  // Refers to p: a copy would ask the heap for room at every force.
   FibreDirections directions(const Parameters& p) const {
-    const double angle = p[1], tilt = p[2];
-    return [this, angle, tilt](int e, int q) { return fibres_.direction(e, q, angle, tilt); };
+    return [this, &p](int e, int q) { return fibres_.direction(e, q, p[1], p[2]); };
   }
   static FibreLaw law(double modulus) {
     return [modulus](double strain) { return FibreTension{modulus * strain, modulus}; };

@@ -52,7 +52,7 @@ class Pressure : public Effect {
 
   void add_unit_force(const Eigen::VectorXd* u, double pressure, Eigen::VectorXd& force) const {
     for (const int f : facets_) {
-      const Eigen::Matrix3Xd x = facet_nodes(mesh_, f, u);
+      const FacetNodes x = facet_nodes(mesh_, f, u);
       for (int q = 0; q < rule_.points(); ++q) {
         const Eigen::Vector3d load = -pressure * rule_.weight(q) * rule_.normal(x, q);
         for (Eigen::Index a = 0; a < x.cols(); ++a) force.segment<3>(3 * mesh_.facets(a, f)) += rule_.shape(q)[a] * load;
@@ -62,7 +62,7 @@ class Pressure : public Effect {
 
   void add_facet_stiffness(std::size_t i, const Eigen::VectorXd& u, double pressure, SparseMatrix& stiffness) const {
     const int f = facets_[i];
-    const Eigen::Matrix3Xd x = facet_nodes(mesh_, f, &u);
+    const FacetNodes x = facet_nodes(mesh_, f, &u);
     const Eigen::Index n = x.cols();
     Eigen::MatrixXd block = Eigen::MatrixXd::Zero(3 * n, 3 * n);
     for (int q = 0; q < rule_.points(); ++q) {

@@ -59,9 +59,9 @@ class StiffInclusion : public Effect {
     const double x = std::clamp(0.5 + 0.5 * (p[kRadius] - distance) / half_width_, 0.0, 1.0);
     return x * x * x * (10.0 - 15.0 * x + 6.0 * x * x);
   }
+  // Refers to p: a copy would ask the heap for room at every force.
   PointLaw scale(const Parameters& p) const {
-    const Eigen::VectorXd own = p;
-    return [this, own](int e, int q, double) { return StressScale{own[kExcess] * inside(e, q, own), 0.0}; };
+    return [this, &p](int e, int q, double) { return StressScale{p[kExcess] * inside(e, q, p), 0.0}; };
   }
 
   const Discretisation& fem_;

@@ -1,5 +1,6 @@
 // Tissue that grows stiffer the more it is strained.
 #include <Eigen/Cholesky>
+#include <functional>
 
 #include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/effects/solids.hpp"
@@ -27,17 +28,16 @@ class StrainStiffening : public Effect {
   // Small strain.
   void add_force(const Motion& motion, const Parameters& p, Eigen::VectorXd& force) const override {
     if (p[0] == 0.0 || motion.finite_share == 1.0) return;
-    const StrainRows rows = strains(fem_, motion.displacement);
-    force -= (1.0 - motion.finite_share) * stress_force(fem_, [&](int e, int q) -> Strain {
-               const Point x = look(rows, e, q, p);
-               return x.excess.value * x.stress;
-             });
+    const auto stress = [&](int e, int q) -> Strain {
+      const Point x = look(motion.displacement, e, q, p);
+      return (1.0 - motion.finite_share) * x.excess.value * x.stress;
+    };
+    add_stress_force(fem_, std::cref(stress), force);
   }
   void add_stiffness(const Motion& motion, const Parameters& p, SparseMatrix& stiffness) const override {
     if (p[0] == 0.0 || motion.finite_share == 1.0) return;
-    const StrainRows rows = strains(fem_, motion.displacement);
     const StrainFactorField factor = [&](int e, int q) -> StrainFactor {
-      const Point x = look(rows, e, q, p);
+      const Point x = look(motion.displacement, e, q, p);
       if (!(x.excess.value > 0.0)) return StrainFactor(6, 0);
       const Eigen::Matrix<double, 6, 6> d =
           x.excess.value * x.factor * x.factor.transpose() + x.excess.slope * x.stress * x.stress.transpose();
@@ -64,13 +64,13 @@ class StrainStiffening : public Effect {
     Strain stress;
     StressScale excess;
   };
-  Point look(const StrainRows& rows, int e, int q, const Parameters& p) const {
+  Point look(const Eigen::VectorXd& u, int e, int q, const Parameters& p) const {
     Point x{StrainFactor::Zero(6, 6), Strain::Zero(), {0.0, 0.0}};
     for (std::size_t s = 0; s < solids_.count(); ++s) {
       if (!solids_.holds(s, e)) continue;
       const Lame c = lame(solids_.modulus(s, p), solids_.ratio(s, p));
       x.factor = isotropic_factor(c.lambda, c.mu);
-      const Strain strain = rows.block<6, 1>(6 * (static_cast<Eigen::Index>(e) * fem_.points_per_element() + q), 0);
+      const Strain strain = strain_at(fem_, u, e, q);
       x.stress = x.factor * (x.factor.transpose() * strain);
       x.excess = excess(p[0], solids_.modulus(s, p), 0.5 * strain.dot(x.stress));
     }

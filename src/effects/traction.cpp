@@ -10,7 +10,7 @@ Eigen::VectorXd mean_weights(const TetMesh& mesh, const std::vector<int>& facets
   const FacetQuadrature rule(static_cast<int>(mesh.facets.rows()));
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(mesh.node_count());
   for (const int f : facets) {
-    const Eigen::Matrix3Xd x = facet_nodes(mesh, f);
+    const FacetNodes x = facet_nodes(mesh, f);
     for (int q = 0; q < rule.points(); ++q) {
       const double area = rule.weight(q) * rule.normal(x, q).norm();
       for (Eigen::Index a = 0; a < x.cols(); ++a) weights[mesh.facets(a, f)] += area * rule.shape(q)[a];

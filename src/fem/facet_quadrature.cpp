@@ -47,13 +47,13 @@ FacetQuadrature::FacetQuadrature(int nodes) {
   }
 }
 
-Eigen::Vector3d FacetQuadrature::normal(const Eigen::Matrix3Xd& x, int q) const {
+Eigen::Vector3d FacetQuadrature::normal(const FacetNodes& x, int q) const {
   const Eigen::Matrix<double, 3, 2> tangents = x * derivative(q);
   return tangents.col(0).cross(tangents.col(1));
 }
 
-Eigen::Matrix3Xd facet_nodes(const TetMesh& mesh, int facet, const Eigen::VectorXd* displacement) {
-  Eigen::Matrix3Xd x(3, mesh.facets.rows());
+FacetNodes facet_nodes(const TetMesh& mesh, int facet, const Eigen::VectorXd* displacement) {
+  FacetNodes x(3, mesh.facets.rows());
   for (Eigen::Index a = 0; a < x.cols(); ++a) {
     const int node = mesh.facets(a, facet);
     x.col(a) = mesh.nodes.col(node);
@@ -66,7 +66,7 @@ SparseMatrix facet_mass(const TetMesh& mesh, const std::vector<int>& facets) {
   const FacetQuadrature rule(static_cast<int>(mesh.facets.rows()));
   std::vector<Eigen::Triplet<double>> entries;
   for (const int f : facets) {
-    const Eigen::Matrix3Xd x = facet_nodes(mesh, f);
+    const FacetNodes x = facet_nodes(mesh, f);
     Eigen::MatrixXd local = Eigen::MatrixXd::Zero(x.cols(), x.cols());
     for (int q = 0; q < rule.points(); ++q) {
       local += rule.weight(q) * rule.normal(x, q).norm() * rule.shape(q) * rule.shape(q).transpose();

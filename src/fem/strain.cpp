@@ -63,6 +63,15 @@ StrainRows strains(const Discretisation& fem, const Eigen::MatrixXd& u) {
   return result;
 }
 
+Strain strain_at(const Discretisation& fem, const Eigen::VectorXd& u, int e, int q) {
+  const auto g = fem.gradient(e, q);
+  Eigen::Matrix3d h = Eigen::Matrix3d::Zero();  // displacement gradient
+  for (int a = 0; a < fem.nodes_per_element(); ++a) h += u.segment<3>(3 * fem.elements()(a, e)) * g.col(a).transpose();
+  Strain s;
+  s << h(0, 0), h(1, 1), h(2, 2), (h(0, 1) + h(1, 0)) / kRoot, (h(1, 2) + h(2, 1)) / kRoot, (h(0, 2) + h(2, 0)) / kRoot;
+  return s;
+}
+
 void add_strain_stiffness(const Discretisation& fem, const StrainFactorField& factor, double scale, SparseMatrix& k) {
   const int n = fem.nodes_per_element();
   Eigen::Matrix<double, 3, Eigen::Dynamic> forces(3, 6 * n);
@@ -134,18 +143,16 @@ Eigen::MatrixXd project_strain_stiffness(const Discretisation& fem, const Strain
   return result.sum();
 }
 
-Eigen::VectorXd stress_force(const Discretisation& fem, const StressField& stress) {
-  Eigen::VectorXd force = Eigen::VectorXd::Zero(fem.dof_count());
+void add_stress_force(const Discretisation& fem, const StressField& stress, Eigen::VectorXd& force) {
   for (int e = 0; e < fem.element_count(); ++e) {
     for (int q = 0; q < fem.points_per_element(); ++q) {
       const Strain s = fem.weight(e, q) * stress(e, q);
       const auto g = fem.gradient(e, q);
       for (int a = 0; a < fem.nodes_per_element(); ++a) {
-        force.segment<3>(3 * fem.elements()(a, e)) += nodal(s, g.col(a));
+        force.segment<3>(3 * fem.elements()(a, e)) -= nodal(s, g.col(a));
       }
     }
   }
-  return force;
 }
 
 }  // namespace tissue_stiffness

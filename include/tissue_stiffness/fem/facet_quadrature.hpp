@@ -8,6 +8,9 @@
 
 namespace tissue_stiffness {
 
+/// Places of a facet's nodes, 3 x 3 or 3 x 6 [m].
+using FacetNodes = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 6>;
+
 /// Shape functions of 3- or 6-node facets at the points of a triangle rule (3 nodes: 3 points of degree 2, 6 nodes: 6
 /// points of degree 4, Dunavant 1985), for surface loads.
 class FacetQuadrature {
@@ -19,8 +22,8 @@ class FacetQuadrature {
   auto shape(int q) const { return shape_.col(q); }   ///< nodes
   const Eigen::MatrixX2d& derivative(int q) const { return derivatives_[static_cast<std::size_t>(q)]; }  ///< nodes x 2
 
-  /// Area-scaled outward normal dx/dr x dx/ds at point q, for nodal positions x (3 x nodes) [m^2]; |n| w sums to the area.
-  Eigen::Vector3d normal(const Eigen::Matrix3Xd& x, int q) const;
+  /// Area-scaled outward normal dx/dr x dx/ds at point q [m^2]; |n| w sums to the area.
+  Eigen::Vector3d normal(const FacetNodes& x, int q) const;
 
  private:
   Eigen::VectorXd weights_;
@@ -28,8 +31,8 @@ class FacetQuadrature {
   std::vector<Eigen::MatrixX2d> derivatives_;
 };
 
-/// Positions of a facet's nodes, 3 x nodes; `displacement` (3n) may be null.
-Eigen::Matrix3Xd facet_nodes(const TetMesh& mesh, int facet, const Eigen::VectorXd* displacement = nullptr);
+/// Where a facet's nodes are; `displacement` (3n) may be null.
+FacetNodes facet_nodes(const TetMesh& mesh, int facet, const Eigen::VectorXd* displacement = nullptr);
 
 /// int N_a N_b dA over facets, one 3 x 3 identity block a pair of nodes, 3n x 3n with only its own non-zeros [m^2].
 SparseMatrix facet_mass(const TetMesh& mesh, const std::vector<int>& facets);

@@ -28,6 +28,8 @@ using StressField = std::function<Strain(int e, int q)>;
 /// Strains of nodal fields (columns of u, 3n) at all quadrature points: six rows a point, points of an element together.
 using StrainRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 StrainRows strains(const Discretisation& fem, const Eigen::MatrixXd& u);
+/// The same of one field at one point.
+Strain strain_at(const Discretisation& fem, const Eigen::VectorXd& u, int e, int q);
 
 /// int B^T R R^T B dV [N/m], in the pattern of the mesh.
 void add_strain_stiffness(const Discretisation& fem, const StrainFactorField& factor, double scale, SparseMatrix& k);
@@ -40,7 +42,7 @@ Eigen::MatrixXd apply_strain_stiffness(const Discretisation& fem, const StrainFa
 Eigen::MatrixXd project_strain_stiffness(const Discretisation& fem, const StrainFactorField& factor,
                                          const StrainRows& strains);
 
-/// int B^T s dV [N], 3n: nodal forces that hold the stress field s in place.
-Eigen::VectorXd stress_force(const Discretisation& fem, const StressField& stress);
+/// Subtracts int B^T s dV [N], the internal force of the stress field s.
+void add_stress_force(const Discretisation& fem, const StressField& stress, Eigen::VectorXd& force);
 
 }  // namespace tissue_stiffness
