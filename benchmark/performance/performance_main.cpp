@@ -13,7 +13,7 @@
 #include <exception>
 
 #include "export.hpp"
-#include "heap.hpp"
+#include "heap/heap.hpp"
 #include "memory.hpp"
 #include "scene.hpp"
 #include "tissue_stiffness/fem/sparse_solver.hpp"

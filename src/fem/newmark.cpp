@@ -147,7 +147,8 @@ void Newmark::find_residual(Column& c, const Eigen::VectorXd& x, Eigen::VectorXd
 
 void Newmark::factorize(const Column& c) {
   const double h = c.step;
-  SparseMatrix j = (1.0 - alpha_f_) * c.system->stiffness(c.middle.time, c.middle.displacement, c.middle.velocity);
+  SparseMatrix j = c.system->stiffness(c.middle.time, c.middle.displacement, c.middle.velocity);
+  j *= 1.0 - alpha_f_;
   add_scaled(j, (1.0 - alpha_m_) / (beta_ * h * h), c.system->mass());
   if (c.system->damped()) add_scaled(j, (1.0 - alpha_f_) * gamma_ / (beta_ * h), c.system->damping());
   for (const Relaxation& branch : c.system->relaxations()) {
