@@ -18,7 +18,8 @@ Misfit compare(double time, const Prediction& p, const Eigen::VectorXd& rest, in
   Misfit misfit;
   misfit.time = time;
   const Eigen::VectorXd weights = row_weights(p);
-  Eigen::VectorXd square = Eigen::VectorXd::Zero(node_count), sigmas = square, count = square;
+  Eigen::VectorXd &square = misfit.node_error, &sigmas = misfit.node_sigmas, count = Eigen::VectorXd::Zero(node_count);
+  square = sigmas = count;
   double error = 0.0, relative = 0.0, motion = 0.0;
   for (Eigen::Index i = 0; i < p.measured.size(); ++i) {
     const double e = p.measured[i] - p.predicted[i];
@@ -38,8 +39,8 @@ Misfit compare(double time, const Prediction& p, const Eigen::VectorXd& rest, in
     misfit.rms_sigma = std::sqrt(relative / misfit.count);
     misfit.motion_rms = std::sqrt(motion / misfit.count);
   }
-  misfit.node_error = (square.array() / count.array()).sqrt();  // 0/0: NaN where nothing was measured
-  misfit.node_sigmas = (sigmas.array() / count.array()).sqrt();
+  square = (square.array() / count.array()).sqrt();  // 0/0: NaN where nothing was measured
+  sigmas = (sigmas.array() / count.array()).sqrt();
   return misfit;
 }
 

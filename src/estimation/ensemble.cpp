@@ -1,6 +1,7 @@
 #include "tissue_stiffness/estimation/ensemble.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "tissue_stiffness/forward/for_each_index.hpp"
 
@@ -40,24 +41,28 @@ Ensemble::Predicted Ensemble::predict(const Frame& frame) const {
 }
 
 Prediction predict_frame(const Model& model, const std::vector<std::unique_ptr<ObservationOperator>>& operators,
-                         const Frame& frame, const Eigen::VectorXd& theta, const Eigen::VectorXd& displacement) {
+                         const Frame& frame, const Eigen::VectorXd& theta,
+                         const Eigen::Ref<const Eigen::VectorXd>& displacement) {
   const double since = frame.time - model.first_stamp() - model.settings().time.start;
   const bool observes = model.observes();
   const ObservedMotion seen =
       observes ? model.observe(theta, since, displacement) : ObservedMotion{model.mesh(), since, {}};
+  using Field = Eigen::Ref<const Eigen::VectorXd>;
+  const Field u = observes ? Field(seen.displacement) : displacement;
   std::vector<Prediction> parts;
   for (const Observation& observation : frame.observations) {
     const auto& sensor = *operators[static_cast<std::size_t>(observation.source)];
-    parts.push_back(sensor.predict(observation, observes ? seen.displacement : displacement));
+    parts.push_back(sensor.predict(observation, u));
     const bool named = observation.kind == ObservationKind::vertices || observation.kind == ObservationKind::markers;
     if (!named) parts.back().predicted.array() += seen.outward;
   }
-  return concatenate(parts);
+  return concatenate(std::move(parts));
 }
 
 Eigen::MatrixXd predict_along(const Model& model, const std::vector<std::unique_ptr<ObservationOperator>>& operators,
-                              const Frame& frame, const Eigen::VectorXd& theta, const Eigen::VectorXd& displacement,
-                              const Prediction& there, const Eigen::MatrixXd& shapes) {
+                              const Frame& frame, const Eigen::VectorXd& theta,
+                              const Eigen::Ref<const Eigen::VectorXd>& displacement, const Prediction& there,
+                              const Eigen::MatrixXd& shapes) {
   const Eigen::Matrix3Xd& nodes = model.mesh().nodes;
   const double size = (nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff()).norm();
   Eigen::MatrixXd out(there.predicted.size(), shapes.cols());

@@ -7,8 +7,7 @@ namespace tissue_stiffness {
 
 Prediction predict_at_rest(const Model& model, const std::vector<std::unique_ptr<ObservationOperator>>& operators,
                            const Frame& frame) {
-  return predict_frame(model, operators, frame, model.theta(model.prior_mean()),
-                       Eigen::VectorXd::Zero(model.fem().dof_count()));
+  return predict_frame(model, operators, frame, model.theta(model.prior_mean()), model.rest());
 }
 
 std::vector<Misfit> free_run(const FreeRunProblem& problem, Eigen::VectorXd theta, const FreeFrameVisitor& visit,

@@ -43,8 +43,7 @@ Scheme::Scheme(const ModelSettings& settings, const TetMesh& mesh)
 
 const Eigen::Matrix3Xd& Scheme::displacement() const {
   if (recover_) {
-    const Eigen::VectorXd u = recover_();
-    displacement_ = Eigen::Map<const Eigen::Matrix3Xd>(u.data(), 3, u.size() / 3);
+    recover_(Eigen::Map<Eigen::VectorXd>(displacement_.data(), displacement_.size()));
     recover_ = nullptr;
   }
   return displacement_;

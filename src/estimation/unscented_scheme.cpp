@@ -196,9 +196,8 @@ class UnscentedScheme : public Scheme {
     prediction_ = predicted.central;
     prediction_.predicted = filter.predict(predicted.rows, w);
     const Eigen::Index points = predicted.rows.cols();
-    recover_ = [track = track_, weights = filter.predict(Eigen::MatrixXd::Identity(points, points), w)] {
-      return track->combined(weights);
-    };
+    recover_ = [track = track_, weights = filter.predict(Eigen::MatrixXd::Identity(points, points), w)](
+                   Eigen::Ref<Eigen::VectorXd> u) { track->combine(weights, u); };
     if (model_->nonlinear()) displacement();  // before a step that fails half-way
     result.used = true;
     result.misfit = compare(frame.time, prediction_, at_rest(frame).predicted, model_->mesh().node_count());

@@ -16,6 +16,7 @@ Eigen::VectorXd robust_weights(const Eigen::VectorXd& standardised, int group) {
   const Eigen::VectorXd size = rows.colwise().norm().transpose() / std::sqrt(static_cast<double>(group));
 
   std::vector<double> finite;
+  finite.reserve(static_cast<std::size_t>(groups));
   for (Eigen::Index i = 0; i < groups; ++i) {
     if (std::isfinite(size[i])) finite.push_back(size[i]);
   }

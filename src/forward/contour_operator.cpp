@@ -35,7 +35,7 @@ class ContourOperator : public ObservationOperator {
     }
   }
 
-  Prediction predict(const Observation& observation, const Eigen::VectorXd& u) const override {
+  Prediction predict(const Observation& observation, const Eigen::Ref<const Eigen::VectorXd>& u) const override {
     const Contour& contour = *observation.contour;
     const std::vector<OutlineSegment> outline = model_outline(*observation.camera, u);
     const double scale = outline.empty() ? std::numeric_limits<double>::quiet_NaN() : outline.front().scale;
@@ -75,8 +75,10 @@ class ContourOperator : public ObservationOperator {
   }
 
  private:
-  std::vector<OutlineSegment> model_outline(const Camera& camera, const Eigen::VectorXd& u) const {
-    Eigen::Matrix3Xd positions = mesh_.nodes + Eigen::Map<const Eigen::Matrix3Xd>(u.data(), 3, mesh_.node_count());
+  std::vector<OutlineSegment> model_outline(const Camera& camera, const Eigen::Ref<const Eigen::VectorXd>& u) const {
+    VectorPool::Loan scratch(scratch_, u.size());
+    Eigen::Map<Eigen::Matrix3Xd> positions(scratch->data(), 3, mesh_.node_count());
+    positions = mesh_.nodes + Eigen::Map<const Eigen::Matrix3Xd>(u.data(), 3, mesh_.node_count());
     if (settings_.projection == ObservationSettings::Projection::silhouette) {
       return silhouette(triangles_, edges_, positions, camera);
     }
@@ -98,6 +100,7 @@ class ContourOperator : public ObservationOperator {
   SurfaceTriangles triangles_;
   std::vector<SurfaceEdge> edges_;
   double size_ = 0.0;
+  mutable VectorPool scratch_;  ///< for places of nodes, of each prediction under way
 };
 
 }  // namespace

@@ -52,8 +52,9 @@ class FullTrajectories : public Trajectories {
   void displacements(Eigen::MatrixXd& out) const override {
     for (std::size_t i = 0; i < states_.size(); ++i) out.col(static_cast<Eigen::Index>(i)) = states_[i].displacement;
   }
-  Eigen::VectorXd combined(const Eigen::VectorXd& weights) const override {
-    return weighted_sum(weights, [this](std::size_t i) -> const Eigen::VectorXd& { return states_[i].displacement; });
+  void combine(const Eigen::VectorXd& weights, Eigen::Ref<Eigen::VectorXd> sum) const override {
+    const auto displacement = [this](std::size_t i) -> const Eigen::VectorXd& { return states_[i].displacement; };
+    weigh(weights, displacement, sum);
   }
   const DynamicState& state(std::size_t i) const { return states_[i]; }
 

@@ -35,7 +35,7 @@ class MarkerOperator : public ObservationOperator {
     }
   }
 
-  Prediction predict(const Observation& observation, const Eigen::VectorXd& u) const override {
+  Prediction predict(const Observation& observation, const Eigen::Ref<const Eigen::VectorXd>& u) const override {
     const Eigen::Index n = observation.ids.size();
     Prediction p;
     p.measured = Eigen::Map<const Eigen::VectorXd>(observation.points.data(), 3 * n);
@@ -86,7 +86,7 @@ class MarkerOperator : public ObservationOperator {
   }
 
   // Foot + R pin; for small strain the rotation is linear, R = I + skew(grad u).
-  Eigen::Vector3d carried(const Attachment& a, const Eigen::VectorXd& u) const {
+  Eigen::Vector3d carried(const Attachment& a, const Eigen::Ref<const Eigen::VectorXd>& u) const {
     Eigen::Vector3d displacement = Eigen::Vector3d::Zero();
     Eigen::Matrix3d gradient = Eigen::Matrix3d::Zero();
     for (Eigen::Index k = 0; k < a.shape.size(); ++k) {

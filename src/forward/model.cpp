@@ -42,7 +42,11 @@ Model::Model(const ModelSettings& settings, const TetMesh& mesh)
     : Model(settings, mesh, resolve_regions(settings.regions, mesh)) {}
 
 Model::Model(const ModelSettings& settings, const TetMesh& mesh, std::map<std::string, Region> regions)
-    : settings_(settings), mesh_(mesh), fem_(mesh_), regions_(std::move(regions)) {
+    : settings_(settings),
+      mesh_(mesh),
+      fem_(mesh_),
+      rest_(Eigen::VectorXd::Zero(fem_.dof_count())),
+      regions_(std::move(regions)) {
   require_effect(settings_, "inertia");
   const EffectContext shared = context();
   holders_.assign(static_cast<std::size_t>(fem_.node_count()), 0);

@@ -214,7 +214,8 @@ double Model::delay(const Eigen::VectorXd& theta) const {
   return sum;
 }
 
-ObservedMotion Model::observe(const Eigen::VectorXd& theta, double since, const Eigen::VectorXd& displacement) const {
+ObservedMotion Model::observe(const Eigen::VectorXd& theta, double since,
+                              const Eigen::Ref<const Eigen::VectorXd>& displacement) const {
   ObservedMotion motion{mesh_, since, displacement};
   for (const Part& part : parts_) {
     if (part.effect->observes()) part.effect->observe(part.parameters(theta), motion);

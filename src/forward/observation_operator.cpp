@@ -1,6 +1,7 @@
 #include "tissue_stiffness/forward/observation_operator.hpp"
 
 #include <set>
+#include <utility>
 
 namespace tissue_stiffness {
 
@@ -37,7 +38,8 @@ std::vector<int> observed_nodes(const std::vector<std::unique_ptr<ObservationOpe
   return {all.begin(), all.end()};
 }
 
-Prediction concatenate(const std::vector<Prediction>& parts) {
+Prediction concatenate(std::vector<Prediction> parts) {
+  if (parts.size() == 1) return std::move(parts.front());
   Eigen::Index rows = 0;
   for (const Prediction& part : parts) rows += part.measured.size();
   Prediction all;

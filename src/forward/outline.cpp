@@ -41,7 +41,7 @@ std::vector<SurfaceEdge> surface_edges(const SurfaceTriangles& triangles) {
 }
 
 std::vector<OutlineSegment> silhouette(const SurfaceTriangles& triangles, const std::vector<SurfaceEdge>& edges,
-                                       const Eigen::Matrix3Xd& positions, const Camera& camera) {
+                                       const Eigen::Ref<const Eigen::Matrix3Xd>& positions, const Camera& camera) {
   const Eigen::Index count = triangles.nodes.cols();
   const Eigen::Vector3d eye = camera.model_from_sensor.translation();
   std::vector<char> faces(static_cast<std::size_t>(count));
@@ -64,7 +64,7 @@ std::vector<OutlineSegment> silhouette(const SurfaceTriangles& triangles, const 
   return outline;
 }
 
-std::vector<OutlineSegment> slice(const SurfaceTriangles& triangles, const Eigen::Matrix3Xd& positions,
+std::vector<OutlineSegment> slice(const SurfaceTriangles& triangles, const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
                                   const Camera& camera, bool cavity) {
   const Eigen::Isometry3d to_sensor = camera.model_from_sensor.inverse();
   std::vector<OutlineSegment> outline;

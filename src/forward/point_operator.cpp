@@ -21,7 +21,7 @@ class PointOperator : public ObservationOperator {
 
   void check(const Observation&) const override {}
 
-  Prediction predict(const Observation& observation, const Eigen::VectorXd& u) const override {
+  Prediction predict(const Observation& observation, const Eigen::Ref<const Eigen::VectorXd>& u) const override {
     const Eigen::Index count = triangles_.nodes.cols();
     auto centroids = std::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
     for (Eigen::Index t = 0; t < count; ++t) {
@@ -46,7 +46,7 @@ class PointOperator : public ObservationOperator {
   }
 
  private:
-  Eigen::Matrix3d corners(Eigen::Index t, const Eigen::VectorXd& u) const {
+  Eigen::Matrix3d corners(Eigen::Index t, const Eigen::Ref<const Eigen::VectorXd>& u) const {
     Eigen::Matrix3d x;
     for (int i = 0; i < 3; ++i) {
       const int node = triangles_.nodes(i, t);
@@ -55,8 +55,8 @@ class PointOperator : public ObservationOperator {
     return x;
   }
 
-  void compare(const Eigen::Vector3d& point, const Eigen::VectorXd& u, const pcl::KdTreeFLANN<pcl::PointXYZ>& tree,
-               Eigen::Index row, Prediction& p) const {
+  void compare(const Eigen::Vector3d& point, const Eigen::Ref<const Eigen::VectorXd>& u,
+               const pcl::KdTreeFLANN<pcl::PointXYZ>& tree, Eigen::Index row, Prediction& p) const {
     std::vector<int> near(kCandidates);
     std::vector<float> squared(kCandidates);
     const Eigen::Vector3f f = point.cast<float>();

@@ -18,15 +18,13 @@ Eigen::MatrixX3d unit_motion(Eigen::Index dofs) {
   return Eigen::Matrix3d::Identity().replicate(dofs / 3, 1);
 }
 
-// tall * small, blocks of rows in parallel: the tall one is read once.
-Eigen::MatrixXd product(const Eigen::MatrixXd& tall, const Eigen::MatrixXd& small) {
+// out = tall * small, blocks of rows in parallel: the tall one is read once.
+void multiply(const Eigen::MatrixXd& tall, const Eigen::MatrixXd& small, Eigen::Ref<Eigen::MatrixXd> out) {
   constexpr Eigen::Index block = 1024;
-  Eigen::MatrixXd out(tall.rows(), small.cols());
   tbb::parallel_for(tbb::blocked_range<Eigen::Index>(0, tall.rows(), block), [&](const auto& part) {
     const Eigen::Index count = part.end() - part.begin();
     out.middleRows(part.begin(), count).noalias() = tall.middleRows(part.begin(), count) * small;
   });
-  return out;
 }
 
 Eigen::MatrixXd chosen(const Eigen::MatrixXd& m, const std::vector<int>& rows, const std::vector<int>& columns) {
@@ -273,10 +271,12 @@ Eigen::VectorXd ReducedModel::displacement(const Eigen::VectorXd& coordinates) c
 
 void ReducedModel::displacements(const Eigen::MatrixXd& coordinates, Eigen::MatrixXd& out) const {
   if (focus_.empty()) {
-    out = product(basis_.vectors, coordinates);
+    multiply(basis_.vectors, coordinates, out);
     return;
   }
-  const Eigen::MatrixXd seen = product(in_focus_, coordinates);
+  VectorPool::Loan scratch(scratch_, in_focus_.rows() * coordinates.cols());
+  Eigen::Map<Eigen::MatrixXd> seen(scratch->data(), in_focus_.rows(), coordinates.cols());
+  multiply(in_focus_, coordinates, seen);
   for (Eigen::Index k = 0; k < seen.cols(); ++k) {
     for (std::size_t i = 0; i < focus_.size(); ++i) {
       out.block<3, 1>(3 * focus_[i], k) = seen.block<3, 1>(3 * static_cast<Eigen::Index>(i), k);
@@ -284,8 +284,8 @@ void ReducedModel::displacements(const Eigen::MatrixXd& coordinates, Eigen::Matr
   }
 }
 
-Eigen::VectorXd ReducedModel::whole_displacement(const Eigen::VectorXd& coordinates) const {
-  return product(basis_.vectors, coordinates);
+void ReducedModel::recover(const Eigen::VectorXd& coordinates, Eigen::Ref<Eigen::VectorXd> displacement) const {
+  multiply(basis_.vectors, coordinates, displacement);
 }
 
 std::string ReducedModel::description() const {

@@ -47,8 +47,9 @@ void SeparateTrajectories::displacements(Eigen::MatrixXd& out) const {
   for_each_index(runs_.size(), [&](std::size_t i) { out.col(static_cast<Eigen::Index>(i)) = runs_[i]->displacement(); });
 }
 
-Eigen::VectorXd SeparateTrajectories::combined(const Eigen::VectorXd& weights) const {
-  return weighted_sum(weights, [this](std::size_t i) { return runs_[i]->displacement(); });
+void SeparateTrajectories::combine(const Eigen::VectorXd& weights, Eigen::Ref<Eigen::VectorXd> sum) const {
+  const auto displacement = [this](std::size_t i) { return runs_[i]->displacement(); };
+  weigh(weights, displacement, sum);
 }
 
 }  // namespace tissue_stiffness

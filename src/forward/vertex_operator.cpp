@@ -18,7 +18,7 @@ class VertexOperator : public ObservationOperator {
     }
   }
 
-  Prediction predict(const Observation& observation, const Eigen::VectorXd& u) const override {
+  Prediction predict(const Observation& observation, const Eigen::Ref<const Eigen::VectorXd>& u) const override {
     const Eigen::Index n = observation.ids.size();
     Prediction p;
     p.measured = Eigen::Map<const Eigen::VectorXd>(observation.points.data(), 3 * n);

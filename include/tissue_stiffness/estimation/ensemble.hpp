@@ -33,7 +33,7 @@ class Ensemble {
   /// Displacements, one column a sigma point, 3n x sigma points [m]; of the nodes in the forward model's focus.
   const Eigen::MatrixXd& displacements() const { return displacements_; }
   /// Their weighted sum, 3n, every node.
-  Eigen::VectorXd combined(const Eigen::VectorXd& weights) const { return runs_->combined(weights); }
+  void combine(const Eigen::VectorXd& weights, Eigen::Ref<Eigen::VectorXd> sum) const { runs_->combine(weights, sum); }
   /// Linear models only, whose runs are separate.
   Trajectory& trajectory(std::size_t i) { return dynamic_cast<SeparateTrajectories&>(*runs_)[i]; }
 
@@ -48,12 +48,14 @@ class Ensemble {
 
 /// A frame's observations against one displacement (3n), with what the sensors at theta make of it.
 Prediction predict_frame(const Model& model, const std::vector<std::unique_ptr<ObservationOperator>>& operators,
-                         const Frame& frame, const Eigen::VectorXd& theta, const Eigen::VectorXd& displacement);
+                         const Frame& frame, const Eigen::VectorXd& theta,
+                         const Eigen::Ref<const Eigen::VectorXd>& displacement);
 
 /// d predicted rows / d amplitude of each of `shapes` (3n x count) about a displacement, rows x count; `there`: the
 /// prediction at the displacement itself.
 Eigen::MatrixXd predict_along(const Model& model, const std::vector<std::unique_ptr<ObservationOperator>>& operators,
-                              const Frame& frame, const Eigen::VectorXd& theta, const Eigen::VectorXd& displacement,
-                              const Prediction& there, const Eigen::MatrixXd& shapes);
+                              const Frame& frame, const Eigen::VectorXd& theta,
+                              const Eigen::Ref<const Eigen::VectorXd>& displacement, const Prediction& there,
+                              const Eigen::MatrixXd& shapes);
 
 }  // namespace tissue_stiffness

@@ -66,7 +66,7 @@ class Scheme {
   std::vector<std::unique_ptr<ObservationOperator>> operators_;
   Estimate estimate_;
   mutable Eigen::Matrix3Xd displacement_;
-  mutable std::function<Eigen::VectorXd()> recover_;  ///< what displacement_ is to become when somebody asks; may be empty
+  mutable std::function<void(Eigen::Ref<Eigen::VectorXd>)> recover_;  ///< fills it in when somebody asks; may be empty
   Prediction prediction_;
   std::vector<char> seen_nodes_;  ///< a flag a node: on the surface, or observed so far
 

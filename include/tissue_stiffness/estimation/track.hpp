@@ -46,7 +46,7 @@ class Track {
   /// Advance, predict and absorb.
   AnchoredFilter::Innovation absorb(const Frame& frame);
   /// Weighted sum of the sigma points' displacements, 3n [m].
-  Eigen::VectorXd combined(const Eigen::VectorXd& weights) const { return ensemble_->combined(weights); }
+  void combine(const Eigen::VectorXd& weights, Eigen::Ref<Eigen::VectorXd> sum) const { ensemble_->combine(weights, sum); }
 
   /// Whether `look` would do anything after `count` frames.
   bool wants_look(std::size_t count) const;

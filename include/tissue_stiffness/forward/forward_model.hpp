@@ -35,15 +35,14 @@ class Trajectories {
   /// Nodal displacements, a column each, 3n x size [m].
   virtual void displacements(Eigen::MatrixXd& out) const = 0;
   /// Their weighted sum at every node, whatever the focus, 3n [m].
-  virtual Eigen::VectorXd combined(const Eigen::VectorXd& weights) const = 0;
+  virtual void combine(const Eigen::VectorXd& weights, Eigen::Ref<Eigen::VectorXd> sum) const = 0;
 };
 
-/// sum_i weights[i] displacement(i).
+/// sum = sum_i weights[i] displacement(i).
 template <typename Displacement>
-Eigen::VectorXd weighted_sum(const Eigen::VectorXd& weights, const Displacement& displacement) {
-  Eigen::VectorXd sum = weights[0] * displacement(std::size_t{0});
+void weigh(const Eigen::VectorXd& weights, const Displacement& displacement, Eigen::Ref<Eigen::VectorXd> sum) {
+  sum = weights[0] * displacement(std::size_t{0});
   for (Eigen::Index i = 1; i < weights.size(); ++i) sum += weights[i] * displacement(static_cast<std::size_t>(i));
-  return sum;
 }
 
 /// Free runs that share nothing but the cores.
@@ -53,7 +52,7 @@ class SeparateTrajectories : public Trajectories {
   std::size_t size() const override { return runs_.size(); }
   void advance(const std::vector<double>& times) override;
   void displacements(Eigen::MatrixXd& out) const override;
-  Eigen::VectorXd combined(const Eigen::VectorXd& weights) const override;
+  void combine(const Eigen::VectorXd& weights, Eigen::Ref<Eigen::VectorXd> sum) const override;
   Trajectory& operator[](std::size_t i) { return *runs_[i]; }
 
  protected:

@@ -42,6 +42,8 @@ class Model {
 
   const TetMesh& mesh() const { return mesh_; }
   const Discretisation& fem() const { return fem_; }
+  /// Displacement of the body before anything moves it: 3n zeros.
+  const Eigen::VectorXd& rest() const { return rest_; }
   const std::map<std::string, Region>& regions() const { return regions_; }
   const std::vector<FreeParameter>& free_parameters() const { return free_; }
   const std::vector<LoadInput>& load_inputs() const { return inputs_; }
@@ -113,7 +115,8 @@ class Model {
   bool observes() const;
   /// How late measurements are stamped [s], and what a sensor makes of the motion `since` seconds after the start.
   double delay(const Eigen::VectorXd& theta) const;
-  ObservedMotion observe(const Eigen::VectorXd& theta, double since, const Eigen::VectorXd& displacement) const;
+  ObservedMotion observe(const Eigen::VectorXd& theta, double since,
+                         const Eigen::Ref<const Eigen::VectorXd>& displacement) const;
 
   /// One effect in the model: its terms and where its parameters stand in theta.
   struct Part {
@@ -146,6 +149,7 @@ class Model {
   ModelSettings settings_;
   TetMesh mesh_;
   Discretisation fem_;
+  Eigen::VectorXd rest_;
   std::map<std::string, Region> regions_;
   CourseTable courses_;
   std::vector<LoadInput> inputs_;

@@ -17,7 +17,7 @@ class ObservationOperator {
   /// Throws InputError for an observation that does not fit the mesh (a vertex out of range, ...).
   virtual void check(const Observation& observation) const = 0;
   /// Rows depend on the observation alone, so predictions for different u line up. NaN where the model has no counterpart.
-  virtual Prediction predict(const Observation& observation, const Eigen::VectorXd& u) const = 0;
+  virtual Prediction predict(const Observation& observation, const Eigen::Ref<const Eigen::VectorXd>& u) const = 0;
   /// Mesh nodes that a prediction of it depends on.
   virtual std::vector<int> nodes(const Observation& observation) const = 0;
   /// Outline of the model in the sensor's image, as separate segments (u0, v0, u1, v1) [pixel]; empty for other sensors.
@@ -38,6 +38,6 @@ std::vector<int> observed_nodes(const std::vector<std::unique_ptr<ObservationOpe
                                 const std::vector<Frame>& frames);
 
 /// Joins the predictions of a frame's observations.
-Prediction concatenate(const std::vector<Prediction>& parts);
+Prediction concatenate(std::vector<Prediction> parts);
 
 }  // namespace tissue_stiffness

@@ -26,11 +26,11 @@ std::vector<SurfaceEdge> surface_edges(const SurfaceTriangles& triangles);
 
 /// Outline of the surface seen through a pinhole: edges between a triangle that faces the camera and one that does not.
 std::vector<OutlineSegment> silhouette(const SurfaceTriangles& triangles, const std::vector<SurfaceEdge>& edges,
-                                       const Eigen::Matrix3Xd& positions, const Camera& camera);
+                                       const Eigen::Ref<const Eigen::Matrix3Xd>& positions, const Camera& camera);
 
 /// Cut of the surface with the image plane of an ultrasound slice; normals point against the surface's outward normal when
 /// `cavity` is set.
-std::vector<OutlineSegment> slice(const SurfaceTriangles& triangles, const Eigen::Matrix3Xd& positions,
+std::vector<OutlineSegment> slice(const SurfaceTriangles& triangles, const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
                                   const Camera& camera, bool cavity);
 
 /// Signed distance in pixels from `point` along `normal` to the outline piece whose normal agrees and that is closest,

@@ -50,7 +50,7 @@ class ReducedModel : public ForwardModel {
   /// The same of several, a column each, into rows of `out` that belong to the focus; others stay as they are.
   void displacements(const Eigen::MatrixXd& coordinates, Eigen::MatrixXd& out) const;
   /// Of every node, whatever the focus.
-  Eigen::VectorXd whole_displacement(const Eigen::VectorXd& coordinates) const;
+  void recover(const Eigen::VectorXd& coordinates, Eigen::Ref<Eigen::VectorXd> displacement) const;
   /// Kept for the last few theta that differ in mass or stiffness. `half`: in the earlier half of the basis.
   std::shared_ptr<const ReducedModes> modes(const Eigen::VectorXd& theta, bool half = false) const;
   /// Basis coordinates of a load term's pattern.
@@ -88,6 +88,7 @@ class ReducedModel : public ForwardModel {
   mutable std::mutex mutex_;
   mutable std::vector<Known> known_;
   mutable std::vector<Shaped> shaped_;  ///< the last few projections of terms whose place or angle is estimated
+  mutable VectorPool scratch_;          ///< for displacements in the focus
 };
 
 }  // namespace tissue_stiffness

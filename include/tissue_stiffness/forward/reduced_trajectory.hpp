@@ -68,8 +68,8 @@ class ReducedTrajectories : public SeparateTrajectories {
   ReducedTrajectories(const ReducedModel& reduced, std::vector<std::unique_ptr<Trajectory>> runs)
       : SeparateTrajectories(std::move(runs)), reduced_(reduced) {}
   void displacements(Eigen::MatrixXd& out) const override { reduced_.displacements(coordinates(), out); }
-  Eigen::VectorXd combined(const Eigen::VectorXd& weights) const override {
-    return reduced_.whole_displacement(coordinates() * weights);
+  void combine(const Eigen::VectorXd& weights, Eigen::Ref<Eigen::VectorXd> sum) const override {
+    reduced_.recover(coordinates() * weights, sum);
   }
 
  private:
