@@ -59,9 +59,11 @@ def cost_table(runs, law):
     for (name, _), r in runs.items():
         if name == law:
             rows.append([f"{r['nodes']:,.0f}", digits(r['median_ms']), digits(r['p99_ms']), digits(r['start_s']),
-                         digits(r['replay_s']), f"{r['peak_MB']:,.0f}", f"{r['basis_um']:.1f}" if r['basis_um'] > 0 else '-', f"{r['error_pct']:+.3f} %"])
+                         digits(r['replay_s']), f"{r['heap_kB']:,.0f}", f"{r['heap_requests']:,.0f}",
+                         f"{r['peak_MB']:,.0f}", f"{r['basis_um']:.1f}" if r['basis_um'] > 0 else '-',
+                         f"{r['error_pct']:+.3f} %"])
     return table(['nodes', 'frame, median [ms]', 'p99 [ms]', 'first estimate [s]', 'past run again [s]',
-                  'peak memory [MB]', 'basis error [um]', 'E off'], rows)
+                  'heap [kB a frame]', 'requests', 'peak memory [MB]', 'basis error [um]', 'E off'], rows)
 
 
 def peer_table(runs, peers):

@@ -1,7 +1,7 @@
 // Cost of the estimator by size and law, one frame an iteration. Counters: nodes; start_s, from the model to the first
 // estimate; median_ms and p99_ms of a frame once started; replay_s, spent on running the past again and on checking
-// the basis; peak_MB; factor_MB of
-// the full model's matrix; error_pct of the estimate at the end.
+// the basis; heap_requests and heap_kB of a frame, medians; peak_MB; factor_MB of the full model's matrix; error_pct of the
+// estimate at the end.
 // usage: performance [--export FOLDER CELLS ACROSS FRAMES] [Google Benchmark's flags]
 #include <benchmark/benchmark.h>
 
