@@ -46,7 +46,8 @@ struct DynamicState {
 /// factorisation, or when they diverge. A step that still fails is cut in halves.
 ///
 /// Systems of one size that differ little - a model at several parameters - step side by side: the first one's factor
-/// serves all, and they go through it together. They step in buffers that stay: only a new factor asks the heap for memory.
+/// serves all, and they go through it together. A step that keeps the factor and is not cut asks the heap for nothing
+/// once others have made its buffers.
 class Newmark {
  public:
   /// `tolerance`: largest correction that is left out [m]. Systems must hold the same degrees of freedom.
@@ -108,7 +109,7 @@ class Newmark {
   Eigen::MatrixXd directions_;   ///< of the active ones, the first columns
   SparseSolver solver_;
   Eigen::Matrix3Xd factored_rotations_, turn_;  ///< of each node; the second: since the factor was made
-  bool turned_ = false;                         ///< in an earlier step, so that there is a turn
+  bool turned_ = false;                         ///< there is such a turn
   double factored_step_ = 0.0;
   /// Iterations a step: over the first steps of this factor and of the last one, and what its age has cost beyond them.
   double young_ = 0.0, young_before_ = 0.0, excess_ = 0.0;
