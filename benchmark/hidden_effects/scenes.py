@@ -1,6 +1,8 @@
 """Scenes of the study, and what is hidden in them. A truth never is the estimator's own model: it runs on a finer mesh with
 other nodes, in time steps instead of modes, and most hidden effects take another form than the library's."""
 
+from meshes import box
+
 STEP = 0.001      # s
 RATE = 30.0       # frames/s
 NOISE = 2e-4      # m
@@ -23,9 +25,24 @@ class Scene:
                    if any(min(x, length - x) < 1e-9 for x, length in zip(node, self.size))]
         return surface[::2]
 
-    def truth(self, modulus, hidden, s):
+    def effects_under(self, load):
+        """The known effects, the gravity `load` times as strong."""
+        scaled = {'gravity': lambda v: {'acceleration': [load * a for a in v['acceleration']]}}
+        return [{name: scaled.get(name, lambda v: v)(value) for name, value in effect.items()} for effect in self.effects]
+
+    def layer(self, hidden):
+        """Thickness of what lies between the body and what holds it [m]."""
+        return 0.2 * self.size[0] if hidden == 'elastic_support' else 0.0
+
+    def mesh(self, cells, hidden='none'):
+        """Nodes and tetrahedra of the body and of the layer that it may lie on."""
+        layer = self.layer(hidden)
+        more = round(cells[0] * layer / self.size[0])
+        return box([self.size[0] + layer] + self.size[1:], [cells[0] + more] + cells[1:], (-layer, 0, 0))
+
+    def truth(self, modulus, hidden, s, load):
         """Regions and effects of the body with `hidden` in it."""
-        regions, effects = dict(self.regions), [elasticity(modulus)] + list(self.effects)
+        regions, effects = dict(self.regions), [elasticity(modulus)] + self.effects_under(load)
         length = self.size[0]
         big = 1.0
         if hidden == 'viscous_damping':
@@ -34,10 +51,11 @@ class Scene:
             effects.append({'mass_damping': {'alpha': 1.5 * s}})
         elif hidden == 'viscoelasticity':  # two branches where the library has one
             effects += [{'viscoelasticity': {'gamma': 0.25 * s, 'tau': 0.05}}, {'viscoelasticity': {'gamma': 0.15 * s, 'tau': 0.15}}]
-        elif hidden == 'elastic_support':  # a soft layer where the library has springs
-            regions['layer'] = {'box': {'min': [-big] * 3, 'max': [0.1 * length + 1e-6, big, big]}}
-            regions['rest'] = {'box': {'min': [0.1 * length - 1e-6, -big, -big], 'max': [big] * 3}}
-            effects[:1] = [elasticity(modulus / (1.0 + s), region='layer'), elasticity(modulus, region='rest')]
+        elif hidden == 'elastic_support':  # a soft layer beneath the body where the library has springs
+            regions['clamp'] = {'box': {'min': [-big] * 3, 'max': [1e-6 - self.layer(hidden), big, big]}}
+            regions['layer'] = {'box': {'min': [-big] * 3, 'max': [1e-6, big, big]}}
+            regions['rest'] = {'box': {'min': [-1e-6, -big, -big], 'max': [big] * 3}}
+            effects[:1] = [elasticity(modulus / s, region='layer'), elasticity(modulus, region='rest')]
         elif hidden == 'stiff_inclusion':  # a block of elements where the library has a smooth ball
             low, high = 0.25 * length, 0.5 * length
             regions['block'] = {'box': {'min': [low, -big, -big], 'max': [high, 0.5 * self.size[1], big]}}
@@ -50,7 +68,7 @@ class Scene:
             effects[0] = elasticity(modulus, poisson=0.45 - 0.1 * min(s, 4.0))
         elif hidden == 'gravity':
             effects.append({'gravity': {'acceleration': [0.0, 0.7 * s, 0.7 * s]}})
-        elif hidden == 'geometric_nonlinearity':  # a hyperelastic law
+        elif hidden == 'geometric_nonlinearity':  # a hyperelastic law, under s times the load
             effects[0] = {'elasticity': {'law': 'neo_hookean', 'young_modulus': modulus, 'poisson_ratio': 0.45}}
         elif hidden != 'none':
             raise ValueError(hidden)
@@ -71,12 +89,12 @@ def scenes():
     base = [{'inertia': {'density': 1000.0}}, {'fixed': {'region': 'clamp'}}]
     pulled = base + [{'traction': {'region': 'tip', 'topic': '/tool/wrench'}}]
     return [
-        Scene('bar released under gravity', bar, [12, 3, 3], [20, 5, 5], 60e3, faces(bar),
+        Scene('bar released under gravity', bar, [20, 2, 2], [25, 5, 5], 60e3, faces(bar),
               base + [{'gravity': {'acceleration': [0.0, 1.5, -4.0]}}], {}),
-        Scene('bar pushed and let go', bar, [12, 3, 3], [20, 5, 5], 40e3, faces(bar), pulled,
+        Scene('bar pushed and let go', bar, [20, 2, 2], [25, 5, 5], 40e3, faces(bar), pulled,
               wrench({'direction': [0, 0, -1], 'ramp': {'to': 0.02, 'start': 0.1, 'end': 0.15}},
                      {'direction': [0, 1, 0], 'sine': {'amplitude': 0.01, 'frequency': 2.3}})),
-        Scene('slab worked by a tool', slab, [9, 6, 3], [20, 10, 5], 15e3, faces(slab), pulled,
+        Scene('slab worked by a tool', slab, [10, 5, 2], [15, 9, 5], 15e3, faces(slab), pulled,
               wrench({'direction': [0, 0, -1], 'raised_cosine': {'amplitude': 0.05, 'frequency': 1.0}},
                      {'direction': [1, 0, 0], 'sine': {'amplitude': 0.3, 'frequency': 1.6}})),
     ]

@@ -16,6 +16,9 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr double kProbe = 0.02;  // of a prior's standard deviation: amplitude at which tangents are read
+constexpr double kFar = 0.05;    // of the motion: a larger change is no tangent's
+constexpr double kNear = 0.01;   // and the one that is tried instead
+constexpr int kMostProbes = 4;
 
 ProposalContext context_of(const Study& base, const Eigen::VectorXd& w) {
   const Model& model = base.model();
@@ -42,6 +45,32 @@ Eigen::VectorXd difference(const Study::Rows& changed, const Study::Rows& base, 
   return base.used.cwiseProduct(changed.predicted - base.predicted) / amplitude;
 }
 
+// How far the rows go from where the first frame has them, rms over all [sigma].
+double motion(const Study::Rows& rows) {
+  const std::vector<Eigen::Index>& at = rows.offsets;
+  double square = 0.0;
+  for (std::size_t k = 1; k + 1 < at.size(); ++k) {
+    const Eigen::Index count = at[k + 1] - at[k];
+    if (count != at[1]) continue;
+    square += (rows.predicted.segment(at[k], count) - rows.predicted.head(count)).squaredNorm();
+  }
+  return std::sqrt(square / static_cast<double>(rows.predicted.size()));
+}
+
+// d rows / d w_j. A slender body answers to what leaves a stout one alone: the step is cut until the answer is small.
+Eigen::VectorXd tangent(const Study& study, const Study::Rows& rest, const Eigen::VectorXd& start, Eigen::Index j) {
+  const double moves = motion(rest);
+  double amplitude = kProbe * study.model().prior_std()[j];
+  for (int probe = 1;; ++probe) {
+    Eigen::VectorXd moved = start;
+    moved[j] += amplitude;
+    Eigen::VectorXd column = difference(study.rows(moved), rest, amplitude);
+    const double change = amplitude * column.norm() / std::sqrt(static_cast<double>(column.size()));
+    if (!(change > kFar * moves) || moves == 0.0 || probe == kMostProbes) return column;
+    amplitude *= kNear * moves / change;
+  }
+}
+
 // Free parameters that the model has beyond the base's, in order.
 std::vector<Eigen::Index> added_parameters(const Study& study, const Study& base) {
   std::vector<Eigen::Index> added;
@@ -59,10 +88,7 @@ void read_tangents(const Study& study, const Study& base, const Eigen::VectorXd&
   const std::vector<Eigen::Index> added = added_parameters(study, base);
   Eigen::MatrixXd columns(rest.error.size(), static_cast<Eigen::Index>(added.size()));
   tbb::parallel_for(std::size_t{0}, added.size(), [&](std::size_t j) {
-    const double amplitude = kProbe * study.model().prior_std()[added[j]];
-    Eigen::VectorXd moved = start;
-    moved[added[j]] += amplitude;
-    columns.col(static_cast<Eigen::Index>(j)) = difference(study.rows(moved), rest, amplitude);
+    columns.col(static_cast<Eigen::Index>(j)) = tangent(study, rest, start, added[j]);
     over(static_cast<double>(candidates.size()) / static_cast<double>(added.size()));
   });
   Eigen::Index at = 0;

@@ -9,8 +9,9 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kAdequate = 1.1;  // rms in sigmas up to which a residual may be noise
-constexpr double kExplains = 0.8;  // of the structured part: less is no explanation
+constexpr double kAdequate = 1.1;       // rms in sigmas up to which a residual may be noise
+constexpr double kExplains = 0.8;       // of the structured part: less is no explanation
+constexpr double kPairExplains = 0.97;  // two effects imitate most of a third: gravity with a delay 94 % of viscoelasticity
 
 }  // namespace
 
@@ -51,8 +52,9 @@ bool FirstLook::numerics() const {
   return by_mesh > kExplains * structured();
 }
 
-bool FirstLook::explained(double left) const {
-  return left - rows < (1.0 - kExplains) * structured() || left - rows < floor * floor * rows;
+bool FirstLook::explained(double left, std::size_t effects) const {
+  const double share = effects > 1 ? kPairExplains : kExplains;
+  return left - rows < (1.0 - share) * structured() || left - rows < floor * floor * rows;
 }
 
 }  // namespace tissue_stiffness

@@ -7,8 +7,6 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kBaseSpread = 0.05;   // prior standard deviations, of the base's parameters
-constexpr double kAddedSpread = 0.25;  // and of the added ones
 constexpr std::size_t kMostStarts = 2;
 // Prior standard deviations of an amplitude that is tried: of a positive one, whose prior speaks of a strong effect, and of
 // a signed one.
@@ -46,8 +44,7 @@ BeginningFit fit_beginning(const Fitted& base, const Candidate& way) {
   const Model& model = study.model();
   const Eigen::VectorXd w = study.extend(known, base.fit.w);
   const std::vector<Eigen::Index> shared = study.shared_with(known);
-  Eigen::VectorXd spread = kAddedSpread * model.prior_std();
-  for (const Eigen::Index i : shared) spread[i] = kBaseSpread * model.prior_std()[i];
+  const Eigen::VectorXd spread = study.spread_beyond(known);
   std::vector<Study::Place> places;
   for (const Eigen::VectorXd& start : strengths(study, w, way))
     places.push_back(study.scan_near(start, shared, kBeginning));

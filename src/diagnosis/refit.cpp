@@ -9,14 +9,14 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kBaseSpread = 0.05;      // prior standard deviations, of the base's parameters at first
-constexpr double kAddedSpread = 0.25;     // and of the added ones
-constexpr double kLeastFactor = 1.02;     // of a log-normal prior in the proposed model file
-constexpr double kPromise = 0.1;          // of the structured part: what quick runs have to explain before a full one
-constexpr double kPriorWidth = 5.0;       // posterior standard deviations, of the proposed priors
-constexpr double kRoom = 0.5;             // of the distance to a parameter's bound: the most that they have
-constexpr double kLeastShare = 1e-3;      // of the proposal's prior: the least
-constexpr double kShares[] = {0.6, 1.0};  // of the training frames, fitted one after the other from a fit of the beginning
+constexpr double kSpread = 0.05;           // prior standard deviations, around the fit of a beginning
+constexpr double kLeastFactor = 1.02;      // of a log-normal prior in the proposed model file
+constexpr double kPromise = 0.1;           // of the structured part: what quick runs have to explain before a full one
+constexpr double kPriorWidth = 5.0;        // posterior standard deviations, of the proposed priors
+constexpr double kRoom = 0.5;              // of the distance to a parameter's bound: the most that they have
+constexpr double kLeastShare = 1e-3;       // of the proposal's prior: the least
+constexpr double kMostOfMesh = 4.0 / 3.0;  // what ever finer meshes change: Richardson's, at second order
+constexpr double kShares[] = {0.6, 1.0};   // of the training frames, fitted one after the other from a fit of the beginning
 
 struct Start {
   Eigen::VectorXd w, spread;
@@ -48,27 +48,21 @@ double scanned_value(const FreeParameter& parameter, const std::vector<Addition>
 std::vector<Start> starts(const Study& study, const Study& base, const Eigen::VectorXd& w,
                           const std::vector<Addition>& additions) {
   const auto& free = study.model().free_parameters();
-  Start prior{study.model().prior_mean(), kAddedSpread * study.model().prior_std(), {}};
+  Start prior{study.extend(base, w), study.spread_beyond(base), {}};
   Start tangent = prior;
   std::vector<Eigen::Index> taken(additions.size(), 0);
   bool differs = false;
   for (std::size_t i = 0; i < free.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    const Eigen::Index known = base.index(free[i].name);
-    if (known >= 0) {
-      prior.w[k] = w[known];
-      prior.spread[k] = kBaseSpread * study.model().prior_std()[k];
-    } else if (const double amplitude = tangent_value(free[i], additions, taken); std::isfinite(amplitude)) {
+    if (base.index(free[i].name) >= 0) continue;
+    if (const double amplitude = tangent_value(free[i], additions, taken); std::isfinite(amplitude)) {
       const double value = std::clamp(amplitude, free[i].lower, free[i].upper);
       const bool allowed = free[i].prior.kind != Quantity::Kind::log_normal || value > 0.0;
       tangent.w[k] = allowed ? free[i].to_coordinate(value) : prior.w[k];
       differs = differs || allowed;
-      continue;
     } else if (const double value = scanned_value(free[i], additions); std::isfinite(value)) {
-      prior.w[k] = free[i].to_coordinate(value);
+      prior.w[k] = tangent.w[k] = free[i].to_coordinate(value);
     }
-    tangent.w[k] = prior.w[k];
-    tangent.spread[k] = prior.spread[k];
   }
   return differs ? std::vector<Start>{tangent, prior} : std::vector<Start>{prior};
 }
@@ -76,7 +70,7 @@ std::vector<Start> starts(const Study& study, const Study& base, const Eigen::Ve
 // Where the beginning's fit left all parameters.
 Start start_of(const Study& study, const std::map<std::string, double>& parameters) {
   const Model& model = study.model();
-  return {model.coordinates(parameters, model.prior_mean()), kBaseSpread * model.prior_std(), {}};
+  return {model.coordinates(parameters, model.prior_mean()), kSpread * model.prior_std(), {}};
 }
 
 // Where `key: {` begins among an entry's arguments; the effect's own name may end like a key.
@@ -150,9 +144,15 @@ double structured(const Study::Rows& rows) {
   return rows.error.squaredNorm() - rows.count();
 }
 
+double cost_beside(const Eigen::VectorXd& error, const Eigen::VectorXd& mesh_change) {
+  const double size = mesh_change.squaredNorm();
+  const double share = size > 0.0 ? std::clamp(mesh_change.dot(error) / size, 0.0, kMostOfMesh) : 0.0;
+  return (error - share * mesh_change).squaredNorm();
+}
+
 }  // namespace
 
-Refit refit(const Fitted& base, const std::vector<Addition>& additions) {
+Refit refit(const Fitted& base, const std::vector<Addition>& additions, const Eigen::VectorXd& mesh_change) {
   const Study& known = *base.study;
   auto model = std::make_shared<Fitted>();
   ModelSettings settings = known.model().settings();
@@ -187,6 +187,7 @@ Refit refit(const Fitted& base, const std::vector<Addition>& additions) {
   out.p_value =
       prediction_p_value(held_out_squares(base.rows, known.recording()) - held_out_squares(rows, known.recording()));
   out.cost = rows.error.squaredNorm();
+  out.cost_beside_mesh = cost_beside(rows.error, mesh_change);
   out.added_parameters = static_cast<int>(study.model().free_parameters().size() - known.model().free_parameters().size());
   if (!only_quick) out.model = std::move(model);
   return out;

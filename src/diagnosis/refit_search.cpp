@@ -67,7 +67,9 @@ class Search {
   bool leaves_more_than_noise() const {
     return refits_.empty() || refits_.front().cost > kExplained * kExplained * look_.unavoidable();
   }
-  bool explained() const { return !refits_.empty() && look_.explained(refits_.front().cost); }
+  bool explained() const {
+    return !refits_.empty() && look_.explained(refits_.front().cost, refits_.front().effects.size());
+  }
 
   const FirstLook& look_;
   const DiagnosisOptions& options_;
@@ -106,7 +108,7 @@ void Search::refit_all(const std::vector<std::vector<Addition>>& list) {
   std::vector<std::optional<Refit>> done(list.size());
   try_each(
       list.size(), [&](std::size_t i) { return "refit with " + names_of(list[i]); },
-      [&](std::size_t i) { done[i] = refit(look_.base, list[i]); });
+      [&](std::size_t i) { done[i] = refit(look_.base, list[i], look_.mesh_change); });
   for (std::optional<Refit>& refit : done) {
     if (refit) refits_.push_back(std::move(*refit));
   }
@@ -251,7 +253,7 @@ void Search::refit_pairs() {
 
 void Search::sort_refits() {
   double lowest = look_.cost;
-  for (const Refit& r : refits_) lowest = std::min(lowest, r.cost);
+  for (const Refit& r : refits_) lowest = std::min(lowest, r.cost_beside_mesh);
   const double variance = std::max(1.0, lowest / look_.rows);
   std::stable_sort(refits_.begin(), refits_.end(), [&](const Refit& a, const Refit& b) {
     return evidence(a, look_.rows, variance) > evidence(b, look_.rows, variance);
@@ -262,7 +264,7 @@ void Search::sort_refits() {
 }  // namespace
 
 double evidence(const Refit& refit, double rows, double variance) {
-  return -0.5 * refit.cost / variance - 0.5 * refit.added_parameters * std::log(rows);
+  return -0.5 * refit.cost_beside_mesh / variance - 0.5 * refit.added_parameters * std::log(rows);
 }
 
 std::vector<Refit> search_refits(const FirstLook& look, const std::vector<std::string>& wanted,

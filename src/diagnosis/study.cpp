@@ -15,15 +15,17 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr int kScanPoints = 12;
-constexpr int kSteps = 8;             // a frame: what longer ones leave of a period's length would be taken for an effect
-constexpr int kMostRuns = 8;          // moves of a fit from one full run to the next
-constexpr int kMostCuts = 3;          // of a move that makes it worse
-constexpr double kSettled = 0.2;      // posterior standard deviations: moves that need no further run
-constexpr double kWorthwhile = 2e-3;  // relative fall of the cost that quick runs have to promise before another full one
-constexpr double kGain = 1e-4;        // and that it has to bring
-constexpr double kNarrower = 4.0;     // posterior standard deviations that the next fit looks across
-constexpr int kNearPoints = 10;       // on either side
-constexpr double kNearStep = 0.045;   // of the prior's standard deviation: 5 % of a modulus known to a factor of 3
+constexpr int kSteps = 8;              // a frame: what longer ones leave of a period's length would be taken for an effect
+constexpr int kMostRuns = 8;           // moves of a fit from one full run to the next
+constexpr int kMostCuts = 3;           // of a move that makes it worse
+constexpr double kSettled = 0.2;       // posterior standard deviations: moves that need no further run
+constexpr double kWorthwhile = 2e-3;   // relative fall of the cost that quick runs have to promise before another full one
+constexpr double kGain = 1e-4;         // and that it has to bring
+constexpr double kNarrower = 4.0;      // posterior standard deviations that the next fit looks across
+constexpr double kBaseSpread = 0.05;   // prior standard deviations, of the parameters that a smaller model has too
+constexpr double kAddedSpread = 0.25;  // and of the others
+constexpr int kNearPoints = 10;        // on either side
+constexpr double kNearStep = 0.045;    // of the prior's standard deviation: 5 % of a modulus known to a factor of 3
 
 }  // namespace
 
@@ -244,6 +246,13 @@ Eigen::VectorXd Study::extend(const Study& base, const Eigen::VectorXd& w) const
     out[i] = w[base.index(model_.free_parameters()[static_cast<std::size_t>(i)].name)];
   }
   return out;
+}
+
+Eigen::VectorXd Study::spread_beyond(const Study& base) const {
+  const Eigen::VectorXd prior = model_.prior_std();
+  Eigen::VectorXd spread = kAddedSpread * prior;
+  for (const Eigen::Index i : shared_with(base)) spread[i] = kBaseSpread * prior[i];
+  return spread;
 }
 
 Eigen::Index Study::index(const std::string& parameter) const {

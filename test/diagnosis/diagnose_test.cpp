@@ -84,6 +84,15 @@ TEST(Diagnose, FindsAStrongEffectFromTheRecordingsBeginning) {
   EXPECT_LT(d.candidates.front().held_out_rms_after, 1.1 * kNoise);
 }
 
+// A thousandth of the springs that a stout body would notice.
+TEST(Diagnose, SeesWeakSurroundingsOfASlenderBar) {
+  const Diagnosis d = diagnose_bar(film({"foundation: {region: top, stiffness: 20}"}, 7), {});
+  EXPECT_EQ(d.verdict, "missing");
+  ASSERT_FALSE(d.set.empty());
+  EXPECT_EQ(d.set.front(), "foundation");
+  EXPECT_NEAR(d.candidates.front().parameters.at("foundation.stiffness"), 20.0, 1.0);
+}
+
 TEST(Diagnose, AddsWhatItIsTold) {
   DiagnosisOptions options;
   options.add = {"mass_damping"};

@@ -28,8 +28,8 @@ struct FirstLook {
   double unavoidable() const;  ///< sum of squares that is no more than noise and what the mesh itself does
   bool noise() const;          ///< the error may be noise
   bool numerics() const;       ///< a finer mesh explains it
-  /// A refit that leaves this sum of squares explains the error.
-  bool explained(double left) const;
+  /// A refit with so many effects more, which leaves this sum of squares, explains the error.
+  bool explained(double left, std::size_t effects) const;
 };
 
 constexpr double kRemainder = 0.25;  // of the mesh's error that a mesh twice as fine still has, or more

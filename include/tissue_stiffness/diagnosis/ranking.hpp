@@ -62,13 +62,15 @@ struct Refit {
   double train_sigmas = 0.0, held_out_sigmas = 0.0;  ///< the same over sigma
   double p_value = 1.0;                              ///< of predicting the held-out frames no better
   double cost = 0.0;                                 ///< sum of squared errors over sigma, all frames
+  double cost_beside_mesh = 0.0;                     ///< of what no share of the mesh's change explains
   int added_parameters = 0;
   std::shared_ptr<Fitted> model;  ///< null where it was only run quickly, and of all but the best
 };
 
 /// Fits the training frames by simulation, from the base's fit and the proposals' own starts: in full, but where
 /// quick runs of a model that is not linear explain next to nothing. Throws NumericalError when
-/// no start can be run.
-Refit refit(const Fitted& base, const std::vector<Addition>& additions);
+/// no start can be run. `mesh_change`: of the base's rows by a finer mesh [sigma]; an effect that imitates it has no
+/// advantage.
+Refit refit(const Fitted& base, const std::vector<Addition>& additions, const Eigen::VectorXd& mesh_change);
 
 }  // namespace tissue_stiffness

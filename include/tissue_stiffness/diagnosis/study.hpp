@@ -76,6 +76,8 @@ class Study {
   std::vector<Eigen::Index> shared_with(const Study& base) const;
   /// `w` of that model in the coordinates of this one; what is more stays at its prior.
   Eigen::VectorXd extend(const Study& base, const Eigen::VectorXd& w) const;
+  /// Of the sigma points of a first fit from there: close around what that model has found, wide along what is more.
+  Eigen::VectorXd spread_beyond(const Study& base) const;
 
  private:
   Study(const ModelSettings& settings, const TetMesh& mesh, std::map<std::string, Region> regions,
