@@ -14,6 +14,10 @@ constexpr double kSamePlace = 1e-9;  // [m]
 Experiment::Experiment(const ModelSettings& settings, const TetMesh& mesh, const std::vector<double>& truth,
                        const BasisOptions& basis)
     : model_(settings, mesh), forward_(make_forward_model(model_, basis)) {
+  set_truth(truth);
+}
+
+void Experiment::set_truth(const std::vector<double>& truth) {
   Eigen::VectorXd w = model_.prior_mean();
   for (std::size_t i = 0; i < truth.size(); ++i) {
     w[static_cast<Eigen::Index>(i)] = model_.free_parameters().at(i).to_coordinate(truth[i]);
@@ -23,6 +27,10 @@ Experiment::Experiment(const ModelSettings& settings, const TetMesh& mesh, const
 
 void Experiment::add_load(const LoadSample& sample) {
   model_.courses().at(sample.topic)->add(sample.time, sample.value);
+}
+
+void Experiment::clear_loads() {
+  for (const auto& [topic, course] : model_.courses()) course->clear();
 }
 
 std::vector<Experiment::Moment> Experiment::film(double first, double interval, int count) const {

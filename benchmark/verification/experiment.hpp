@@ -18,8 +18,11 @@ class Experiment {
   Experiment(const ModelSettings& settings, const TetMesh& mesh, const std::vector<double>& truth,
              const BasisOptions& basis = {});
 
+  void set_truth(const std::vector<double>& truth);
+
   /// Loads are fed before film().
   void add_load(const LoadSample& sample);
+  void clear_loads();
 
   struct Moment {
     double time;                   ///< [s]
