@@ -73,7 +73,7 @@ Eigen::VectorXd basis_shift(const ReducedModel& reduced, const FitProblem& probl
     const Eigen::VectorXd variance = truth.sigma.cwiseAbs2() / static_cast<double>(stride(problem));
     filter.update(truth.predicted, rows, variance, Eigen::VectorXd::Ones(variance.size()));
   }
-  return filter.mean() - w;
+  return kBasisDoubt * (filter.mean() - w);
 }
 
 }  // namespace tissue_stiffness
