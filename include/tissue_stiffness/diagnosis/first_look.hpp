@@ -32,6 +32,6 @@ struct FirstLook {
   bool explained(double left, std::size_t effects) const;
 };
 
-constexpr double kRemainder = 0.25;  // of the mesh's error that a mesh twice as fine still has, or more
+constexpr double kRemainder = 1.0 / 3.0;  // of a finer mesh's change: what it leaves of the error at second order
 
 }  // namespace tissue_stiffness
