@@ -19,8 +19,8 @@ constexpr double kBasisShare = 0.1;  ///< of the noise: what a basis may leave o
 BasisError basis_error(const ReducedModel& reduced, const FitProblem& problem, const Eigen::VectorXd& w);
 
 /// What the reduced basis does to the parameters, about 1 sigma: the fit of its earlier half to a run in all of it, from w
-/// on, in filter coordinates, times kBasisDoubt. One Gauss-Newton step over the same frames; `spread`: of the sigma points; `prior_std` holds
-/// what the data do not determine.
+/// on, in filter coordinates, times kBasisDoubt. One Gauss-Newton step over the same frames; `spread`: of the sigma points;
+/// `prior_std` holds what the data do not determine.
 Eigen::VectorXd basis_shift(const ReducedModel& reduced, const FitProblem& problem, const Eigen::VectorXd& w,
                             const Eigen::VectorXd& spread, const Eigen::VectorXd& prior_std);
 
