@@ -57,9 +57,10 @@ double motion(const Study::Rows& rows) {
   return std::sqrt(square / static_cast<double>(rows.predicted.size()));
 }
 
-// d rows / d w_j. A slender body answers to what leaves a stout one alone: the step is cut until the answer is small.
-Eigen::VectorXd tangent(const Study& study, const Study::Rows& rest, const Eigen::VectorXd& start, Eigen::Index j) {
-  const double moves = motion(rest);
+// d rows / d w_j. A slender body answers to what leaves a stout one alone: the step is cut until the answer is small beside
+// the motion of `rest`, `moves`.
+Eigen::VectorXd tangent(const Study& study, const Study::Rows& rest, double moves, const Eigen::VectorXd& start,
+                        Eigen::Index j) {
   double amplitude = kProbe * study.model().prior_std()[j];
   for (int probe = 1;; ++probe) {
     Eigen::VectorXd moved = start;
@@ -85,10 +86,11 @@ void read_tangents(const Study& study, const Study& base, const Eigen::VectorXd&
                    const std::vector<Candidate*>& candidates, const std::function<void(double)>& over) {
   const Eigen::VectorXd start = study.extend(base, w);
   const Study::Rows rest = study.rows(start);
+  const double moves = motion(rest);
   const std::vector<Eigen::Index> added = added_parameters(study, base);
   Eigen::MatrixXd columns(rest.error.size(), static_cast<Eigen::Index>(added.size()));
   tbb::parallel_for(std::size_t{0}, added.size(), [&](std::size_t j) {
-    columns.col(static_cast<Eigen::Index>(j)) = tangent(study, rest, start, added[j]);
+    columns.col(static_cast<Eigen::Index>(j)) = tangent(study, rest, moves, start, added[j]);
     over(static_cast<double>(candidates.size()) / static_cast<double>(added.size()));
   });
   Eigen::Index at = 0;

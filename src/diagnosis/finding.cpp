@@ -27,7 +27,7 @@ std::string judge(const FirstLook& look, const std::vector<Refit>& refits) {
   // Within the noise, what the mesh explains about as well is no sign of an effect.
   if (look.noise() && (!gained || look.by_mesh > 0.5 * (look.cost - left))) return "adequate";
   if (look.numerics()) return "numerics";
-  return gained && look.explained(left, refits.front().effects.size()) ? "missing" : "unexplained";
+  return gained && look.explained_by(refits.front()) ? "missing" : "unexplained";
 }
 
 std::vector<std::string> set_of(const FirstLook& look, const std::vector<Refit>& refits) {

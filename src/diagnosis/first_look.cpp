@@ -52,9 +52,9 @@ bool FirstLook::numerics() const {
   return by_mesh > kExplains * structured();
 }
 
-bool FirstLook::explained(double left, std::size_t effects) const {
-  const double share = effects > 1 ? kPairExplains : kExplains;
-  return left - rows < (1.0 - share) * structured() || left - rows < floor * floor * rows;
+bool FirstLook::explained_by(const Refit& refit) const {
+  const double share = refit.effects.size() > 1 ? kPairExplains : kExplains, left = refit.cost - rows;
+  return left < (1.0 - share) * structured() || left < floor * floor * rows;
 }
 
 }  // namespace tissue_stiffness

@@ -67,9 +67,7 @@ class Search {
   bool leaves_more_than_noise() const {
     return refits_.empty() || refits_.front().cost > kExplained * kExplained * look_.unavoidable();
   }
-  bool explained() const {
-    return !refits_.empty() && look_.explained(refits_.front().cost, refits_.front().effects.size());
-  }
+  bool explained() const { return !refits_.empty() && look_.explained_by(refits_.front()); }
 
   const FirstLook& look_;
   const DiagnosisOptions& options_;

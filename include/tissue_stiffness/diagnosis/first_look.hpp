@@ -28,8 +28,7 @@ struct FirstLook {
   double unavoidable() const;  ///< sum of squares that is no more than noise and what the mesh itself does
   bool noise() const;          ///< the error may be noise
   bool numerics() const;       ///< a finer mesh explains it
-  /// A refit with so many effects more, which leaves this sum of squares, explains the error.
-  bool explained(double left, std::size_t effects) const;
+  bool explained_by(const Refit& refit) const;
 };
 
 constexpr double kRemainder = 1.0 / 3.0;  // of a finer mesh's change: what it leaves of the error at second order
