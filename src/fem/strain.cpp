@@ -20,8 +20,8 @@ Eigen::Vector3d nodal(const Strain& s, const Eigen::Vector3d& g) {
 }
 
 // Adds B_a u_a.
-template <typename Row>
-void add_strain(const Eigen::Vector3d& g, const Row& x, const Row& y, const Row& z, Eigen::Index at, StrainRows& e) {
+template <typename Row, typename Rows>
+void add_strain(const Eigen::Vector3d& g, const Row& x, const Row& y, const Row& z, Eigen::Index at, Rows& e) {
   e.row(at) += g.x() * x;
   e.row(at + 1) += g.y() * y;
   e.row(at + 2) += g.z() * z;
@@ -65,10 +65,11 @@ StrainRows strains(const Discretisation& fem, const Eigen::MatrixXd& u) {
 
 Strain strain_at(const Discretisation& fem, const Eigen::VectorXd& u, int e, int q) {
   const auto g = fem.gradient(e, q);
-  Eigen::Matrix3d h = Eigen::Matrix3d::Zero();  // displacement gradient
-  for (int a = 0; a < fem.nodes_per_element(); ++a) h += u.segment<3>(3 * fem.elements()(a, e)) * g.col(a).transpose();
-  Strain s;
-  s << h(0, 0), h(1, 1), h(2, 2), (h(0, 1) + h(1, 0)) / kRoot, (h(1, 2) + h(2, 1)) / kRoot, (h(0, 2) + h(2, 0)) / kRoot;
+  Strain s = Strain::Zero();
+  for (int a = 0; a < fem.nodes_per_element(); ++a) {
+    const Eigen::Index node = 3 * fem.elements()(a, e);
+    add_strain(g.col(a), u.row(node), u.row(node + 1), u.row(node + 2), 0, s);
+  }
   return s;
 }
 
