@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <limits>
 
 #include "tissue_stiffness/estimation/ensemble.hpp"
 #include "tissue_stiffness/filter/anchored_filter.hpp"
@@ -22,7 +25,19 @@ constexpr double kNegligible = 1e-5;  // prior standard deviations
 constexpr double kLongestStep = 0.1;  // prior standard deviations at once
 constexpr double kTelling = 0.1;      // mean square of a mesh's misfit in sigmas that a recording would show
 constexpr double kShiftDoubt = 0.5;   // of the mesh's effect, once it is corrected for
-constexpr int kMostNodes = 6000;      // refined eightfold: what still factorises in seconds and within 2 GB
+constexpr int kMostNodes = 17000;     // refined eightfold: what still factorises within half a minute
+constexpr double kMemory = 0.4e-3;    // GB for each of them
+constexpr double kMostMemory = 0.5;   // of what is available
+
+// What the system could give [GB]; without bound where it does not say.
+double available_memory() {
+  std::ifstream file("/proc/meminfo");
+  std::string name, unit;
+  for (double kilobytes = 0.0; file >> name >> kilobytes; std::getline(file, unit)) {
+    if (name == "MemAvailable:") return 1e-6 * kilobytes;
+  }
+  return std::numeric_limits<double>::infinity();
+}
 
 void drive(const MeshError::Question& question, Model& model) {
   for (const auto& [topic, course] : question.courses) *model.courses().at(topic) = course;
@@ -86,7 +101,13 @@ struct MeshError::Studies {
 };
 
 std::string MeshError::why_not(const TetMesh& mesh) {
-  return mesh.node_count() > kMostNodes ? "the mesh has more than " + std::to_string(kMostNodes) + " nodes" : "";
+  if (mesh.node_count() > kMostNodes) return "the mesh has more than " + std::to_string(kMostNodes) + " nodes";
+  const double needed = kMemory * mesh.node_count(), available = available_memory();
+  if (needed < kMostMemory * available) return "";
+  char text[100];
+  std::snprintf(text, sizeof text, "it needs %.1f GB of memory, more than half of the %.1f GB that are free", needed,
+                available);
+  return text;
 }
 
 MeshError::MeshError(const ModelSettings& settings, const TetMesh& mesh)

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "bar.hpp"
+#include "tissue_stiffness/estimation/mesh_error.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -43,6 +44,13 @@ TEST(MeshError, OfACoarseMeshIsCorrectedAndInTheInterval) {
 TEST(MeshError, IsSaidToBeAssessedOrNot) {
   EXPECT_NE(Estimator(settings(true), bar_mesh()).description().back().find("refined eightfold"), std::string::npos);
   EXPECT_NE(Estimator(settings(false), bar_mesh()).description().back().find("asks not to"), std::string::npos);
+}
+
+TEST(MeshError, IsNotAssessedWhereItWouldTakeTooMuch) {
+  EXPECT_EQ(MeshError::why_not(bar_mesh()), "");
+  TetMesh large;
+  large.nodes.resize(3, 17001);
+  EXPECT_EQ(MeshError::why_not(large), "the mesh has more than 17000 nodes");
 }
 
 TEST(MeshError, IsForgottenByAResetAndTheSameEveryTime) {

@@ -45,7 +45,7 @@ TEST(ReportHtml, SaysHowMuchOfTheBodyTheMapIdentifies) {
   EXPECT_NE(page.find("1 of the body&#39;s 2 parts are identified; of the others"), std::string::npos);
   EXPECT_NE(page.find("at its prior</span>"), std::string::npos);
   EXPECT_NE(page.find("and the error of the mesh."), std::string::npos);
-  results.map->mesh_error = "the mesh has more than 6000 nodes";
+  results.map->mesh_error = "the mesh has more than 17000 nodes";
   EXPECT_NE(report_html(results, {}).find("not the error of the mesh: the mesh has more"), std::string::npos);
   results.map->misfit = 3.04;
   EXPECT_NE(report_html(results, {}).find("the map leaves an error of 3.0 times the noise"), std::string::npos);
