@@ -33,20 +33,24 @@ class FirstOrderTrajectory : public Trajectory {
     }
     const double start = linear_.time(), longest = std::min(kForceStep, kLeastShare * span);
     const int steps = static_cast<int>(std::ceil(span / longest * (1.0 - 1e-9)));
-    std::vector<Instant> instants;
-    for (int k = 1; k <= steps; ++k) {
-      const double now = k == steps ? time : start + span * k / steps;
-      linear_.advance(now);
-      instants.push_back({now, linear_.coordinates(), linear_.velocity(), {}});
+    std::vector<double> times;
+    Eigen::MatrixXd coordinates(reduced_.basis().cols(), steps), modal_velocities(force_.size(), steps);
+    for (int k = 0; k < steps; ++k) {
+      times.push_back(k + 1 == steps ? time : start + span * (k + 1) / steps);
+      linear_.advance(times.back());
+      coordinates.col(k) = linear_.coordinates();
+      modal_velocities.col(k) = linear_.modal_velocity();
     }
-    tbb::parallel_for(std::size_t{0}, instants.size(), [&](std::size_t k) {
-      Instant& i = instants[k];
-      const Eigen::VectorXd u = reduced_.basis() * i.coordinates;
-      i.force = modes_->shapes.transpose() * (reduced_.basis().transpose() * extra_(i.time, u, i.velocity));
+    // All instants at once, so that the basis is read from memory but three times.
+    const Eigen::MatrixXd velocities = reduced_.basis() * (modes_->shapes * modal_velocities);
+    Eigen::MatrixXd forces = reduced_.basis() * coordinates;  // the displacements, to begin with
+    tbb::parallel_for(0, steps, [&](int k) {
+      forces.col(k) = extra_(times[static_cast<std::size_t>(k)], Eigen::VectorXd(forces.col(k)), velocities.col(k));
     });
-    for (Instant& i : instants) {
-      step_.advance(span / steps, force_, i.force, state_);
-      force_ = std::move(i.force);
+    const Eigen::MatrixXd modal = modes_->shapes.transpose() * (reduced_.basis().transpose() * forces);
+    for (int k = 0; k < steps; ++k) {
+      step_.advance(span / steps, force_, modal.col(k), state_);
+      force_ = modal.col(k);
     }
   }
   double time() const override { return linear_.time(); }
@@ -58,11 +62,6 @@ class FirstOrderTrajectory : public Trajectory {
   }
 
  private:
-  struct Instant {
-    double time;
-    Eigen::VectorXd coordinates, velocity, force;
-  };
-
   const ReducedModel& reduced_;
   ExtraForce extra_;
   ReducedTrajectory linear_;

@@ -10,7 +10,9 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kSameStep = 1e-11;  // [s]
+constexpr double kSameStep = 1e-11;   // [s]
+constexpr double kLeastAngle2 = 0.1;  // (omega h)^2 below which the closed form would lose digits
+constexpr double kMostDamping = 0.9;  // damping ratio, squared: near one it would, too
 
 constexpr int kMostBranches = 6;
 using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostBranches + 4, kMostBranches + 4>;
@@ -19,6 +21,24 @@ Small exponential(const Small& a) {
   if (a.rows() != 4) return a.exp();
   const Eigen::Matrix4d fixed = a;
   return Small(fixed.exp());
+}
+
+// Augmented exponential of a step h of q'' + d q' + w q = f without branches: rows q, q'; columns q, q', f, its increment.
+using Oscillation = Eigen::Matrix<double, 2, 4>;
+
+// Clough & Penzien 1993, eq. (2-49) and its integrals over the step.
+bool oscillates(double w, double d, double h) {
+  return w * h * h > kLeastAngle2 && d * d < 4.0 * kMostDamping * w;
+}
+Oscillation oscillation(double w, double d, double h) {
+  const double omega = std::sqrt(w - 0.25 * d * d), fading = std::exp(-0.5 * d * h);
+  const double s = fading * std::sin(omega * h) / omega, c = fading * std::cos(omega * h);
+  const double y = c + 0.5 * d * s;             // q after a unit q
+  const double once = (1.0 - y) / w;            // q after a unit force
+  const double twice = (h - s - d * once) / w;  // and after one that grows as the time
+  Oscillation e;
+  e << y, s, once, twice / h, -w * s, c - 0.5 * d * s, s, once / h;
+  return e;
 }
 
 }  // namespace
@@ -36,8 +56,17 @@ void ModalStep::prepare(double step) {
   step_ = step;
   const Eigen::Index n = states(), f = n;  // columns f, f + 1: the force and its increment over the step
   transition_.assign(static_cast<std::size_t>(n * (n + 2)), Eigen::ArrayXd(square_.size()));
+  const auto keep = [&](const auto& e, Eigen::Index mode) {
+    for (Eigen::Index i = 0; i < n; ++i) {
+      for (Eigen::Index j = 0; j < n + 2; ++j) entry(i, j)[mode] = j == f ? e(i, f) - e(i, f + 1) : e(i, j);
+    }
+  };
   Small a(n + 2, n + 2);
   for (Eigen::Index mode = 0; mode < square_.size(); ++mode) {
+    if (branches_.empty() && oscillates(square_[mode], damping_[mode], step)) {
+      keep(oscillation(square_[mode], damping_[mode], step), mode);
+      continue;
+    }
     a.setZero();
     a(0, 1) = step;
     a(1, 0) = -square_[mode] * step;
@@ -52,10 +81,7 @@ void ModalStep::prepare(double step) {
       a(2 + i, 0) = rate;
       a(2 + i, 2 + i) = -rate;
     }
-    const Small e = exponential(a);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      for (Eigen::Index j = 0; j < n + 2; ++j) entry(i, j)[mode] = j == f ? e(i, f) - e(i, f + 1) : e(i, j);
-    }
+    keep(exponential(a), mode);
   }
 }
 
