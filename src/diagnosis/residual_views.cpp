@@ -109,6 +109,7 @@ std::string next_experiment(const std::vector<std::string>& set) {
       {"elastic_support", "image_scale", "track points close to the support: only a yielding support moves them"},
       {"fibre_reinforcement", "stiff_inclusion", "load along and across the fibres"},
       {"gravity", "rigid_drift", "turn the body, or keep the sensor still on a fixed target"},
+      {"gravity", "sensor_rotation", "load the body along another axis: a turned sensor turns that motion, too"},
       {"geometric_nonlinearity", "strain_stiffening", "a load twice as large: stiffening grows faster"},
   };
   for (const Hint& hint : hints) {

@@ -32,6 +32,8 @@ std::string effect_sign(const std::string& effect) {
       {"image_scale", "everything seen is larger, or smaller, by the same share, as with a wrong pixel size"},
       {"time_offset", "the motion is right but comes late, or early, against the loads: the clocks disagree"},
       {"rigid_drift", "the whole body wanders or turns steadily, as when the sensor itself moves"},
+      {"sensor_rotation",
+       "the body moves in a direction that is turned against the model's, as with a misregistered sensor"},
       {"contour_bias", "the outline lies outside, or inside, the surface everywhere by the same distance"},
       {"geometric_nonlinearity", "large deflections turn the body, and a model for small strains does not follow"},
       {"strain_stiffening", "the tissue grows stiffer the further it is stretched"},

@@ -75,6 +75,16 @@ TEST(SeenMotion, DriftsRigidly) {
   EXPECT_LT((drift.vertices - expected).norm(), 1e-12);
 }
 
+TEST(SeenMotion, IsTurnedAboutWhereEachPointWasAtRest) {
+  const TetMesh mesh = bar_mesh();
+  const Seen rest = seen(mesh, "", false), plain = seen(mesh, "", true),
+             turned = seen(mesh, "sensor_rotation: {angles: [0, 0.3, 0]}", true);
+  Eigen::Matrix3d turn;
+  turn << std::cos(0.3), 0, std::sin(0.3), 0, 1, 0, -std::sin(0.3), 0, std::cos(0.3);
+  EXPECT_GT((plain.vertices - rest.vertices).norm(), 1e-6);
+  EXPECT_LT((turned.vertices - rest.vertices - turn * (plain.vertices - rest.vertices)).norm(), 1e-12);
+}
+
 // A point 1 mm above the surface lies on it for a sensor that measures 1 mm outside; tracked vertices have no such bias.
 TEST(SeenMotion, LiesOutsideTheSurface) {
   const TetMesh mesh = bar_mesh();

@@ -1,0 +1,48 @@
+// A sensor whose axes are not the model's.
+#include <Eigen/Geometry>
+
+#include "tissue_stiffness/effects/registry.hpp"
+
+namespace tissue_stiffness::effects {
+namespace {
+
+class SensorRotation : public Effect {
+ public:
+  bool observes() const override { return true; }
+  void observe(const Parameters& p, ObservedMotion& motion) const override {
+    const Eigen::Vector3d turn = p.head<3>();
+    const double angle = turn.norm();
+    if (angle == 0.0) return;
+    Eigen::Map<Eigen::Matrix3Xd> u(motion.displacement.data(), 3, motion.mesh.nodes.cols());
+    u = Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() * u.eval();
+  }
+};
+
+// Of points that are known at rest: outlines and clouds would show the turned body itself.
+std::vector<Proposal> propose(const ProposalContext& context) {
+  const bool points =
+      context.observes(ObservationSettings::Kind::vertices) || context.observes(ObservationSettings::Kind::markers);
+  if (context.holds("sensor_rotation") || !points) return {};
+  const std::string entry = "sensor_rotation: {angles: " + normal(Eigen::Vector3d::Zero(), 0.1) + "}";
+  return {{entry, "angles", entry}};
+}
+
+}  // namespace
+
+EffectSpec sensor_rotation_spec() {
+  EffectSpec spec;
+  spec.name = "sensor_rotation";
+  spec.summary =
+      "measured displacements are turned: the sensor was matched to the body at rest, its axes are not the model's";
+  spec.formula = "y = X + R(a) u";
+  spec.source = "a registration's error, of a hand-eye calibration for example";
+  spec.parameters = {{"angles", "a", "rad", -3.2, 3.2, ParameterSpec::Default::required, 0.0, 0.0, 3}};
+  spec.proposals = propose;
+  return spec;
+}
+
+std::unique_ptr<Effect> make_sensor_rotation(const Value&, const EffectContext&) {
+  return std::make_unique<SensorRotation>();
+}
+
+}  // namespace tissue_stiffness::effects
