@@ -74,6 +74,12 @@ bool takes_a_part(const Fitted& model, const Refit& refit, const Recording& reco
   return beyond(refit.held_out_sigmas) < (1.0 - kWorthAdding) * beyond(rms_sigmas(model.rows, recording, true));
 }
 
+BestExplanation best_of(const Fitted& model, const Finding& finding) {
+  if (finding.refits.empty()) return {};
+  const Refit& best = finding.refits.front();
+  return {best.effects, 1.0 - best.cost / model.rows.error.squaredNorm(), best.held_out_rms};
+}
+
 // The model's parameters as the best explanation has them: without it they make up for what is missing.
 Eigen::VectorXd believed(const Fitted& model, const Finding& finding) {
   if (finding.verdict != "missing") return model.fit.w;
@@ -102,6 +108,7 @@ Diagnosis diagnose(const ModelSettings& settings, const TetMesh& mesh, const Rec
   describe_residual(model, finding.floor, out);
   out.verdict = out.final_verdict = finding.verdict;
   out.set = finding.set;
+  out.best = best_of(model, finding);
   out.candidates = finding.effects;
   out.next_experiment = next_experiment(finding.set);
 

@@ -92,6 +92,10 @@ std::string diagnosis_json(const Diagnosis& d) {
   }
   const json root = {{"verdict", d.verdict},
                      {"set", d.set},
+                     {"best",
+                      {{"effects", d.best.effects},
+                       {"explained", number(d.best.explained)},
+                       {"held_out_rms", number(d.best.held_out_rms)}}},
                      {"candidates", candidates},
                      {"where", d.where},
                      {"when", d.when},

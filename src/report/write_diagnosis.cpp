@@ -1,7 +1,9 @@
 #include "tissue_stiffness/report/write_diagnosis.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 
 #include "tissue_stiffness/report/effect_words.hpp"
 #include "tissue_stiffness/report/text.hpp"
@@ -21,13 +23,18 @@ std::string diagnosis_sentence(const Diagnosis& d) {
   if (d.verdict == "adequate") return "The model is adequate: what it leaves is noise.";
   if (d.verdict == "numerics") return "The mesh is too coarse to tell: a finer one would change more than any effect.";
   if (d.set.empty()) return "The error has structure, but no effect of the library explains it.";
-  const MissingEffect& best = d.candidates.front();
+  const bool together = d.best.effects.size() > 1;
+  const std::vector<std::string> found = d.best.effects.empty() ? std::vector<std::string>{d.set.front()} : d.best.effects;
   std::string text = d.verdict == "missing" ? "Missing: " : "Not explained; nearest: ";
-  text += effect_title(best.effect) + " (" + effect_sign(best.effect) + "). It would remove " +
-          short_number(100.0 * best.explained, 3) + " % of the squared error (held-out error " +
-          millimetres(best.held_out_rms_before) + " to " + millimetres(best.held_out_rms_after) + ").";
-  if (d.set.size() > 1) {
-    text += " These data fit as well: " + effect_list({d.set.begin() + 1, d.set.end()}) + ".";
+  text += effect_list(found) + (together ? " together" : " (" + effect_sign(found.front()) + ")") +
+          (together ? ". They" : ". It") + " would remove " + short_number(100.0 * d.best.explained, 3) +
+          " % of the squared error (held-out error " + millimetres(d.steps.front().held_out_rms) + " to " +
+          millimetres(d.best.held_out_rms) + ").";
+  std::vector<std::string> others;
+  std::copy_if(d.set.begin(), d.set.end(), std::back_inserter(others),
+               [&](const std::string& effect) { return std::count(found.begin(), found.end(), effect) == 0; });
+  if (!others.empty()) {
+    text += " These data fit as well: " + effect_list(others) + ".";
     if (!d.next_experiment.empty()) text += " To tell them apart: " + effect_title(d.next_experiment) + ".";
   }
   return text;

@@ -39,8 +39,10 @@ void print_diagnosis(const Diagnosis& d, const Paint& paint, std::ostream& out) 
                 c.log_bayes_factor, c.p_value);
   }
   out << paint.bold("model                     held-out [mm]   fitted [mm]   noise [mm]") << "\n";
+  std::size_t known = 0;
   for (const DiagnosisStep& s : d.steps) {
-    const std::string name = s.effects.empty() ? "as given" : "+ " + s.effects.back();
+    std::string name = s.effects.empty() ? "as given" : "";
+    for (; known < s.effects.size(); ++known) name += (name.empty() ? "+ " : " + ") + s.effects[known];
     out << line("%-24s %14.3f  %12.3f  %11.3f%.0s\n", name, 1e3 * s.held_out_rms, 1e3 * s.train_rms, 1e3 * s.noise_floor,
                 0.0);
     for (const auto& [parameter, value] : s.parameters) {

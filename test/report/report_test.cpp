@@ -236,6 +236,7 @@ Diagnosis example_diagnosis() {
   Diagnosis d;
   d.verdict = "missing";
   d.set = {"viscous_damping", "mass_damping"};
+  d.best = {{"viscous_damping"}, 0.91, 1.1e-4};
   MissingEffect best;
   best.effect = "viscous_damping";
   best.parameters = {{"viscous_damping.beta", 2e-3}};
@@ -259,6 +260,17 @@ Diagnosis example_diagnosis() {
   d.estimate.state = EstimateState::converged;
   d.estimate.parameters = {{"elasticity.young_modulus", "Pa", 12e3, 77.0, 11.85e3, 12.15e3}};
   return d;
+}
+
+TEST(DiagnosisSentence, NamesWhatIsMissingAndWhatFitsAsWell) {
+  Diagnosis d = example_diagnosis();
+  EXPECT_EQ(diagnosis_sentence(d).find("Missing: viscous damping (the motion dies away"), 0u);
+  EXPECT_NE(diagnosis_sentence(d).find("fit as well: mass damping. To tell them apart"), std::string::npos);
+  d.set = {"rigid_drift", "viscous_damping", "mass_damping"};
+  d.best = {{"rigid_drift", "viscous_damping"}, 0.95, 2e-4};
+  EXPECT_EQ(diagnosis_sentence(d),
+            "Missing: rigid drift and viscous damping together. They would remove 95.0 % of the squared error (held-out "
+            "error 0.310 mm to 0.200 mm). These data fit as well: mass damping. To tell them apart: excite two modes.");
 }
 
 TEST(DiagnosisHtml, TellsTheStoryInOrder) {
