@@ -26,6 +26,8 @@ constexpr std::size_t kOthers = 4;     // and more, when those leave more than n
 constexpr std::size_t kPairs = 3;      // and pairs
 constexpr double kExplained = 1.02;    // and up to which a refit need not be bettered
 constexpr double kPromise = 0.2;       // of the structured part
+constexpr double kClean = 1.1;         // rms in sigmas that a refit with no rival leaves
+constexpr double kSeen = 0.5;          // of what a refit explains: a tangent that sees less is none
 
 /// The search, stage by stage.
 class Search {
@@ -38,7 +40,7 @@ class Search {
     if (leaves_more_than_noise()) refit_others();
     if (leaves_more_than_noise()) refit_other_kinds();
     if (leaves_more_than_noise()) refit_rest();
-    if (leaves_more_than_noise() && !explained()) refit_from_beginning();
+    if ((leaves_more_than_noise() && !explained()) || tangents_mislead()) refit_from_beginning();
     if (leaves_more_than_noise() && !explained()) refit_pairs();
     return std::move(refits_);
   }
@@ -67,12 +69,22 @@ class Search {
   bool leaves_more_than_noise() const {
     return refits_.empty() || refits_.front().cost > kExplained * kExplained * look_.unavoidable();
   }
+  /// The best refit explains what its tangent did not see, and not all of it: its twins may not have been seen either.
+  bool tangents_mislead() const;
   bool explained() const { return !refits_.empty() && look_.explained_by(refits_.front()); }
 
   const FirstLook& look_;
   const DiagnosisOptions& options_;
   std::vector<Refit> refits_;
 };
+
+bool Search::tangents_mislead() const {
+  if (refits_.empty() || refits_.front().cost < kClean * kClean * look_.rows) return false;
+  const Refit& best = refits_.front();
+  return std::any_of(look_.ranked.begin(), look_.ranked.end(), [&](const Ranked& r) {
+    return r.effect == best.effects.front() && r.score.explained * look_.cost < kSeen * (look_.cost - best.cost);
+  });
+}
 
 std::string names_of(const std::vector<Addition>& additions) {
   std::string names;
