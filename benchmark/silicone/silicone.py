@@ -7,11 +7,21 @@ import subprocess
 import sys
 import tempfile
 
+import numpy as np
+import rosbag
+import sensor_msgs.point_cloud2 as point_cloud2
 import yaml
 
 RECORDINGS = 'silicone_beam_%s'
-NARROW = 1.0001  # factor of a prior that keeps a parameter where it is
-FITTED = 1.2     # and of one that hands a fit on to the next recording
+HELD = 1.0001  # factor of a prior that keeps a parameter where it is
+FITTED = 1.2   # and of one that hands a fit on to the next recording
+DAMPING = {'viscous_damping': {'beta': {'prior': 0.003, 'factor': 2.0}}}
+TURNED = {'sensor_rotation': {'angles': {'mean': [0.0, 0.0, 0.0], 'std': 0.1}}}
+MODULUS, BETA, MASS = 'elasticity.young_modulus', 'viscous_damping.beta', 'added_mass.mass'
+TOPIC = '/beam/markers'
+TIP = [0.015, 0.015, 0.1]  # m, its centre
+SWING = slice(10, 200)     # frames, of the ringing
+ANGLES = ['sensor_rotation.angles_' + axis for axis in 'xyz']
 
 
 def tool(root, name, *arguments):
@@ -54,16 +64,72 @@ class Beam:
         return read(self.folder, 'results.json')
 
 
-def around(results, factor):
-    return {name: {'prior': p['mean'], 'factor': factor} for name, p in results['parameters'].items()}
+def tip_motion(place):
+    """Displacement of the tip's centre in every frame, which moves with the three markers as a rigid body does [mm]."""
+    rest = np.array(read(place, 'model.yaml')['observations'][0]['markers']['rest'])
+    out = []
+    with rosbag.Bag(os.path.join(place, 'recording.bag')) as bag:
+        for _, cloud, _ in bag.read_messages(TOPIC):
+            seen = np.array(list(point_cloud2.read_points(cloud, ('x', 'y', 'z'))))
+            left, _, right = np.linalg.svd((rest - rest.mean(0)).T @ (seen - seen.mean(0)))
+            turn = (left @ np.diag([1, 1, np.linalg.det(left @ right)]) @ right).T  # Kabsch 1976
+            out.append(seen.mean(0) + turn @ (TIP - rest.mean(0)) - TIP)
+    return 1e3 * np.array(out)
+
+
+def show_tip(beam):
+    print('| recording | along the beam, of the motion across it | and of its square [1/m] |\n|---|---|---|')
+    for name in ('gravity_a', 'gravity_b', 'load52_a', 'load52_b'):
+        across, _, along = tip_motion(beam.place(name))[SWING].T
+        share, square = np.linalg.lstsq(np.stack([across, across ** 2], axis=1), along, rcond=None)[0]
+        print('| %s | %.3f | %.1f |' % (name, share, 1e3 * square))
 
 
 def row(what, results):
     p = results['parameters']
-    damping = p.get('viscous_damping.beta')
-    print('| %s | %.1f | %s | %.2f |' % (what, p['elasticity.young_modulus']['mean'] / 1e3,
-                                         '%.2f' % (1e3 * damping['mean']) if damping else '-', 1e3 * results['rms_error']),
-          flush=True)
+
+    def cell(name, scale, digits):
+        return '%.*f' % (digits, scale * p[name]['mean']) if name in p else '-'
+    print('| %s | %s | %s | %s | %s | %.2f |' % (what, cell(MODULUS, 1e-3, 1), cell(BETA, 1e3, 2), cell(ANGLES[1], 57.3, 1),
+                                            cell(MASS, 1e3, 1), 1e3 * results['rms_error']), flush=True)
+
+
+def middle(one, other, name):
+    """Geometric, but of angles."""
+    a, b = (results['parameters'][name]['mean'] for results in (one, other))
+    return 0.5 * (a + b) if name in ANGLES else (a * b) ** 0.5
+
+
+def predict(beam, label, added, known):
+    """The recordings that no fit has seen, with everything known but E, which a prior holds."""
+    for name in ('gravity_b', 'load52_b'):
+        row('%s: %s, predicted' % (label, name), beam.estimate(name, added, known))
+
+
+def compare(beam, label, added):
+    """Both fitted from one to the next; what they agree on predicts."""
+    one = beam.estimate('gravity_a', added, {})
+    row(label + ': gravity_a, fitted', one)
+    handed = {name: {'prior': p['mean'], 'factor': FITTED} for name, p in one['parameters'].items() if name not in ANGLES}
+    other = beam.estimate('load52_a', added, handed)
+    row(label + ': load52_a, fitted from there', other)
+    known = {name: middle(one, other, name) for name in one['parameters'] if name not in ANGLES}
+    known[MODULUS] = {'prior': known[MODULUS], 'factor': HELD}
+    if TURNED in added:
+        known['sensor_rotation.angles'] = [middle(one, other, name) for name in ANGLES]
+    predict(beam, label, added, known)
+    return one
+
+
+def weigh(beam, label, added, one):
+    """E of the beam without the weight, and what the weight acts like with that E."""
+    handed = {MODULUS: {'prior': one['parameters'][MODULUS]['mean'], 'factor': HELD}, MASS: {'prior': 0.052, 'factor': 1.1},
+              BETA: {'prior': one['parameters'][BETA]['mean'], 'factor': 2.0}}
+    other = beam.estimate('load52_a', added, handed)
+    row(label + ': load52_a, fitted', other)
+    known = {MODULUS: handed[MODULUS], MASS: other['parameters'][MASS]['mean'], BETA: middle(one, other, BETA),
+             'sensor_rotation.angles': [middle(one, other, name) for name in ANGLES]}
+    predict(beam, label, added, known)
 
 
 def main():
@@ -86,17 +152,15 @@ def main():
             if candidate.get('held_out_rms_after'):
                 print('| %s | %.1f %% | %.2f |' % (candidate['effect'], 100 * candidate['explained'],
                                                   1e3 * candidate['held_out_rms_after']))
+        print('\n## Where the tip goes\n')
+        show_tip(beam)
         print('\n## Fitted to gravity_a and load52_a, predicting gravity_b and load52_b\n')
-        print('| recording | E [kPa] | viscous damping [ms] | rms error [mm] |\n|---|---|---|---|')
-        for label, added in (('elastic', []), ('damped', [{'viscous_damping': {'beta': {'prior': 0.003, 'factor': 2.0}}}])):
-            one = beam.estimate('gravity_a', added, {})
-            row(label + ': gravity_a, fitted', one)
-            both = beam.estimate('load52_a', added, around(one, FITTED))
-            row(label + ': load52_a, fitted from there', both)
-            middle = {name: {'prior': (p['mean'] * one['parameters'][name]['mean']) ** 0.5, 'factor': NARROW}
-                      for name, p in both['parameters'].items()}
-            for name in ('gravity_b', 'load52_b'):
-                row(label + ': ' + name + ', predicted', beam.estimate(name, added, middle))
+        print('| recording | E [kPa] | viscous damping [ms] | turned by [deg] | weight [g] | rms error [mm] |\n'
+              '|---|---|---|---|---|---|')
+        compare(beam, 'elastic', [])
+        compare(beam, 'damped', [DAMPING])
+        turned = compare(beam, 'damped, turned', [DAMPING, TURNED])
+        weigh(beam, 'damped, turned, weighed', [DAMPING, TURNED], turned)
 
 
 if __name__ == '__main__':
