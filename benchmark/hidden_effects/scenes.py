@@ -3,9 +3,10 @@ other nodes, in time steps instead of modes, and most hidden effects take anothe
 
 from meshes import box
 
-STEP = 0.001      # s
-RATE = 30.0       # frames/s
-NOISE = 2e-4      # m
+STEP = 0.0005       # s, of a truth
+TRIAL_STEP = 0.001  # s, where only an effect's size is asked for
+RATE = 30.0         # frames/s
+NOISE = 2e-4        # m
 
 
 def elasticity(modulus, poisson=0.45, **more):

@@ -15,7 +15,7 @@ import yaml
 
 from figures import plt, save
 from meshes import write_vtk
-from scenes import NOISE, RATE, STEP, scenes
+from scenes import NOISE, RATE, STEP, TRIAL_STEP, scenes
 
 DURATION = 1.6    # s
 TOPIC = '/tissue/markers'
@@ -57,11 +57,12 @@ def observations(scene):
     return [{'markers': {'topic': TOPIC, 'noise': NOISE, 'rest': scene.markers(scene.mesh(scene.cells)[0])}}]
 
 
-def simulate(arguments, folder, scene, modulus, hidden, strength, load=1.0, cells=None, noise=1e-9, memory=0.0, seed=1):
+def simulate(arguments, folder, scene, modulus, hidden, strength, load=1.0, cells=None, noise=1e-9, memory=0.0, seed=1,
+             step=STEP):
     regions, effects = scene.truth(modulus, hidden, strength, load)
     write_vtk(os.path.join(folder, 'true.vtk'), *scene.mesh(cells or scene.cells, hidden))
     content = {'mesh': {'file': 'true.vtk'}, 'regions': regions, 'effects': effects, 'observations': observations(scene),
-               'simulation': {'duration': DURATION, 'rate': RATE, 'step': STEP, 'spectral_radius': 1.0, 'seed': seed,
+               'simulation': {'duration': DURATION, 'rate': RATE, 'step': step, 'spectral_radius': 1.0, 'seed': seed,
                               **({'loads': scene.loads} if scene.loads else {}),
                               'sensors': {TOPIC: {'noise': noise, 'memory': memory}}}}
     bag = os.path.join(folder, 'recording.bag')
@@ -93,8 +94,8 @@ def strength_for(arguments, folder, scene, modulus, hidden, misfit):
     for _ in range(MOST_TRIALS):
         load = load_for(hidden, strength)
         if plain is None or load != 1.0:
-            plain = motion(simulate(arguments, folder, scene, modulus, 'none', 0.0, load))
-        changed = motion(simulate(arguments, folder, scene, modulus, hidden, strength, load))
+            plain = motion(simulate(arguments, folder, scene, modulus, 'none', 0.0, load, step=TRIAL_STEP))
+        changed = motion(simulate(arguments, folder, scene, modulus, hidden, strength, load, step=TRIAL_STEP))
         size = rms([[a - b for a, b in zip(x, y)] for x, y in zip(changed, plain)]) / rms(plain)
         if 0.8 < size / misfit < 1.25 or strength == STRONGEST:
             break

@@ -19,10 +19,10 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr int kVelocityFrames = 4;           // frames that the initial velocity is read from
-constexpr std::size_t kFirstMeshStudy = 16;  // frames
-constexpr double kConverged = 0.05;          // relative standard deviation
-constexpr double kInvalidSigmas = 10.0;      // rms error over noise at which the model says nothing about the body
+constexpr int kVelocityFrames = 4;          // frames that the initial velocity is read from
+constexpr std::size_t kFirstMeshStudy = 4;  // frames
+constexpr double kConverged = 0.05;         // relative standard deviation
+constexpr double kInvalidSigmas = 10.0;     // rms error over noise at which the model says nothing about the body
 
 class UnscentedScheme : public Scheme {
  public:
@@ -30,8 +30,9 @@ class UnscentedScheme : public Scheme {
       : Scheme(settings, mesh), track_(new_track()), unstudied_(why_no_mesh_study()) {}
 
   std::vector<std::string> description() const override {
+    const std::string why = unstudied_ + failure_;
     return {forward_->description(),
-            "mesh error: " + (unstudied_.empty() ? "from a mesh refined eightfold" : "not assessed, " + unstudied_)};
+            "mesh error: " + (why.empty() ? "from a mesh refined eightfold" : "not assessed, " + why)};
   }
 
   std::vector<Misfit> free_run(const FreeFrameVisitor& visit) override {
@@ -75,6 +76,7 @@ class UnscentedScheme : public Scheme {
     if (study_.valid()) study_.wait();
     study_ = {};
     shift_.resize(0);
+    failure_.clear();
     last_study_ = 0;
     complete_ = true;
     past_ = {};
@@ -241,8 +243,9 @@ class UnscentedScheme : public Scheme {
       try {
         study_.get();
         shift_ = studied_.believed(track_->filter().misfit_scale());
+        failure_.clear();
       } catch (const std::exception& error) {
-        unstudied_ = error.what();
+        failure_ = error.what();
       }
     }
     if (study_.valid() || !unstudied_.empty() || more_follow() || track_->start().motion ||
@@ -271,6 +274,7 @@ class UnscentedScheme : public Scheme {
   std::unique_ptr<Revisit> revisit_;  ///< under way
 
   std::string unstudied_;                  ///< why the mesh's error is not assessed; empty: it is
+  std::string failure_;                    ///< of the last study; more frames may settle the next
   std::unique_ptr<MeshError> mesh_error_;  ///< the study's own; only its thread touches it
   MeshError::Answer studied_;              ///< the same
   Eigen::VectorXd shift_;                  ///< estimate less truth because of the mesh; empty: not known yet

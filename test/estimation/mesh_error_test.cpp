@@ -41,6 +41,16 @@ TEST(MeshError, OfACoarseMeshIsCorrectedAndInTheInterval) {
   EXPECT_LT(std::abs(value(studied) - kTruth), 0.5 * std::abs(value(plain) - kTruth));
 }
 
+TEST(MeshError, IsInTheIntervalOfAShortRecordingToo) {
+  Estimator studied(settings(true), coarse());
+  step_through(studied, recording(5));
+  const ParameterEstimate& p = studied.estimate().parameters.front();
+  std::printf("five frames: E %+.2f %% off, 95 %% %+.2f..%+.2f %%\n", 100.0 * (p.mean / kTruth - 1.0),
+              100.0 * (p.lower95 / kTruth - 1.0), 100.0 * (p.upper95 / kTruth - 1.0));
+  EXPECT_TRUE(holds(p, kTruth));
+  EXPECT_LT(p.upper95 / p.lower95, 1.2);
+}
+
 TEST(MeshError, IsSaidToBeAssessedOrNot) {
   EXPECT_NE(Estimator(settings(true), bar_mesh()).description().back().find("refined eightfold"), std::string::npos);
   EXPECT_NE(Estimator(settings(false), bar_mesh()).description().back().find("asks not to"), std::string::npos);

@@ -16,8 +16,8 @@ struct DiagnosisTexts {
   std::vector<std::pair<std::string, std::string>> versions;
 };
 
-/// `diagnosis.json`: verdict, set, best, candidates[], where, when, how_much, residual, steps[], next_experiment, final. A number
-/// that does not exist is null. Everything but `seconds` is the same for the same input.
+/// `diagnosis.json`: verdict, set, best, candidates[], where, when, how_much, residual, steps[], next_experiment, final. A
+/// number that does not exist is null. Everything but `seconds` is the same for the same input.
 std::string diagnosis_json(const Diagnosis& diagnosis);
 
 /// `report.html`: one page that needs no network; as report_html.
