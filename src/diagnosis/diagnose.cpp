@@ -7,6 +7,7 @@
 #include "tissue_stiffness/diagnosis/missing_force.hpp"
 #include "tissue_stiffness/diagnosis/residual_views.hpp"
 #include "tissue_stiffness/effects/registry.hpp"
+#include "tissue_stiffness/estimation/mesh_error.hpp"
 #include "tissue_stiffness/estimation/posterior.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
@@ -80,6 +81,27 @@ BestExplanation best_of(const Fitted& model, const Finding& finding) {
   return {best.effects, 1.0 - best.cost / model.rows.error.squaredNorm(), best.held_out_rms};
 }
 
+// Of a linear model its estimator finds this out, and corrects E.
+Eigen::MatrixXd doubt_of_nonlinear(const Fitted& fitted, const Recording& recording) {
+  const Model& model = fitted.study->model();
+  const Eigen::VectorXd& w = fitted.fit.w;
+  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(w.size(), w.size());
+  if (!model.nonlinear() || !model.settings().mesh.discretisation_error || !MeshError::why_not(model).empty()) return none;
+  MeshError::Question question{recording.frames,
+                               w,
+                               fitted.fit.covariance.diagonal().cwiseSqrt(),
+                               model.prior_std(),
+                               recording.first_stamp + model.settings().time.start,
+                               recording.first_stamp,
+                               {}};
+  for (const auto& [topic, course] : model.courses()) question.courses.emplace(topic, *course);
+  try {
+    return mesh_doubt(model, MeshError(model.settings(), model.mesh()).study(question).shift, 1.0);
+  } catch (const NumericalError&) {
+    return none;
+  }
+}
+
 // The model's parameters as the best explanation has them: without it they make up for what is missing.
 Eigen::VectorXd believed(const Fitted& model, const Finding& finding) {
   if (finding.verdict != "missing") return model.fit.w;
@@ -134,7 +156,8 @@ Diagnosis diagnose(const ModelSettings& settings, const TetMesh& mesh, const Rec
     finding = look(model, {}, options, finding.by_mesh);
     out.final_verdict = finding.verdict;
   }
-  out.estimate = summarise(model.study->model().free_parameters(), model.fit.w, model.fit.covariance);
+  out.estimate = summarise(model.study->model().free_parameters(), model.fit.w,
+                           model.fit.covariance + doubt_of_nonlinear(model, recording));
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
   return out;
 }

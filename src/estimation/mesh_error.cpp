@@ -24,7 +24,6 @@ constexpr double kSettled = 0.1;      // of the shift
 constexpr double kNegligible = 1e-5;  // prior standard deviations
 constexpr double kLongestStep = 0.1;  // prior standard deviations at once
 constexpr double kTelling = 0.1;      // mean square of a mesh's misfit in sigmas that a recording would show
-constexpr double kShiftDoubt = 0.5;   // of the mesh's effect, once it is corrected for
 constexpr int kMostNodes = 17000;     // refined eightfold: what still factorises within half a minute
 constexpr double kMemory = 0.4e-3;    // GB for each of them
 constexpr double kMostMemory = 0.5;   // of what is available
@@ -37,6 +36,11 @@ double available_memory() {
     if (name == "MemAvailable:") return 1e-6 * kilobytes;
   }
   return std::numeric_limits<double>::infinity();
+}
+
+BasisOptions of_linear_part(BasisOptions basis) {
+  basis.nonlinear = BasisOptions::Nonlinear::left_out;
+  return basis;
 }
 
 void drive(const MeshError::Question& question, Model& model) {
@@ -75,7 +79,7 @@ TetMesh finer(const TetMesh& mesh, const MeshSettings& settings) {
   return refine(smooth);
 }
 
-Eigen::MatrixXd mesh_doubt(const Model& model, const Eigen::VectorXd& shift) {
+Eigen::MatrixXd mesh_doubt(const Model& model, const Eigen::VectorXd& shift, double left) {
   Eigen::VectorXd modulus = Eigen::VectorXd::Zero(shift.size());
   for (Eigen::Index i = 0; i < shift.size(); ++i) {
     if (is_young_modulus(model.free_parameters()[static_cast<std::size_t>(i)].name)) modulus[i] = 1.0;
@@ -83,7 +87,7 @@ Eigen::MatrixXd mesh_doubt(const Model& model, const Eigen::VectorXd& shift) {
   const double mean_square = modulus.dot(shift.cwiseAbs2()) / std::max(1.0, modulus.sum());
   Eigen::MatrixXd doubt = shift * shift.transpose();
   doubt.diagonal().array() += modulus.array() * (mean_square - shift.array().square()).max(0.0);
-  return kShiftDoubt * kShiftDoubt * doubt;
+  return left * left * doubt;
 }
 
 struct MeshError::Studies {
@@ -95,8 +99,8 @@ struct MeshError::Studies {
           const std::map<std::string, Region>& regions, const BasisOptions& basis, const TetMesh& refined)
       : coarse(settings, mesh, regions),
         fine(known, refined, refine(regions, mesh, refined)),
-        coarse_runs(coarse, basis),
-        fine_runs(fine),
+        coarse_runs(coarse, of_linear_part(basis)),
+        fine_runs(fine, of_linear_part({})),
         operators(make_observation_operators(coarse)) {}
 };
 
@@ -108,6 +112,13 @@ std::string MeshError::why_not(const TetMesh& mesh) {
   std::snprintf(text, sizeof text, "it needs %.1f GB of memory, more than half of the %.1f GB that are free", needed,
                 available);
   return text;
+}
+
+std::string MeshError::why_not(const Model& model) {
+  for (const Model::Part& part : model.parts()) {
+    if (part.effect->nonlinear() && !part.effect->has_finite_form()) return part.label + " has no linear form";
+  }
+  return why_not(model.mesh());
 }
 
 MeshError::MeshError(const ModelSettings& settings, const TetMesh& mesh)

@@ -32,7 +32,9 @@ class UnscentedScheme : public Scheme {
   std::vector<std::string> description() const override {
     const std::string why = unstudied_ + failure_;
     return {forward_->description(),
-            "mesh error: " + (why.empty() ? "from a mesh refined eightfold" : "not assessed, " + why)};
+            "mesh error: " + (!why.empty()          ? "not assessed, " + why
+                              : model_->nonlinear() ? "doubted as that of its linear form, from a mesh refined eightfold"
+                                                    : "from a mesh refined eightfold")};
   }
 
   std::vector<Misfit> free_run(const FreeFrameVisitor& visit) override {
@@ -206,7 +208,11 @@ class UnscentedScheme : public Scheme {
     result.misfit.nis = innovation.nis;
     result.misfit.dof = innovation.dof;
     const Eigen::VectorXd shift = shift_.size() > 0 ? shift_ : Eigen::VectorXd::Zero(w.size());
-    estimate_ = summarise(model_->free_parameters(), w - shift, track_->covariance() + mesh_doubt(*model_, shift));
+    if (model_->nonlinear()) {  // the shift is that of its linear form
+      estimate_ = summarise(model_->free_parameters(), w, track_->covariance() + mesh_doubt(*model_, shift, 1.0));
+    } else {
+      estimate_ = summarise(model_->free_parameters(), w - shift, track_->covariance() + mesh_doubt(*model_, shift));
+    }
     estimate_.time = frame.time;
     validity_.add(result.misfit);
     watch_.add(result.misfit.rms_sigma * result.misfit.rms_sigma, filter);
@@ -229,8 +235,7 @@ class UnscentedScheme : public Scheme {
 
   std::string why_no_mesh_study() const {
     if (!model_->settings().mesh.discretisation_error) return "the model file asks not to";
-    if (model_->nonlinear()) return "the model is not linear";
-    return MeshError::why_not(model_->mesh());
+    return MeshError::why_not(*model_);
   }
 
   bool study_is_over() const {

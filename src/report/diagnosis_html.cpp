@@ -63,7 +63,7 @@ std::string modulus_answer(const std::string& name, const Diagnosis& d) {
     comma = ", ";
   }
   if (text.empty()) return "";
-  if (!interval.empty() && d.estimate.state == EstimateState::no_data) interval += ", of the noise alone";
+  if (!interval.empty() && d.estimate.state == EstimateState::no_data) interval += ", of the fit itself";
   if (d.final_verdict != "adequate") interval += std::string(interval.empty() ? "" : "; ") + "biased by what is missing";
   return "<p class=\"answer\"><span class=\"name\">" + escape_html(name) + "</span><b>" + escape_html(text) +
          "</b> <span class=\"interval\">" + escape_html(interval) + "</span></p>";

@@ -293,10 +293,10 @@ TEST(DiagnosisHtml, TellsTheStoryInOrder) {
   }
   EXPECT_EQ(data_of(page).at("diagnosis"), json::parse(diagnosis_json(example_diagnosis())));
   EXPECT_EQ(page.find("<own>"), std::string::npos);
-  EXPECT_EQ(page.find("of the noise alone"), std::string::npos);
+  EXPECT_EQ(page.find("of the fit itself"), std::string::npos);
   Diagnosis fitted = example_diagnosis();
   fitted.estimate.state = EstimateState::no_data;
-  EXPECT_NE(diagnosis_html(fitted, texts, {}).find("95 %: 11.85 to 12.15 kPa, of the noise alone"), std::string::npos);
+  EXPECT_NE(diagnosis_html(fitted, texts, {}).find("95 %: 11.85 to 12.15 kPa, of the fit itself"), std::string::npos);
   EXPECT_FALSE(json::parse(diagnosis_json(fitted))["final"].contains("state"));
 }
 

@@ -20,17 +20,21 @@ namespace tissue_stiffness {
 /// Nodes keep their numbers.
 TetMesh finer(const TetMesh& mesh, const MeshSettings& settings);
 
-/// Covariance of what stays wrong after a correction by `shift` (filter coordinates): half of it, 1 sigma, and half of the
-/// moduli's rms shift for a modulus whose own happens to be small.
-Eigen::MatrixXd mesh_doubt(const Model& model, const Eigen::VectorXd& shift);
+constexpr double kLeftByCorrection = 0.5;  // of the mesh's effect, 1 sigma
+
+/// Covariance of what stays wrong (filter coordinates): `left` of the shift, 1 sigma, and of the moduli's rms shift for a
+/// modulus whose own happens to be small. After a correction by the shift half of it; without one, all.
+Eigen::MatrixXd mesh_doubt(const Model& model, const Eigen::VectorXd& shift, double left = kLeftByCorrection);
 
 /// What the mesh does to the parameters. The model runs once more on a mesh with every tetrahedron cut into eight and flat
 /// facets bent to the smooth surface they stand for; fitted to that run, the estimator's own mesh would be off by a shift.
-/// Linear models of moderate size only: `why_not` says what stands against it.
+/// Of a nonlinear model only what is linear in it runs: its shift is a measure of the doubt, no correction. `why_not` says
+/// what stands against a study.
 class MeshError {
  public:
   /// Empty when the study can be made.
   static std::string why_not(const TetMesh& mesh);
+  static std::string why_not(const Model& model);
 
   /// Throws as Model does.
   MeshError(const ModelSettings& settings, const TetMesh& mesh);

@@ -48,6 +48,7 @@ class Model {
   const std::vector<FreeParameter>& free_parameters() const { return free_; }
   const std::vector<LoadInput>& load_inputs() const { return inputs_; }
   CourseTable& courses() { return courses_; }
+  const CourseTable& courses() const { return courses_; }
   bool nonlinear() const { return nonlinear_; }
   const ModelSettings& settings() const { return settings_; }
 

@@ -89,8 +89,7 @@ struct Diagnosis {
   std::vector<std::string> final_effects;
   std::vector<std::string> entries;  ///< of the accepted effects, for the model file
   double seconds = 0.0;
-  Estimate
-      estimate;  ///< of the last step's model: an estimator's; in state no_data the fit's own, whose interval is noise's
+  Estimate estimate;  ///< of the last step's model: an estimator's; in state no_data the fit's own
 };
 
 }  // namespace tissue_stiffness
