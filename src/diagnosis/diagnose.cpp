@@ -86,17 +86,11 @@ Eigen::MatrixXd doubt_of_nonlinear(const Fitted& fitted, const Recording& record
   const Model& model = fitted.study->model();
   const Eigen::VectorXd& w = fitted.fit.w;
   const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(w.size(), w.size());
-  if (!model.nonlinear() || !model.settings().mesh.discretisation_error || !MeshError::why_not(model).empty()) return none;
-  MeshError::Question question{recording.frames,
-                               w,
-                               fitted.fit.covariance.diagonal().cwiseSqrt(),
-                               model.prior_std(),
-                               recording.first_stamp + model.settings().time.start,
-                               recording.first_stamp,
-                               {}};
-  for (const auto& [topic, course] : model.courses()) question.courses.emplace(topic, *course);
+  if (!model.nonlinear() || !MeshError::why_not(model).empty()) return none;
+  const MeshError::Question question(model, recording.frames, w, fitted.fit.covariance.diagonal().cwiseSqrt(),
+                                     model.prior_std());
   try {
-    return mesh_doubt(model, MeshError(model.settings(), model.mesh()).study(question).shift, 1.0);
+    return mesh_doubt(model, MeshError(model.settings(), model.mesh()).study(question).shift);
   } catch (const NumericalError&) {
     return none;
   }

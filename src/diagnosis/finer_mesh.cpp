@@ -15,9 +15,7 @@ constexpr double kSpread = 0.02;  // prior standard deviations: the finer mesh's
 Eigen::VectorXd finer_mesh(const Fitted& base) {
   Eigen::VectorXd out = Eigen::VectorXd::Zero(base.rows.error.size());
   const Model& model = base.study->model();
-  if (!model.settings().mesh.discretisation_error || model.nonlinear() || !MeshError::why_not(model.mesh()).empty()) {
-    return out;
-  }
+  if (model.nonlinear() || !MeshError::why_not(model).empty()) return out;
   const TetMesh mesh = finer(model.mesh(), model.settings().mesh);
   const Study fine(model.settings(), mesh, refine(model.regions(), model.mesh(), mesh), base.study->recording());
   const BatchFit fit = fine.fit(base.fit.w, kSpread * model.prior_std());

@@ -103,18 +103,11 @@ double MapLevel::evidence_over(const MapLevel& coarser) const {
 const MapLevel::MeshStudy& MapLevel::mesh_study() {
   if (study_) return *study_;
   study_.emplace();
-  study_->why_not =
-      model_.settings().mesh.discretisation_error ? MeshError::why_not(model_.mesh()) : "the model file asks not to";
+  study_->why_not = MeshError::why_not(model_);
   if (!study_->why_not.empty()) return *study_;
   question_.checkpoint();
-  MeshError::Question q{question_.frames,
-                        filter_->anchor(),
-                        filter_->spread(),
-                        prior_covariance_.diagonal().cwiseSqrt(),
-                        question_.first_stamp + model_.settings().time.start,
-                        question_.first_stamp,
-                        {}};
-  for (const auto& [topic, course] : model_.courses()) q.courses.emplace(topic, *course);
+  const MeshError::Question q(model_, question_.frames, filter_->anchor(), filter_->spread(),
+                              prior_covariance_.diagonal().cwiseSqrt());
   try {
     const PatchModel known = with_patches(base_, patches_, log_modulus(), PatchModuli::known);
     study_->answer = MeshError(model_.settings(), known.settings, model_.mesh(), model_.regions(), basis_).study(q);

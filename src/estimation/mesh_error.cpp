@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <fstream>
 #include <limits>
+#include <utility>
 
 #include "tissue_stiffness/estimation/ensemble.hpp"
 #include "tissue_stiffness/filter/anchored_filter.hpp"
@@ -20,13 +21,14 @@ namespace {
 
 constexpr int kMostIterations = 12;
 constexpr int kMostCuts = 4;
-constexpr double kSettled = 0.1;      // of the shift
-constexpr double kNegligible = 1e-5;  // prior standard deviations
-constexpr double kLongestStep = 0.1;  // prior standard deviations at once
-constexpr double kTelling = 0.1;      // mean square of a mesh's misfit in sigmas that a recording would show
-constexpr int kMostNodes = 17000;     // refined eightfold: what still factorises within half a minute
-constexpr double kMemory = 0.4e-3;    // GB for each of them
-constexpr double kMostMemory = 0.5;   // of what is available
+constexpr double kSettled = 0.1;           // of the shift
+constexpr double kNegligible = 1e-5;       // prior standard deviations
+constexpr double kLongestStep = 0.1;       // prior standard deviations at once
+constexpr double kTelling = 0.1;           // mean square of a mesh's misfit in sigmas that a recording would show
+constexpr double kLeftByCorrection = 0.5;  // of the mesh's effect
+constexpr int kMostNodes = 17000;          // refined eightfold: what still factorises within half a minute
+constexpr double kMemory = 0.4e-3;         // GB for each of them
+constexpr double kMostMemory = 0.5;        // of what is available
 
 // What the system could give [GB]; without bound where it does not say.
 double available_memory() {
@@ -79,7 +81,8 @@ TetMesh finer(const TetMesh& mesh, const MeshSettings& settings) {
   return refine(smooth);
 }
 
-Eigen::MatrixXd mesh_doubt(const Model& model, const Eigen::VectorXd& shift, double left) {
+Eigen::MatrixXd mesh_doubt(const Model& model, const Eigen::VectorXd& shift) {
+  const double left = model.nonlinear() ? 1.0 : kLeftByCorrection;
   Eigen::VectorXd modulus = Eigen::VectorXd::Zero(shift.size());
   for (Eigen::Index i = 0; i < shift.size(); ++i) {
     if (is_young_modulus(model.free_parameters()[static_cast<std::size_t>(i)].name)) modulus[i] = 1.0;
@@ -115,6 +118,7 @@ std::string MeshError::why_not(const TetMesh& mesh) {
 }
 
 std::string MeshError::why_not(const Model& model) {
+  if (!model.settings().mesh.discretisation_error) return "the model file asks not to";
   for (const Model::Part& part : model.parts()) {
     if (part.effect->nonlinear() && !part.effect->has_finite_form()) return part.label + " has no linear form";
   }
@@ -127,6 +131,17 @@ MeshError::MeshError(const ModelSettings& settings, const ModelSettings& fine, c
                      const std::map<std::string, Region>& regions, const BasisOptions& basis)
     : studies_(std::make_unique<Studies>(settings, fine, mesh, regions, basis, finer(mesh, settings.mesh))) {}
 MeshError::~MeshError() = default;
+
+MeshError::Question::Question(const Model& model, std::vector<Frame> seen, Eigen::VectorXd at, Eigen::VectorXd around,
+                              Eigen::VectorXd prior)
+    : frames(std::move(seen)),
+      w(std::move(at)),
+      spread(std::move(around)),
+      prior_std(std::move(prior)),
+      start(model.first_stamp() + model.settings().time.start),
+      first_stamp(model.first_stamp()) {
+  for (const auto& [topic, course] : model.courses()) courses.emplace(topic, *course);
+}
 
 Eigen::VectorXd MeshError::Answer::believed(double mean_square) const {
   const double seen = mean_square - 1.0;

@@ -27,7 +27,7 @@ constexpr double kInvalidSigmas = 10.0;     // rms error over noise at which the
 class UnscentedScheme : public Scheme {
  public:
   UnscentedScheme(const ModelSettings& settings, const TetMesh& mesh)
-      : Scheme(settings, mesh), track_(new_track()), unstudied_(why_no_mesh_study()) {}
+      : Scheme(settings, mesh), track_(new_track()), unstudied_(MeshError::why_not(*model_)) {}
 
   std::vector<std::string> description() const override {
     const std::string why = unstudied_ + failure_;
@@ -208,11 +208,9 @@ class UnscentedScheme : public Scheme {
     result.misfit.nis = innovation.nis;
     result.misfit.dof = innovation.dof;
     const Eigen::VectorXd shift = shift_.size() > 0 ? shift_ : Eigen::VectorXd::Zero(w.size());
-    if (model_->nonlinear()) {  // the shift is that of its linear form
-      estimate_ = summarise(model_->free_parameters(), w, track_->covariance() + mesh_doubt(*model_, shift, 1.0));
-    } else {
-      estimate_ = summarise(model_->free_parameters(), w - shift, track_->covariance() + mesh_doubt(*model_, shift));
-    }
+    const Eigen::VectorXd mean =
+        model_->nonlinear() ? w : Eigen::VectorXd(w - shift);  // its linear form's shift corrects nothing
+    estimate_ = summarise(model_->free_parameters(), mean, track_->covariance() + mesh_doubt(*model_, shift));
     estimate_.time = frame.time;
     validity_.add(result.misfit);
     watch_.add(result.misfit.rms_sigma * result.misfit.rms_sigma, filter);
@@ -231,11 +229,6 @@ class UnscentedScheme : public Scheme {
       if (p.std > kConverged * scale) return track_->start().motion ? EstimateState::drifting : EstimateState::converging;
     }
     return validity_.invalid() ? EstimateState::model_invalid : EstimateState::converged;
-  }
-
-  std::string why_no_mesh_study() const {
-    if (!model_->settings().mesh.discretisation_error) return "the model file asks not to";
-    return MeshError::why_not(*model_);
   }
 
   bool study_is_over() const {
@@ -258,9 +251,7 @@ class UnscentedScheme : public Scheme {
       return;
     last_study_ = frames_.size();
     const AnchoredFilter& filter = track_->filter();
-    MeshError::Question question{
-        frames_, filter.mean(), filter.spread(), model_->prior_std(), start(), model_->first_stamp(), {}};
-    for (const auto& [topic, course] : model_->courses()) question.courses.emplace(topic, *course);
+    MeshError::Question question(*model_, frames_, filter.mean(), filter.spread(), model_->prior_std());
     const auto study = [this, question = std::move(question)] {
       if (mesh_error_ == nullptr) mesh_error_ = std::make_unique<MeshError>(model_->settings(), model_->mesh());
       studied_ = mesh_error_->study(question);

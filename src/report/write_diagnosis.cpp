@@ -22,9 +22,9 @@ std::string millimetres(double metres) {
 std::string diagnosis_sentence(const Diagnosis& d) {
   if (d.verdict == "adequate") return "The model is adequate: what it leaves is noise.";
   if (d.verdict == "numerics") return "The mesh is too coarse to tell: a finer one would change more than any effect.";
-  if (d.set.empty()) return "The error has structure, but no effect of the library explains it.";
+  if (d.best.effects.empty()) return "The error has structure, but no effect of the library explains it.";
   const bool together = d.best.effects.size() > 1;
-  const std::vector<std::string> found = d.best.effects.empty() ? std::vector<std::string>{d.set.front()} : d.best.effects;
+  const std::vector<std::string>& found = d.best.effects;
   std::string text = d.verdict == "missing" ? "Missing: " : "Not explained; nearest: ";
   text += effect_list(found) + (together ? " together" : " (" + effect_sign(found.front()) + ")") +
           (together ? ". They" : ". It") + " would remove " + short_number(100.0 * d.best.explained, 3) +

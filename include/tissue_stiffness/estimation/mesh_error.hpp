@@ -20,11 +20,9 @@ namespace tissue_stiffness {
 /// Nodes keep their numbers.
 TetMesh finer(const TetMesh& mesh, const MeshSettings& settings);
 
-constexpr double kLeftByCorrection = 0.5;  // of the mesh's effect, 1 sigma
-
-/// Covariance of what stays wrong (filter coordinates): `left` of the shift, 1 sigma, and of the moduli's rms shift for a
-/// modulus whose own happens to be small. After a correction by the shift half of it; without one, all.
-Eigen::MatrixXd mesh_doubt(const Model& model, const Eigen::VectorXd& shift, double left = kLeftByCorrection);
+/// Covariance of what stays wrong (filter coordinates): of a linear model, which the shift corrects, half of it, 1 sigma,
+/// and half of the moduli's rms shift for a modulus whose own happens to be small; of a nonlinear one, all of both.
+Eigen::MatrixXd mesh_doubt(const Model& model, const Eigen::VectorXd& shift);
 
 /// What the mesh does to the parameters. The model runs once more on a mesh with every tetrahedron cut into eight and flat
 /// facets bent to the smooth surface they stand for; fitted to that run, the estimator's own mesh would be off by a shift.
@@ -32,7 +30,7 @@ Eigen::MatrixXd mesh_doubt(const Model& model, const Eigen::VectorXd& shift, dou
 /// what stands against a study.
 class MeshError {
  public:
-  /// Empty when the study can be made.
+  /// Empty when the study can be made: of such a mesh; of a model, whose file may ask not to.
   static std::string why_not(const TetMesh& mesh);
   static std::string why_not(const Model& model);
 
@@ -55,6 +53,10 @@ class MeshError {
     double start = 0.0;         ///< [s]
     double first_stamp = 0.0;   ///< of the recording [s]
     std::map<std::string, Course> courses;
+
+    /// About a model that has its loads.
+    Question(const Model& model, std::vector<Frame> seen, Eigen::VectorXd at, Eigen::VectorXd around,
+             Eigen::VectorXd prior);
   };
   struct Answer {
     /// Estimate less truth in filter coordinates if the finer mesh were the truth: the fit of the coarse model to the fine

@@ -67,13 +67,14 @@ struct MissingForce {
   std::string words;
 };
 
-/// Which physics a model misses. `verdict`: adequate, missing, numerics, unexplained.
 /// What explains most: an effect, or two that are missing together.
 struct BestExplanation {
   std::vector<std::string> effects;                                ///< empty: nothing was refitted
   double explained = 0.0;                                          ///< share of the residual's sum of squares
   double held_out_rms = std::numeric_limits<double>::quiet_NaN();  ///< [m]
 };
+
+/// Which physics a model misses. `verdict`: adequate, missing, numerics, unexplained.
 struct Diagnosis {
   std::string verdict;
   std::vector<std::string> set;  ///< the winner and what the data cannot tell from it
