@@ -67,7 +67,8 @@ inline std::vector<int> all_elements(const Discretisation& fem) {
 /// Small-strain stiffness of the whole body [N/m].
 inline SparseMatrix linear_stiffness(const Discretisation& fem, const Lame& lame) {
   const Eigen::VectorXd ones = Eigen::VectorXd::Ones(fem.element_count());
-  return lame.lambda * fem.volumetric_stiffness(ones) + lame.mu * fem.shear_stiffness(ones);
+  const SparseMatrix volumetric = fem.volumetric_stiffness(ones);
+  return lame.lambda * volumetric + lame.mu * fem.shear_stiffness(volumetric);
 }
 
 /// A body without damping under a constant load, linear or neo-Hookean.

@@ -11,7 +11,7 @@ class AddedMass : public Effect {
     const Region& region = context.region(arguments.at("region"));
     SparseMatrix mass = region.facets.empty() ? on_nodes(region, context.fem) : facet_mass(context.mesh, region.facets);
     mass *= 3.0 / mass.sum();
-    unit_mass_ = std::make_shared<SparseMatrix>(std::move(mass));
+    unit_mass_ = shared(std::move(mass));
   }
 
   void linear_terms(LinearTerms& out) const override {

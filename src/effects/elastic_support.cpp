@@ -21,7 +21,7 @@ class ElasticSupport : public Effect {
     if (!is_fixed(context.settings, name.as_text())) {
       throw InputError(name.path(), name.shown(), "the region of a `fixed` effect");
     }
-    unit_ = std::make_shared<SparseMatrix>(facet_mass(context.mesh, region.facets));
+    unit_ = shared(facet_mass(context.mesh, region.facets));
     nodes_ = region.nodes;
   }
 

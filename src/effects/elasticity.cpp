@@ -14,15 +14,16 @@ class Elasticity : public Effect {
     finite_strain_ = arguments.at("law").as_choice({"linear", "neo_hookean"}) == "neo_hookean";
     Eigen::VectorXd inside = Eigen::VectorXd::Zero(context.fem.element_count());
     for (const int e : elements_) inside[e] = 1.0;
-    const auto kept = [&](SparseMatrix part) {
+    const auto kept = [&](SparseMatrix&& part) {
       if (arguments.has("region")) {  // of many regions each keeps its own entries alone
         part.prune(0.0);
         part.data().squeeze();
       }
-      return std::make_shared<SparseMatrix>(std::move(part));
+      return shared(std::move(part));
     };
-    volumetric_ = kept(context.fem.volumetric_stiffness(inside));
-    shear_ = kept(context.fem.shear_stiffness(inside));
+    SparseMatrix volumetric = context.fem.volumetric_stiffness(inside);
+    shear_ = kept(context.fem.shear_stiffness(volumetric));
+    volumetric_ = kept(std::move(volumetric));
   }
 
   void linear_terms(LinearTerms& out) const override {

@@ -22,9 +22,9 @@ std::vector<int> loose_surface(const EffectContext& context) {
 class Foundation : public Effect {
  public:
   Foundation(const Value& arguments, const EffectContext& context)
-      : unit_(std::make_shared<SparseMatrix>(
-            facet_mass(context.mesh, arguments.has("region") ? find_surface(arguments.at("region"), context.regions).facets
-                                                             : loose_surface(context)))) {}
+      : unit_(shared(facet_mass(context.mesh, arguments.has("region")
+                                                  ? find_surface(arguments.at("region"), context.regions).facets
+                                                  : loose_surface(context)))) {}
 
   void linear_terms(LinearTerms& out) const override {
     out.stiffness.push_back({unit_, [](const Parameters& p) { return p[0]; }});

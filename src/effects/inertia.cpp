@@ -7,7 +7,7 @@ namespace {
 class Inertia : public Effect {
  public:
   Inertia(const Value&, const EffectContext& context)
-      : unit_mass_(std::make_shared<SparseMatrix>(context.fem.mass(Eigen::VectorXd::Ones(context.fem.element_count())))) {}
+      : unit_mass_(shared(context.fem.mass(Eigen::VectorXd::Ones(context.fem.element_count())))) {}
 
   void linear_terms(LinearTerms& out) const override {
     out.mass.push_back({unit_mass_, [](const Parameters& p) { return p[0]; }});

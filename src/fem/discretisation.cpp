@@ -1,8 +1,12 @@
 #include "tissue_stiffness/fem/discretisation.hpp"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <sstream>
 
 #include "tissue_stiffness/types/error.hpp"
@@ -41,43 +45,88 @@ std::vector<QuadraturePoint> mass_rule() {
   return rule;
 }
 
-Eigen::Matrix3Xd element_nodes(const Eigen::Matrix3Xd& nodes, const Eigen::MatrixXi& elements, int e) {
-  Eigen::Matrix3Xd x(3, elements.rows());
-  for (Eigen::Index a = 0; a < elements.rows(); ++a) x.col(a) = nodes.col(elements(a, e));
-  return x;
+// The shape functions at the points of a rule, once for all elements.
+struct ShapeTable {
+  ShapeTable(int nodes, const std::vector<QuadraturePoint>& rule) {
+    for (const QuadraturePoint& point : rule) {
+      weights.push_back(point.weight);
+      shapes.push_back(tet_shape(nodes, point.rst));
+      derivatives.emplace_back(tet_shape_derivative(nodes, point.rst));
+    }
+  }
+  std::vector<double> weights;
+  std::vector<Eigen::VectorXd> shapes;
+  std::vector<Eigen::Matrix3Xd> derivatives;
+};
+
+// Rows: d/dr, d/ds, d/dt.
+Eigen::Matrix3d jacobian(const Eigen::Matrix3Xd& derivative, const Eigen::Matrix3Xd& nodes, const Eigen::MatrixXi& elements,
+                         int e) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (Eigen::Index a = 0; a < elements.rows(); ++a) {
+    sum.noalias() += derivative.col(a) * nodes.col(elements(a, e)).transpose();
+  }
+  return sum;
+}
+
+template <typename Work>
+void for_each(int count, const Work& work) {
+  constexpr int grain = 256;
+  tbb::parallel_for(tbb::blocked_range<int>(0, count, grain), [&](const tbb::blocked_range<int>& part) {
+    for (int i = part.begin(); i < part.end(); ++i) work(i);
+  });
 }
 
 }  // namespace
 
 Discretisation::Discretisation(const TetMesh& mesh)
     : node_count_(mesh.node_count()), elements_(mesh.tets), nodes_(mesh.nodes) {
-  compute_gradients(mesh);
+  compute_gradients();
+  list_corners();
   compute_pattern();
 }
 
-void Discretisation::compute_gradients(const TetMesh& mesh) {
+void Discretisation::compute_gradients() {
   const int n = nodes_per_element();
-  const std::vector<QuadraturePoint> rule = stiffness_rule(n);
-  points_ = static_cast<int>(rule.size());
+  const ShapeTable table(n, stiffness_rule(n));
+  points_ = static_cast<int>(table.weights.size());
   weights_.resize(points_, element_count());
   positions_.resize(3, static_cast<Eigen::Index>(points_) * element_count());
   gradients_.resize(static_cast<std::size_t>(3 * n * points_) * static_cast<std::size_t>(element_count()));
   for (int e = 0; e < element_count(); ++e) {
-    const Eigen::Matrix3Xd x = element_nodes(mesh.nodes, elements_, e);
     for (int q = 0; q < points_; ++q) {
-      const auto& point = rule[static_cast<std::size_t>(q)];
-      const Eigen::MatrixXd d = tet_shape_derivative(n, point.rst);
-      const Eigen::Matrix3d jacobian = d * x.transpose();  // rows: d/dr, d/ds, d/dt
-      const double determinant = jacobian.determinant();
+      const auto point = static_cast<std::size_t>(q);
+      const Eigen::Matrix3d j = jacobian(table.derivatives[point], nodes_, elements_, e);
+      const double determinant = j.determinant();
       if (!(determinant > 0.0)) {
+        Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+        for (int a = 0; a < 4; ++a) middle += nodes_.col(elements_(a, e)) / 4.0;
         std::ostringstream where;
-        where << "mesh: tetrahedron " << e << " at (" << x.leftCols<4>().rowwise().mean().transpose() << ") m";
+        where << "mesh: tetrahedron " << e << " at (" << middle.transpose() << ") m";
         throw InputError(where.str(), "a Jacobian of " + std::to_string(determinant), "positive");
       }
-      weights_(q, e) = point.weight * determinant;
-      positions_.col(static_cast<Eigen::Index>(e) * points_ + q) = x * tet_shape(n, point.rst);
+      weights_(q, e) = table.weights[point] * determinant;
+      auto position = positions_.col(static_cast<Eigen::Index>(e) * points_ + q);
+      position.setZero();
+      for (int a = 0; a < n; ++a) position += table.shapes[point][a] * nodes_.col(elements_(a, e));
       const Eigen::Index at = 3 * n * (static_cast<Eigen::Index>(e) * points_ + q);
-      Eigen::Map<Eigen::Matrix3Xd>(gradients_.data() + at, 3, n) = jacobian.inverse() * d;
+      Eigen::Map<Eigen::Matrix3Xd>(gradients_.data() + at, 3, n).noalias() = j.inverse() * table.derivatives[point];
+    }
+  }
+}
+
+void Discretisation::list_corners() {
+  const int n = nodes_per_element();
+  first_corner_.assign(static_cast<std::size_t>(node_count_) + 1, 0);
+  for (int e = 0; e < element_count(); ++e) {
+    for (int a = 0; a < n; ++a) ++first_corner_[static_cast<std::size_t>(elements_(a, e)) + 1];
+  }
+  std::partial_sum(first_corner_.begin(), first_corner_.end(), first_corner_.begin());
+  corners_.resize(static_cast<std::size_t>(element_count() * n));
+  std::vector<int> next = first_corner_;
+  for (int e = 0; e < element_count(); ++e) {
+    for (int a = 0; a < n; ++a) {
+      corners_[static_cast<std::size_t>(next[static_cast<std::size_t>(elements_(a, e))]++)] = e * n + a;
     }
   }
 }
@@ -85,95 +134,100 @@ void Discretisation::compute_gradients(const TetMesh& mesh) {
 void Discretisation::compute_pattern() {
   const int n = nodes_per_element();
   std::vector<std::vector<int>> neighbours(static_cast<std::size_t>(node_count_));
-  for (int e = 0; e < element_count(); ++e) {
-    for (int b = 0; b < n; ++b) {
-      auto& list = neighbours[static_cast<std::size_t>(elements_(b, e))];
+  for_each(node_count_, [&](int node) {
+    auto& list = neighbours[static_cast<std::size_t>(node)];
+    for_each_corner(node, [&](int e, int) {
       for (int a = 0; a < n; ++a) list.push_back(elements_(a, e));
-    }
-  }
-  Eigen::VectorXi sizes(3 * node_count_);
-  for (int b = 0; b < node_count_; ++b) {
-    auto& list = neighbours[static_cast<std::size_t>(b)];
-    if (list.empty()) list.push_back(b);
+    });
+    if (list.empty()) list.push_back(node);
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
-    sizes.segment<3>(3 * b).setConstant(static_cast<int>(3 * list.size()));
-  }
+  });
   pattern_.resize(3 * node_count_, 3 * node_count_);
-  pattern_.reserve(sizes);
-  for (int b = 0; b < node_count_; ++b) {
+  int* outer = pattern_.outerIndexPtr();
+  outer[0] = 0;
+  for (int column = 0; column < 3 * node_count_; ++column) {
+    outer[column + 1] = outer[column] + static_cast<int>(3 * neighbours[static_cast<std::size_t>(column / 3)].size());
+  }
+  pattern_.resizeNonZeros(outer[3 * node_count_]);
+  pattern_.coeffs().setZero();
+  slots_.resize(static_cast<std::size_t>(element_count() * n * n));
+  for_each(node_count_, [&](int node) {
+    const auto& list = neighbours[static_cast<std::size_t>(node)];
     for (int j = 0; j < 3; ++j) {
-      for (const int a : neighbours[static_cast<std::size_t>(b)]) {
-        for (int i = 0; i < 3; ++i) pattern_.insert(3 * a + i, 3 * b + j) = 0.0;
+      int* to = pattern_.innerIndexPtr() + outer[3 * node + j];
+      for (const int other : list) {
+        for (int i = 0; i < 3; ++i) *to++ = 3 * other + i;
       }
     }
-  }
-  pattern_.makeCompressed();
-  slots_.resize(static_cast<std::size_t>(element_count() * n * n));
-  for (int e = 0; e < element_count(); ++e) {
-    for (int b = 0; b < n; ++b) {
-      const auto& list = neighbours[static_cast<std::size_t>(elements_(b, e))];
+    for_each_corner(node, [&](int e, int b) {
       for (int a = 0; a < n; ++a) {
         const auto at = std::lower_bound(list.begin(), list.end(), elements_(a, e));
         slots_[static_cast<std::size_t>((e * n + b) * n + a)] = static_cast<int>(at - list.begin());
       }
-    }
-  }
+    });
+  });
+}
+
+// Every node sums its own columns, so that threads share nothing and the order of a sum does not depend on them.
+template <typename Block>
+SparseMatrix Discretisation::assemble(const Eigen::VectorXd& element_weight, const Block& block) const {
+  SparseMatrix result = pattern_;
+  for_each(node_count_, [&](int node) {
+    for_each_corner(node, [&](int e, int b) {
+      if (element_weight[e] == 0.0) return;
+      for (int a = 0; a < nodes_per_element(); ++a) add_block(result, e, a, b, element_weight[e] * block(e, a, b));
+    });
+  });
+  return result;
 }
 
 SparseMatrix Discretisation::mass(const Eigen::VectorXd& element_weight) const {
   const int n = nodes_per_element();
-  SparseMatrix result = pattern_;
-  const std::vector<QuadraturePoint> rule = mass_rule();
-  for (int e = 0; e < element_count(); ++e) {
-    if (element_weight[e] == 0.0) continue;
-    const Eigen::Matrix3Xd x = element_nodes(nodes_, elements_, e);
-    Eigen::MatrixXd local = Eigen::MatrixXd::Zero(n, n);
-    for (const auto& point : rule) {
-      const Eigen::VectorXd shape = tet_shape(n, point.rst);
-      const double jacobian = (tet_shape_derivative(n, point.rst) * x.transpose()).determinant();
-      local.noalias() += point.weight * jacobian * element_weight[e] * shape * shape.transpose();
-    }
-    for (int b = 0; b < n; ++b) {
-      for (int a = 0; a < n; ++a) add_block(result, e, a, b, local(a, b) * Eigen::Matrix3d::Identity());
+  const ShapeTable table(n, mass_rule());
+  const auto points = static_cast<Eigen::Index>(table.weights.size());
+  Eigen::MatrixXd products(n * n, points), determinants(points, element_count());
+  for (Eigen::Index q = 0; q < points; ++q) {
+    const auto at = static_cast<std::size_t>(q);
+    const Eigen::MatrixXd product = table.weights[at] * table.shapes[at] * table.shapes[at].transpose();
+    products.col(q) = Eigen::Map<const Eigen::VectorXd>(product.data(), product.size());
+    for (int e = 0; e < element_count(); ++e) {
+      determinants(q, e) = jacobian(table.derivatives[at], nodes_, elements_, e).determinant();
     }
   }
-  return result;
+  const Eigen::MatrixXd local = products * determinants;
+  return assemble(element_weight, [&](int e, int a, int b) -> Eigen::Matrix3d {
+    return local(n * b + a, e) * Eigen::Matrix3d::Identity();
+  });
 }
 
 SparseMatrix Discretisation::volumetric_stiffness(const Eigen::VectorXd& element_weight) const {
-  const int n = nodes_per_element();
-  SparseMatrix result = pattern_;
-  for (int e = 0; e < element_count(); ++e) {
-    if (element_weight[e] == 0.0) continue;
+  return assemble(element_weight, [this](int e, int a, int b) {
+    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
     for (int q = 0; q < points_; ++q) {
       const auto g = gradient(e, q);
-      const double w = weight(e, q) * element_weight[e];
-      for (int b = 0; b < n; ++b) {
-        for (int a = 0; a < n; ++a) add_block(result, e, a, b, w * g.col(a) * g.col(b).transpose());
-      }
+      sum.noalias() += (weight(e, q) * g.col(a)) * g.col(b).transpose();
     }
-  }
-  return result;
+    return sum;
+  });
 }
 
-SparseMatrix Discretisation::shear_stiffness(const Eigen::VectorXd& element_weight) const {
-  const int n = nodes_per_element();
+// Of nodes a and b with shape gradients g: w g_b g_a^T + w (g_a . g_b) I, where the volumetric one has w g_a g_b^T.
+SparseMatrix Discretisation::shear_stiffness(const SparseMatrix& volumetric) const {
   SparseMatrix result = pattern_;
-  for (int e = 0; e < element_count(); ++e) {
-    if (element_weight[e] == 0.0) continue;
-    for (int q = 0; q < points_; ++q) {
-      const auto g = gradient(e, q);
-      const double w = weight(e, q) * element_weight[e];
-      for (int b = 0; b < n; ++b) {
-        for (int a = 0; a < n; ++a) {
-          const Eigen::Matrix3d block =
-              g.col(b) * g.col(a).transpose() + g.col(a).dot(g.col(b)) * Eigen::Matrix3d::Identity();
-          add_block(result, e, a, b, w * block);
-        }
-      }
+  for_each(node_count_, [&](int node) {
+    const int* starts = pattern_.outerIndexPtr() + 3 * node;
+    const int blocks = (starts[1] - starts[0]) / 3;
+    for (int k = 0; k < blocks; ++k) {
+      Eigen::Matrix3d block;
+      for (int j = 0; j < 3; ++j)
+        block.col(j) = Eigen::Map<const Eigen::Vector3d>(volumetric.valuePtr() + starts[j] + 3 * k);
+      const double trace = block.trace();
+      block.transposeInPlace();
+      block.diagonal().array() += trace;
+      for (int j = 0; j < 3; ++j) Eigen::Map<Eigen::Vector3d>(result.valuePtr() + starts[j] + 3 * k) = block.col(j);
     }
-  }
+  });
   return result;
 }
 

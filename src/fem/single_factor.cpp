@@ -12,8 +12,8 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr std::size_t kSplit = 12;                 // subtrees that share the work, whatever the number of cores
-constexpr std::size_t kWorthSharing = 200 * 1000;  // values
+constexpr std::size_t kSplit = 12;                  // subtrees that share the work, whatever the number of cores
+constexpr Eigen::Index kWorthSharing = 200 * 1000;  // values
 
 }  // namespace
 

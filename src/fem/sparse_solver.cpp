@@ -2,6 +2,9 @@
 #include "tissue_stiffness/fem/sparse_solver.hpp"
 
 #include <cholmod.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <mutex>
 #include <thread>
@@ -18,7 +21,8 @@ namespace tissue_stiffness {
 
 namespace {
 
-constexpr double kWorthThreads = 1e10;  // operations of a factorisation
+constexpr double kWorthThreads = 1e10;          // operations of a factorisation
+constexpr Eigen::Index kConverted = 64 * 1024;  // values that are worth a task
 
 void take_threads(int count) {
   if (openblas_set_num_threads != nullptr) openblas_set_num_threads(count);
@@ -105,8 +109,12 @@ SingleFactor::Layout layout(const cholmod_factor& factor) {
   l.rows.assign(rows, rows + row_start[count]);
   l.row_start.assign(row_start, row_start + count + 1);
   l.value_start.assign(value_start, value_start + count + 1);
-  l.values.resize(l.value_start.back());
-  for (std::size_t i = 0; i < l.values.size(); ++i) l.values[i] = static_cast<float>(values[i]);
+  l.values.resize(static_cast<Eigen::Index>(l.value_start.back()));
+  tbb::this_task_arena::isolate([&] {  // a lock is held: no work of others meanwhile
+    tbb::parallel_for(tbb::blocked_range<Eigen::Index>(0, l.values.size(), kConverted), [&](const auto& part) {
+      for (Eigen::Index i = part.begin(); i < part.end(); ++i) l.values[i] = static_cast<float>(values[i]);
+    });
+  });
   return l;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "tissue_stiffness/forward/extra_force.hpp"
@@ -120,29 +121,34 @@ Eigen::MatrixXd sleeping_loads(const Model& model, const PriorView& prior, const
 }
 
 std::vector<SparseMatrix> stiffness_groups(const Model& model, const PriorView& prior) {
-  std::vector<std::pair<double, SparseMatrix>> groups;  // ratio to the other place, sum
-  const auto group = [&](double ratio) -> SparseMatrix& {
+  using Addend = std::function<void(SparseMatrix&)>;
+  std::vector<std::pair<double, std::vector<Addend>>> groups;  // ratio to the other place, what it sums
+  const auto sort_in = [&](double ratio, Addend addend) {
     for (auto& known : groups) {
-      if (std::abs(known.first - ratio) < kSameRatio * std::abs(ratio)) return known.second;
+      if (std::abs(known.first - ratio) < kSameRatio * std::abs(ratio)) return known.second.push_back(std::move(addend));
     }
-    groups.emplace_back(ratio, model.fem().pattern());
-    return groups.back().second;
+    groups.push_back({ratio, {std::move(addend)}});
   };
   for (const auto& part : model.parts()) {
     const Eigen::VectorXd p = part.parameters(prior.theta), generic = part.parameters(prior.generic);
     for (const auto& term : part.terms.stiffness) {
       const double c = term.coefficient(p);
-      if (c != 0.0) add_scaled(group(term.coefficient(generic) / c), c, *term.matrix);
+      if (c == 0.0) continue;
+      sort_in(term.coefficient(generic) / c, [c, &term](SparseMatrix& k) { add_scaled(k, c, *term.matrix); });
     }
     for (const auto& term : part.terms.strain_stiffness) {
       const double c = term.coefficient(p);
       if (c == 0.0) continue;
-      add_strain_stiffness(model.fem(), term.at(p), c, group(term.coefficient(generic) / c));
+      sort_in(term.coefficient(generic) / c,
+              [&model, c, p, &term](SparseMatrix& k) { add_strain_stiffness(model.fem(), term.at(p), c, k); });
     }
   }
   std::vector<SparseMatrix> sums;
-  for (auto& known : groups) sums.push_back(std::move(known.second));
-  if (sums.size() < 2) sums.clear();
+  if (groups.size() < 2) return sums;
+  for (const auto& known : groups) {
+    sums.push_back(model.fem().pattern());
+    for (const Addend& add_to : known.second) add_to(sums.back());
+  }
   return sums;
 }
 
@@ -167,6 +173,17 @@ std::vector<SparseMatrix> sleeping_stiffness(const Model& model, const PriorView
     if (any) list.push_back(std::move(sum));
   }
   return list;
+}
+
+bool answers_motion(const Model& model, const PriorView& prior, std::size_t index) {
+  const auto& part = model.parts()[index];
+  const Eigen::VectorXd p = part.parameters(prior.theta), generic = part.parameters(prior.generic);
+  const auto sleeps = [&](const auto& term) { return term.coefficient(p) == 0.0 && term.coefficient(generic) != 0.0; };
+  const auto any = [&](const auto& terms) { return std::any_of(terms.begin(), terms.end(), sleeps); };
+  const auto moves = [&](const StrainTerm& term) { return model.estimated(part, term.shape); };
+  const std::vector<StrainTerm>& strained = part.terms.strain_stiffness;
+  return any(part.terms.stiffness) || any(part.terms.mass) || any(strained) ||
+         std::any_of(strained.begin(), strained.end(), moves) || adds_extra_force(part);
 }
 
 Eigen::MatrixXd sleeping_forces(const Model& model, const PriorView& prior, std::size_t index, const Eigen::MatrixXd& u,

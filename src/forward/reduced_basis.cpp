@@ -114,8 +114,8 @@ class Builder {
  private:
   std::shared_ptr<const BasisRoot> make_root(const std::shared_ptr<const BasisRoot>& known) const {
     auto root = std::make_shared<BasisRoot>();
-    root->stiffness = model_.reference_stiffness(prior_.theta);
-    root->mass = model_.mass(prior_.theta);
+    take(root->stiffness, model_.reference_stiffness(prior_.theta));
+    take(root->mass, model_.mass(prior_.theta));
     root->mass.prune(0.0);  // of each pair of nodes' 3 x 3 block, a third
     root->fixed = model_.fixed(prior_.theta);
     root->loads = acting_loads(model_, prior_, root->mass);
@@ -184,7 +184,9 @@ class Builder {
 
   // Static responses to the terms that are absent at the prior, each part's scaled to one, beside the basis.
   void add_sleeping(OrthonormalBasis& basis, const Eigen::MatrixXd& acting) const {
-    const Eigen::MatrixXd motion = leading_motion(basis, acting);
+    bool answered = false;
+    for (std::size_t p = 0; p < model_.parts().size(); ++p) answered = answered || answers_motion(model_, prior_, p);
+    const Eigen::MatrixXd motion = answered ? leading_motion(basis, acting) : Eigen::MatrixXd(mass_.rows(), 0);
     const StrainRows rows = strains(model_.fem(), motion);
     const bool first_order = options_.nonlinear == BasisOptions::Nonlinear::first_order;
     std::vector<Eigen::MatrixXd> blocks;

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/Sparse>
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "tissue_stiffness/types/tet_mesh.hpp"
@@ -56,13 +57,28 @@ class Discretisation {
   /// Consistent mass matrix of unit density times a weight an element (1 everywhere, or 1 inside a region) [m^3].
   SparseMatrix mass(const Eigen::VectorXd& element_weight) const;
 
-  /// Small-strain stiffness of Lame's first parameter = 1, shear modulus = 0, or the other way round [m].
+  /// Small-strain stiffness of Lame's first parameter = 1 and shear modulus = 0 [m].
   SparseMatrix volumetric_stiffness(const Eigen::VectorXd& element_weight) const;
-  SparseMatrix shear_stiffness(const Eigen::VectorXd& element_weight) const;
+  /// The other way round, from the same elements' volumetric one: both are sums of the same products of shape gradients.
+  SparseMatrix shear_stiffness(const SparseMatrix& volumetric) const;
 
  private:
-  void compute_gradients(const TetMesh& mesh);
+  void compute_gradients();
+  void list_corners();
   void compute_pattern();
+  template <typename Block>
+  SparseMatrix assemble(const Eigen::VectorXd& element_weight, const Block& block) const;
+
+  // visit(element, local number of the node in it)
+  template <typename Visit>
+  void for_each_corner(int node, const Visit& visit) const {
+    const auto at = static_cast<std::size_t>(node);
+    const int n = nodes_per_element();
+    for (int k = first_corner_[at]; k < first_corner_[at + 1]; ++k) {
+      const int corner = corners_[static_cast<std::size_t>(k)];
+      visit(corner / n, corner % n);
+    }
+  }
 
   int node_count_ = 0;
   int points_ = 1;
@@ -72,8 +88,20 @@ class Discretisation {
   Eigen::MatrixXd weights_;
   Eigen::Matrix3Xd positions_;
   SparseMatrix pattern_;
+  std::vector<int> first_corner_;  ///< of each node in corners_, and the end
+  std::vector<int> corners_;       ///< element times nodes an element, plus the node's local number
   std::vector<int> slots_;
 };
+
+/// Hands a matrix over; Eigen 3 copies where sparse matrices are moved.
+inline void take(SparseMatrix& to, SparseMatrix&& from) {
+  to.swap(from);
+}
+inline std::shared_ptr<const SparseMatrix> shared(SparseMatrix&& matrix) {
+  auto out = std::make_shared<SparseMatrix>();
+  out->swap(matrix);
+  return out;
+}
 
 /// to += scale * part, for a part whose non-zeros lie in the pattern of `to`; costs what the part holds.
 void add_scaled(SparseMatrix& to, double scale, const SparseMatrix& part);

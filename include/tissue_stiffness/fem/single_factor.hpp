@@ -18,7 +18,7 @@ class SingleFactor {
     std::vector<int> rows;                 ///< of all supernodes, one after the other
     std::vector<std::size_t> row_start;    ///< of each supernode in `rows`, and the end
     std::vector<std::size_t> value_start;  ///< of each supernode in `values`, and the end
-    std::vector<float> values;
+    Eigen::VectorXf values;
   };
   explicit SingleFactor(Layout layout);
 

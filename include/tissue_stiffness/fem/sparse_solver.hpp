@@ -18,8 +18,8 @@ class SparseSolver {
   SparseSolver& operator=(SparseSolver&&) noexcept;
 
   /// Numerical factorisation; analyses the pattern at the first call. Throws NumericalError when not positive definite.
-  /// On one core: how many BLAS takes is a setting of the whole process, and changes the last digits of whatever works
-  /// beside it.
+  /// Large ones take all cores, all others one: how many BLAS takes is a setting of the whole process, and changes the last
+  /// digits of whatever works beside it.
   void factorize(const SparseMatrix& matrix);
   bool ready() const;
 

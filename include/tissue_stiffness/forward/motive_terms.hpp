@@ -29,6 +29,9 @@ std::vector<SparseMatrix> stiffness_groups(const Model& model, const PriorView& 
 /// Stiffness of each part that is zero at the prior, away from it.
 std::vector<SparseMatrix> sleeping_stiffness(const Model& model, const PriorView& prior);
 
+/// Whether one of the next two can have a column.
+bool answers_motion(const Model& model, const PriorView& prior, std::size_t part);
+
 /// Forces of a part's sleeping or movable terms when the body moves as the columns of u: dK u and dM u, 3n each.
 Eigen::MatrixXd sleeping_forces(const Model& model, const PriorView& prior, std::size_t part, const Eigen::MatrixXd& u,
                                 const StrainRows& strains);
