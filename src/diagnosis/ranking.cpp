@@ -21,13 +21,14 @@ std::vector<Ranked> rank(const Scorer& scorer, const std::vector<Candidate>& can
   tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t c) {
     scores[c] = scorer.score(candidates[c].tangent);
     if (!candidates[c].allows(scores[c].amplitude)) scores[c].log_bayes_factor = kImpossible;
+    scores[c].p_value = candidates[c].p_value(scores[c]);
   });
   std::vector<Ranked> ranked;
   std::map<std::string, std::vector<double>> factors;
   std::map<std::string, std::vector<const Score*>> ways;
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     factors[candidates[c].effect].push_back(scores[c].log_bayes_factor);
-    if (scores[c].log_bayes_factor > kImpossible) ways[candidates[c].effect].push_back(&scores[c]);
+    ways[candidates[c].effect].push_back(&scores[c]);
     auto at = std::find_if(ranked.begin(), ranked.end(), [&](const Ranked& r) { return r.effect == candidates[c].effect; });
     if (at == ranked.end()) at = ranked.insert(ranked.end(), {candidates[c].effect, nullptr, {}, 0.0, 1.0, false, false});
     if (at->best != nullptr && scores[c].log_bayes_factor <= at->score.log_bayes_factor) continue;

@@ -15,6 +15,10 @@ namespace {
 constexpr double kSame = 1e-9;  // sine of the angle below which directions are one
 constexpr double kGone = 1e-6;  // a tangent of which less than this share is left says nothing of its own
 
+constexpr double kNothing = 1e-18;  // variance, of all frames': the tangent leaves this one alone
+constexpr Eigen::Index kFewestTerms = 4;
+constexpr double kLongestMemory = 0.98;  // of an error, from frame to frame
+
 constexpr Eigen::Index kRowsAtOnce = 512;  // of directions that are compared
 
 constexpr double kBandwidth = 1.3;  // of the root of the number of frames, at least: Lazarus et al. 2018, sec. 3
@@ -67,17 +71,39 @@ double Scorer::remaining(const Eigen::VectorXd& column) const {
   return project(column).norm() / std::sqrt(static_cast<double>(column.size()));
 }
 
-double Scorer::p_value(const Eigen::MatrixXd& x, const Eigen::VectorXd& left) const {
-  const auto frames = static_cast<Eigen::Index>(offsets_.size()) - 1;
-  Eigen::MatrixXd g(frames, x.cols());
-  for (Eigen::Index t = 0; t < frames; ++t) {
-    const Eigen::Index from = offsets_[static_cast<std::size_t>(t)],
-                       count = offsets_[static_cast<std::size_t>(t) + 1] - from;
-    g.row(t) = left.segment(from, count).transpose() * x.middleRows(from, count);
+// An error remembers the last frame's, e_t = m e_t-1 + n_t. So sum_t x_t^T e_t = sum_t z_t^T n_t with z_t = x_t + m z_t+1,
+// whose terms are not correlated if that is all that is remembered; the HAC covariance sees the rest. It is taken of terms
+// of unit variance: an effect that acts for a short while is judged by the errors of all frames.
+Scorer::Terms Scorer::terms(const Eigen::MatrixXd& x, const Eigen::VectorXd& left) const {
+  const double memory = memory_of(left);
+  Eigen::MatrixXd z = x;
+  Eigen::VectorXd news = left;
+  Eigen::VectorXd fresh = Eigen::VectorXd::Ones(frames());  // variance of n_t, of that of e_t
+  for (Eigen::Index t = frames() - 1; t > 0; --t) {
+    if (count(t) != count(t - 1)) continue;
+    z.middleRows(offset(t - 1), count(t - 1)) += memory * z.middleRows(offset(t), count(t));
+    news.segment(offset(t), count(t)) -= memory * left.segment(offset(t - 1), count(t - 1));
+    fresh[t] = 1.0 - memory * memory;
   }
-  const double n = static_cast<double>(frames);
-  const int lags = lags_for(g);
-  Eigen::MatrixXd covariance = n * long_run_covariance(g, lags);
+  Terms out{Eigen::MatrixXd(frames(), x.cols()), 0.0};
+  Eigen::Index n = 0;
+  for (Eigen::Index t = 0; t < frames(); ++t) {
+    const auto rows = z.middleRows(offset(t), count(t));
+    const double variance = fresh[t] * rows.squaredNorm() / static_cast<double>(x.cols());
+    if (!(variance > kNothing)) continue;
+    out.unit.row(n++) = news.segment(offset(t), count(t)).transpose() * rows / std::sqrt(variance);
+    out.variance += variance;
+  }
+  out.unit.conservativeResize(n, Eigen::NoChange);
+  return out;
+}
+
+double Scorer::p_value(const Eigen::MatrixXd& x, const Eigen::VectorXd& left) const {
+  const Terms series = terms(x, left);
+  const Eigen::Index n = series.unit.rows();
+  if (n < kFewestTerms) return 1.0;
+  const int lags = lags_for(series.unit);
+  Eigen::MatrixXd covariance = series.variance * long_run_covariance(series.unit, lags);
   if (doubt_.size() > 0) {
     const Eigen::VectorXd may_be = x.transpose() * doubt_;
     covariance += may_be * may_be.transpose();
@@ -85,7 +111,19 @@ double Scorer::p_value(const Eigen::MatrixXd& x, const Eigen::VectorXd& left) co
   const Eigen::LDLT<Eigen::MatrixXd> factor(covariance);
   if (!factor.isPositive() || !(factor.vectorD().minCoeff() > 0.0)) return 1.0;
   const Eigen::VectorXd sum = x.transpose() * residual_;
-  return fixed_b_p_value(sum.dot(factor.solve(sum)), static_cast<double>(x.cols()), (lags + 1.0) / n);
+  return fixed_b_p_value(sum.dot(factor.solve(sum)), static_cast<double>(x.cols()), (lags + 1.0) / static_cast<double>(n));
+}
+
+// Correlation of an error with that of the same row a frame later.
+double Scorer::memory_of(const Eigen::VectorXd& left) const {
+  double products = 0.0, squares = 0.0;
+  for (Eigen::Index t = 0; t + 1 < frames(); ++t) {
+    if (count(t + 1) != count(t)) continue;
+    const auto now = left.segment(offset(t), count(t)), next = left.segment(offset(t + 1), count(t));
+    products += now.dot(next);
+    squares += 0.5 * (now.squaredNorm() + next.squaredNorm());
+  }
+  return squares > 0.0 ? std::clamp(products / squares, 0.0, kLongestMemory) : 0.0;
 }
 
 Score Scorer::score(const Tangent& tangent) const {
@@ -149,9 +187,8 @@ double combined_p_value(const std::vector<const Score*>& ways) {
     }
     cosines.selfadjointView<Eigen::Lower>().rankUpdate(part.topRows(height).transpose());
   }
-  const Eigen::VectorXd values = cosines.selfadjointView<Eigen::Lower>().eigenvalues();
-  const double m = static_cast<double>(count), variance = (values.array() - 1.0).square().sum() / (m - 1.0);
-  const double tests = 1.0 + (m - 1.0) * std::max(0.0, 1.0 - variance / m);
+  const Eigen::VectorXd values = cosines.selfadjointView<Eigen::Lower>().eigenvalues().cwiseMax(0.0);
+  const double roots = values.cwiseSqrt().sum(), tests = roots * roots / values.sum();
   return -std::expm1(tests * std::log1p(-std::min(best, 1.0 - 1e-15)));
 }
 

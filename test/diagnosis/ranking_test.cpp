@@ -40,6 +40,24 @@ TEST(Rank, DeclaresWhatIsThereAndAboveTheFloor) {
   EXPECT_FALSE(rank(s, candidates, 1.0).front().declared) << "0.5 sigma are below a floor of 1";
 }
 
+// An amplitude that cannot be negative is seldom significant by chance: half as often to either side, never on the wrong
+// one.
+TEST(Rank, TestsOneSideOfWhatHasOneSign) {
+  int below = 0, wrong = 0;
+  const int draws = 400;
+  for (int k = 0; k < draws; ++k) {
+    const Eigen::MatrixXd x = normal_numbers(2, 100 + static_cast<unsigned>(k));
+    Candidate damping = candidate("damping", x.col(0));
+    damping.lower = 0.0;
+    const Ranked ranked = rank(scorer(x.col(1)), {damping}, 0.0).front();
+    below += ranked.p_value < 0.05 ? 1 : 0;
+    wrong += ranked.p_value < 0.5 && ranked.score.amplitude[0] < 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(below, 0.03 * draws);
+  EXPECT_LT(below, 0.07 * draws);
+  EXPECT_EQ(wrong, 0);
+}
+
 TEST(RankPairs, FindsTwoThatOnlyExplainTheErrorTogether) {
   const Eigen::MatrixXd x = normal_numbers(6, 3);
   // a and b nearly cancel, so that either alone sees little of the residual, and a decoy sees more.

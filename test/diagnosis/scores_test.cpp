@@ -86,25 +86,44 @@ TEST(Scores, SeeTwinsAsTwins) {
   EXPECT_LT(scorer.score(tangent(a)).cosine_with(scorer.score(tangent(c))), 0.3);
 }
 
-// The p-value must mean what it says whether or not the errors are correlated in time; a naive one does not.
-TEST(Scores, PValuesAreCalibratedForCorrelatedErrors) {
-  const Eigen::MatrixXd x = ringing(0.15, 200.0);
-  for (const double memory : {0.0, 0.6}) {
-    std::mt19937 engine(6);
-    int below = 0, naive = 0;
-    const int draws = 600;
-    for (int k = 0; k < draws; ++k) {
-      const Eigen::VectorXd e = noise(engine, memory);
-      const Score score = Scorer(e, Eigen::MatrixXd(kRows, 0), offsets(), 1.0).score(tangent(x));
-      below += score.p_value < 0.05 ? 1 : 0;
-      naive += std::abs(score.amplitude[0]) * x.norm() > 1.96 ? 1 : 0;
+struct Errors {
+  double life;      // of the tangent [frames]
+  double memory;    // of each row's error
+  double together;  // rms of an error that all rows share along the tangent's shape, with a memory of 0.9 [sigma]
+  double most;      // share of p-values below 5 %
+};
+
+class PValues : public testing::TestWithParam<Errors> {};
+
+// The p-value must mean what it says whether or not the errors are correlated, in time and in space, and however short the
+// effect acts; a naive one does not.
+TEST_P(PValues, AreCalibrated) {
+  const Errors& errors = GetParam();
+  const Eigen::MatrixXd x = ringing(0.15, errors.life), shared = ringing(M_PI / 2.0, 1e9);
+  std::mt19937 engine(6);
+  int below = 0, naive = 0;
+  const int draws = 1000;
+  for (int k = 0; k < draws; ++k) {
+    Eigen::VectorXd e = noise(engine, errors.memory);
+    const Eigen::VectorXd course = noise(engine, 0.9);
+    for (Eigen::Index t = 0; t < kFrames; ++t) {
+      e.segment(t * kRowsEach, kRowsEach) +=
+          errors.together * course[t * kRowsEach] * shared.block(kRowsEach, 0, kRowsEach, 1);
     }
-    std::printf("memory %.1f: p < 5 %% in %.1f %% of draws, naively %.1f %%\n", memory, 100.0 * below / draws,
-                100.0 * naive / draws);
-    EXPECT_GT(below, 0.03 * draws);
-    EXPECT_LT(below, 0.10 * draws);
+    const Score score = Scorer(e, Eigen::MatrixXd(kRows, 0), offsets(), 1.0).score(tangent(x));
+    below += score.p_value < 0.05 ? 1 : 0;
+    naive += std::abs(score.amplitude[0]) * x.norm() > 1.96 ? 1 : 0;
   }
+  std::printf("p < 5 %% in %.1f %% of draws, naively %.1f %%\n", 100.0 * below / draws, 100.0 * naive / draws);
+  EXPECT_GT(below, 0.03 * draws);
+  EXPECT_LT(below, errors.most * draws);
 }
+
+INSTANTIATE_TEST_SUITE_P(Errors, PValues,
+                         testing::Values(Errors{200.0, 0.0, 0.0, 0.07}, Errors{200.0, 0.6, 0.0, 0.07},
+                                         Errors{200.0, 0.9, 0.0, 0.07}, Errors{8.0, 0.0, 0.0, 0.07},
+                                         Errors{8.0, 0.6, 0.0, 0.07}, Errors{200.0, 0.3, 0.1, 0.12},
+                                         Errors{8.0, 0.3, 0.1, 0.12}));
 
 TEST(Scores, PValuesIgnoreComponentsThatSayNothingOfTheirOwn) {
   std::mt19937 engine(10);

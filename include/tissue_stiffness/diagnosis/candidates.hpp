@@ -22,6 +22,8 @@ struct Candidate {
 
   /// Within the bounds: nothing is explained by a negative damping.
   bool allows(const Eigen::VectorXd& amplitude) const;
+  /// The score's p-value; where the amplitude can have one sign only, of that side (Chernoff 1954).
+  double p_value(const Score& score) const;
 };
 
 using CountProgress = std::function<void(std::size_t done, std::size_t total)>;

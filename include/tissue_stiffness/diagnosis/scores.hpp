@@ -24,9 +24,10 @@ struct Score {
 
 /// Scores on the residual e, after what `known` (N x p) explains is projected off residual and tangents alike.
 ///   log BF = 1/2 b^T (I + G)^-1 b - 1/2 log |I + G|,  G = D x^T x D, b = D x^T e, D = diag(prior_std)
-/// with the squared sigma taken as max(1, `variance`); the p-value is Wald's with the Newey-West covariance of the frames'
-/// scores g_t = x_t^T (e_t - x_t theta), against the F distribution that goes with the bandwidth (Sun 2014). `doubt`
-/// (N, or nothing): an error of unknown sign that may be in e, 1 sigma; it widens the covariance by (x^T doubt)^2.
+/// with the squared sigma taken as max(1, `variance`). The p-value is Wald's. What an error e - x theta remembers of the
+/// last frame's is taken off it (prewhitening, Andrews & Monahan 1992, with one autocorrelation for all rows), the rest has
+/// a Newey-West covariance, against the F distribution that goes with the bandwidth (Sun 2014). `doubt` (N, or nothing): an
+/// error of unknown sign that may be in e, 1 sigma; it widens the covariance by (x^T doubt)^2.
 /// `offsets`: first row of each frame, N at the end.
 class Scorer {
  public:
@@ -43,7 +44,16 @@ class Scorer {
  private:
   Score score(const Tangent& tangent, bool with_p_value) const;
   Eigen::MatrixXd project(const Eigen::MatrixXd& x) const;
+  struct Terms {
+    Eigen::MatrixXd unit;   ///< frames x columns: uncorrelated terms of x^T e, each of unit variance
+    double variance = 0.0;  ///< of their sum
+  };
+  Terms terms(const Eigen::MatrixXd& x, const Eigen::VectorXd& left) const;
   double p_value(const Eigen::MatrixXd& x, const Eigen::VectorXd& left) const;
+  double memory_of(const Eigen::VectorXd& left) const;
+  Eigen::Index frames() const { return static_cast<Eigen::Index>(offsets_.size()) - 1; }
+  Eigen::Index offset(Eigen::Index frame) const { return offsets_[static_cast<std::size_t>(frame)]; }
+  Eigen::Index count(Eigen::Index frame) const { return offset(frame + 1) - offset(frame); }
 
   Eigen::MatrixXd basis_;  ///< orthonormal, of `known`
   Eigen::VectorXd residual_, doubt_;
@@ -52,7 +62,8 @@ class Scorer {
 };
 
 /// One p-value of several ways in which the same effect may be missing: Sidak's for the best of them, with the number of
-/// tests that so many directions amount to (Nyholt 2004). Ways that say nothing do not count. 1 without any.
+/// tests that so many directions amount to, (sum sqrt(l))^2 / sum l of the eigenvalues l of their cosines (Galwey 2009).
+/// Ways that say nothing do not count. 1 without any.
 double combined_p_value(const std::vector<const Score*>& ways);
 
 /// One-sided p-value of a model not predicting better than another: `gains` are the other's squared errors less its own,
