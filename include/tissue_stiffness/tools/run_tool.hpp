@@ -6,12 +6,14 @@
 #include <iostream>
 
 #include "tissue_stiffness/types/error.hpp"
+#include "tissue_stiffness/types/freed_memory.hpp"
 
 namespace tissue_stiffness {
 
 /// Parses the command line and runs a tool. Wrong arguments or input: one line and exit code 2; anything else that fails:
 /// one line and exit code 1.
 inline int run_tool(CLI::App& app, int argc, char** argv, const std::function<void()>& tool) {
+  keep_freed_memory();
   try {
     app.parse(argc, argv);
     tool();
