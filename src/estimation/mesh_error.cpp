@@ -99,12 +99,18 @@ struct MeshError::Studies {
   std::vector<std::unique_ptr<ObservationOperator>> operators;
 
   Studies(const ModelSettings& settings, const ModelSettings& known, const TetMesh& mesh,
-          const std::map<std::string, Region>& regions, const BasisOptions& basis, const TetMesh& refined)
+          const std::map<std::string, Region>& regions, const BasisOptions& basis, const TetMesh& refined,
+          const Eigen::VectorXd* theta)
       : coarse(settings, mesh, regions),
         fine(known, refined, refine(regions, mesh, refined)),
         coarse_runs(coarse, of_linear_part(basis)),
-        fine_runs(fine, of_linear_part({})),
+        fine_runs(knowing(theta, fine), of_linear_part({})),
         operators(make_observation_operators(coarse)) {}
+
+  static const Model& knowing(const Eigen::VectorXd* theta, Model& model) {
+    if (theta != nullptr) model.know(*theta);
+    return model;
+  }
 };
 
 std::string MeshError::why_not(const TetMesh& mesh) {
@@ -127,9 +133,12 @@ std::string MeshError::why_not(const Model& model) {
 
 MeshError::MeshError(const ModelSettings& settings, const TetMesh& mesh)
     : MeshError(settings, settings, mesh, resolve_regions(settings.regions, mesh), {}) {}
+MeshError::MeshError(const ModelSettings& settings, const TetMesh& mesh, const Eigen::VectorXd& theta)
+    : studies_(std::make_unique<Studies>(settings, settings, mesh, resolve_regions(settings.regions, mesh), BasisOptions(),
+                                         finer(mesh, settings.mesh), &theta)) {}
 MeshError::MeshError(const ModelSettings& settings, const ModelSettings& fine, const TetMesh& mesh,
                      const std::map<std::string, Region>& regions, const BasisOptions& basis)
-    : studies_(std::make_unique<Studies>(settings, fine, mesh, regions, basis, finer(mesh, settings.mesh))) {}
+    : studies_(std::make_unique<Studies>(settings, fine, mesh, regions, basis, finer(mesh, settings.mesh), nullptr)) {}
 MeshError::~MeshError() = default;
 
 MeshError::Question::Question(const Model& model, std::vector<Frame> seen, Eigen::VectorXd at, Eigen::VectorXd around,
@@ -153,6 +162,9 @@ MeshError::Answer MeshError::study(const Question& q) {
   Studies& s = *studies_;
   drive(q, s.coarse);
   drive(q, s.fine);
+  const std::vector<int> nodes = observed_nodes(s.operators, q.frames);
+  s.coarse_runs.focus(nodes);
+  s.fine_runs.focus(nodes);
   // Nodes of the coarse mesh keep their numbers in the finer one, whose run is seen through them.
   std::vector<Prediction> truth;
   const Eigen::VectorXd theta = s.coarse.theta(q.w);

@@ -252,7 +252,11 @@ class UnscentedScheme : public Scheme {
     last_study_ = frames_.size();
     const AnchoredFilter& filter = track_->filter();
     MeshError::Question question(*model_, frames_, filter.mean(), filter.spread(), model_->prior_std());
-    const auto study = [this, question = std::move(question)] {
+    const auto study = [this, once = replaying(), question = std::move(question)] {
+      if (once) {
+        studied_ = MeshError(model_->settings(), model_->mesh(), model_->theta(question.w)).study(question);
+        return;
+      }
       if (mesh_error_ == nullptr) mesh_error_ = std::make_unique<MeshError>(model_->settings(), model_->mesh());
       studied_ = mesh_error_->study(question);
     };

@@ -169,6 +169,13 @@ void Model::set_velocity_prior(const Eigen::Vector3d& mean, double std) {
   }
 }
 
+void Model::know(const Eigen::VectorXd& theta) {
+  known_ = theta;
+  free_.clear();
+  free_index_.clear();
+  for (Part& part : parts_) settle_terms(part);
+}
+
 void Model::forget_velocity_prior() {
   if (settings_.initial.kind != InitialSettings::Kind::from_frames) return;
   for (std::size_t i = 0; i < 3; ++i) free_[free_.size() - 3 + i].prior = kAnySpeed;

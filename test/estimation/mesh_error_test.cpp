@@ -52,6 +52,25 @@ TEST(MeshError, IsInTheIntervalOfAShortRecordingToo) {
   EXPECT_LT(p.upper95 / p.lower95, 1.2);
 }
 
+// A replay asks once, at the end, on a finer mesh that knows the parameters; a node asks again and again.
+TEST(MeshError, IsTheSameOfAReplay) {
+  std::vector<std::string> effects = bar_under_gravity(prior(50e3, 3));
+  effects.push_back("stiff_inclusion: {center: [0.05, 0.01, 0.01], radius: 0.008, excess: {mean: 0.5, std: 0.5}}");
+  for (const bool inclusion : {false, true}) {
+    ModelSettings model = settings(true);
+    if (inclusion) model = box_settings(effects);
+    model.mesh.discretisation_error = true;
+    const std::vector<Frame> frames = recording(40);
+    Estimator stepped(model, coarse()), replayed(model, coarse());
+    step_through(stepped, frames);
+    replayed.replay(frames);
+    const ParameterEstimate &a = stepped.estimate().parameters.front(), &b = replayed.estimate().parameters.front();
+    std::printf("E %.1f Pa stepped, %.1f Pa replayed, +- %.1f\n", a.mean, b.mean, a.std);
+    EXPECT_NEAR(a.mean, b.mean, 0.2 * a.std);
+    EXPECT_NEAR(a.std, b.std, 0.2 * a.std);
+  }
+}
+
 // Under a load so small that both laws mean the same body.
 TEST(MeshError, OfAFiniteStrainModelIsInTheInterval) {
   std::vector<std::string> effects = bar_under_gravity(prior(50e3, 3));

@@ -36,6 +36,8 @@ class MeshError {
 
   /// Throws as Model does.
   MeshError(const ModelSettings& settings, const TetMesh& mesh);
+  /// For studies at theta alone, which the finer mesh's basis then needs to hold alone: half the work.
+  MeshError(const ModelSettings& settings, const TetMesh& mesh, const Eigen::VectorXd& theta);
   /// With the regions' parts of the mesh as given, and a basis of that size. `fine`: the same model for the finer mesh, in
   /// which more may be known, as it runs at one place only.
   MeshError(const ModelSettings& settings, const ModelSettings& fine, const TetMesh& mesh,

@@ -53,6 +53,7 @@ class Scheme {
   bool background() const { return background_; }
   /// A replay's frames come at once: what is asked of the recording now and then is asked at its last.
   bool more_follow() const { return more_follow_; }
+  bool replaying() const { return replaying_; }
 
   double start() const { return first_stamp_.value_or(0.0) + model_->settings().time.start; }
   Prediction at_rest(const Frame& frame) const;

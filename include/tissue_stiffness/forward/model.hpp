@@ -75,6 +75,8 @@ class Model {
   Eigen::VectorXd drift() const;
   /// Replaces the prior of the initial velocity (`initial: {velocity: from_frames}`), mean and std [m/s].
   void set_velocity_prior(const Eigen::Vector3d& mean, double std);
+  /// From here on no parameter is free: all are as theta has them.
+  void know(const Eigen::VectorXd& theta);
   /// Back to the prior before any frame.
   void forget_velocity_prior();
 
