@@ -5,6 +5,7 @@ import json
 import os
 import subprocess
 import sys
+import time
 
 import yaml
 
@@ -22,6 +23,7 @@ def run(arguments, name):
     output = os.path.join(arguments.output, name)
     command = [arguments.diagnose, os.path.join(case, 'model.yaml'), os.path.join(case, 'recording.bag'), '--auto', '--quiet',
                '--output', output]
+    begun = time.monotonic()
     try:
         done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=TIME_LIMIT)
     except subprocess.TimeoutExpired:
@@ -29,7 +31,7 @@ def run(arguments, name):
     if done.returncode != 0:
         return 'exit code %d: %s' % (done.returncode, (done.stderr.strip().splitlines() or [''])[-1])
     with open(os.path.join(output, 'diagnosis.json')) as file:
-        return json.load(file)
+        return dict(json.load(file), whole=time.monotonic() - begun)
 
 
 def score(diagnosis, truth):
@@ -66,8 +68,8 @@ def main():
     if not names:
         sys.exit('score_diagnosis: no case in %s/cases_truth' % arguments.shared)
 
-    print('%-8s %-22s %-11s %-44s %-28s %8s %9s %6s  %s' %
-          ('case', 'hides', 'verdict', 'set', 'added', 'E off', 'held-out', 's', 'wrong'))
+    print('%-8s %-22s %-11s %-44s %-28s %8s %9s %6s %6s  %s' %
+          ('case', 'hides', 'verdict', 'set', 'added', 'E off', 'held-out', 's', 'whole', 'wrong'))
     totals = {}
     for name in names:
         with open(os.path.join(arguments.shared, 'cases_truth', name + '.yaml')) as file:
@@ -82,10 +84,10 @@ def main():
         if truth['effect'] != 'none':
             totals.setdefault('first of hidden', []).append(right['first'])
         last = diagnosis['steps'][-1]
-        print('%-8s %-22s %-11s %-44s %-28s %+7.2f%% %8.2fx %6.1f  %s' %
+        print('%-8s %-22s %-11s %-44s %-28s %+7.2f%% %8.2fx %6.1f %6.1f  %s' %
               (name, truth['effect'], diagnosis['verdict'], ' '.join(diagnosis['set']),
                ' '.join(diagnosis['final']['effects']), 100 * error, last['held_out_rms'] / last['noise_floor'],
-               diagnosis['seconds'], ', '.join(key for key, value in right.items() if not value)), flush=True)
+               diagnosis['seconds'], diagnosis['whole'], ', '.join(key for key, value in right.items() if not value)), flush=True)
     for key, values in totals.items():
         print('%-16s %d of %d' % (key, sum(values), len(values)))
     cases = len(names)

@@ -24,4 +24,15 @@ Eigen::VectorXd finer_mesh(const Fitted& base) {
   return base.rows.used.cwiseProduct(rows.predicted - base.rows.predicted);
 }
 
+double cost_on_finer_mesh(const Fitted& base, const Refit& refit) {
+  const Model& model = base.study->model();
+  ModelSettings settings = model.settings();
+  for (const std::string& entry : refit.entries) add_effect(settings, entry);
+  const TetMesh mesh = finer(model.mesh(), settings.mesh);
+  const Study fine(settings, mesh, refine(model.regions(), model.mesh(), mesh), base.study->recording());
+  const Eigen::VectorXd start = fine.model().coordinates(refit.parameters, fine.model().prior_mean());
+  const BatchFit fit = fine.fit(fine.scan_near(start, fine.shared_with(*base.study)).w, fine.spread_beyond(*base.study));
+  return fine.rows(fit.w).error.squaredNorm();
+}
+
 }  // namespace tissue_stiffness

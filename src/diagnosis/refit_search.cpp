@@ -10,6 +10,7 @@
 #include <optional>
 #include <set>
 
+#include "tissue_stiffness/diagnosis/finding.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
@@ -27,6 +28,8 @@ constexpr std::size_t kPairs = 3;      // and pairs
 constexpr double kExplained = 1.02;    // and up to which a refit need not be bettered
 constexpr double kPromise = 0.2;       // of the structured part
 constexpr double kClean = 1.1;         // rms in sigmas that a refit with no rival leaves
+constexpr double kMeshCounts = 0.2;    // rms of its error [sigma] from which leaders are compared on a finer one
+constexpr std::size_t kLeaders = 4;    // that are
 constexpr double kSeen = 0.5;          // of what a refit explains: a tangent that sees less is none
 
 /// The search, stage by stage.
@@ -40,8 +43,9 @@ class Search {
     if (leaves_more_than_noise()) refit_others();
     if (leaves_more_than_noise()) refit_other_kinds();
     if (leaves_more_than_noise()) refit_rest();
-    if ((leaves_more_than_noise() && !explained()) || tangents_mislead()) refit_from_beginning();
+    if ((leaves_more_than_noise() && !explained()) || tangents_mislead() || quiet()) refit_from_beginning();
     if (leaves_more_than_noise() && !explained()) refit_pairs();
+    compare_on_finer_mesh();
     return std::move(refits_);
   }
 
@@ -52,6 +56,7 @@ class Search {
   void refit_rest();
   void refit_from_beginning();
   void refit_pairs();
+  void compare_on_finer_mesh();
   void add_other_way(const Ranked& r, std::vector<std::vector<Addition>>& list) const;
   std::vector<const Candidate*> different_ways() const;
   void refit_all(const std::vector<std::vector<Addition>>& list);
@@ -71,6 +76,10 @@ class Search {
   }
   /// The best refit explains what its tangent did not see, and not all of it: its twins may not have been seen either.
   bool tangents_mislead() const;
+  /// Where the mesh's error is much beside one that is smaller than the noise, several effects may explain it, and some
+  /// that were not refitted: the modulus has taken most of it, and the tangents were taken there.
+  bool mesh_counts() const { return look_.floor > kMeshCounts && !look_.mesh_change.isZero(0.0); }
+  bool quiet() const { return !refits_.empty() && mesh_counts() && look_.structured() < look_.rows; }
   bool explained() const { return !refits_.empty() && look_.explained_by(refits_.front()); }
 
   const FirstLook& look_;
@@ -259,6 +268,22 @@ void Search::refit_pairs() {
     list.push_back({pair.first, pair.second});
   }
   refit_all(list);
+}
+
+// Where the mesh's error is much of what the leaders leave, the one that imitates it best would win.
+void Search::compare_on_finer_mesh() {
+  if (refits_.size() < 2 || !mesh_counts()) return;
+  std::vector<Refit*> leaders;
+  for (Refit& r : refits_) {
+    if (leaders.size() < kLeaders && r.way->linear) leaders.push_back(&r);
+  }
+  try_each(
+      leaders.size(), [&](std::size_t i) { return "on a finer mesh: " + leaders[i]->effects.front(); },
+      [&](std::size_t i) {  // a fit that ends in another minimum there speaks against nothing
+        double& cost = leaders[i]->cost_beside_mesh;
+        cost = std::min(cost, cost_on_finer_mesh(look_.base, *leaders[i]));
+      });
+  sort_refits();
 }
 
 void Search::sort_refits() {

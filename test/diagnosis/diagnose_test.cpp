@@ -161,11 +161,11 @@ TEST(Diagnose, CountsTheRefitsOfEachRound) {
 }
 
 // Filmed on a mesh three times as fine, seen at the coarse one's vertices.
-Recording film_finer(const ModelSettings& settings, const TetMesh& coarse) {
+Recording film_finer(const ModelSettings& settings, const TetMesh& coarse, double noise = 0.1 * kNoise) {
   const Experiment experiment(settings, bar_mesh(24, 6, 6), {kTruth});
   std::mt19937 engine(1);
   Recording recording;
-  recording.frames = see_on(coarse, corners(coarse), experiment, experiment.film(0.0, 0.02, 60), 0.1 * kNoise, engine);
+  recording.frames = see_on(coarse, corners(coarse), experiment, experiment.film(0.0, 0.02, 60), noise, engine);
   return recording;
 }
 
@@ -178,6 +178,28 @@ TEST(Diagnose, TakesTheErrorOfACoarseMeshForNoEffect) {
   EXPECT_EQ(d.verdict, "numerics") << "noise of 0.01 mm under an error of the mesh of " << d.metres.numerical << " m";
   EXPECT_TRUE(d.set.empty());
   EXPECT_GT(d.sigmas.numerical, 1.0);
+}
+
+// Fibres imitate the mesh's error besides, and explain more than the springs that are there.
+TEST(Diagnose, ComparesLeadersOnAFinerMeshWhereItsErrorCounts) {
+  std::vector<std::string> effects = bar("{prior: 20.0e3, factor: 3}");
+  ModelSettings settings = box_settings(effects);
+  effects.push_back("foundation: {region: top, stiffness: 80}");
+  const TetMesh coarse = bar_mesh(8, 2, 2);
+  const double noise = 5.0 * kNoise;
+  const Recording recording = film_finer(box_settings(effects), coarse, noise);
+  settings.mesh.discretisation_error = true;
+  settings.observations.front().noise = noise;
+  DiagnosisOptions options;
+  int compared = 0;
+  options.progress = [&](const std::string& what, std::size_t, std::size_t) {
+    if (what.find("on a finer mesh: ") == 0) ++compared;
+  };
+  const Diagnosis d = diagnose(settings, coarse, recording, options);
+  EXPECT_GT(compared, 1);
+  EXPECT_EQ(d.verdict, "missing");
+  ASSERT_FALSE(d.set.empty());
+  EXPECT_EQ(d.set.front(), "foundation");
 }
 
 TEST(Diagnose, SplitsTheErrorAndLooksAtItFromAllSides) {

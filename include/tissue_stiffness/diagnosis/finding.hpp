@@ -32,4 +32,7 @@ bool proven(const Fitted& base, const Refit& refit);
 /// or large, or the model file does not want it.
 Eigen::VectorXd finer_mesh(const Fitted& base);
 
+/// Sum of squared errors over sigma of the refit's model on that mesh, fitted again.
+double cost_on_finer_mesh(const Fitted& base, const Refit& refit);
+
 }  // namespace tissue_stiffness
