@@ -90,7 +90,7 @@ Eigen::MatrixXd doubt_of_nonlinear(const Fitted& fitted, const Recording& record
   const MeshError::Question question(model, recording.frames, w, fitted.fit.covariance.diagonal().cwiseSqrt(),
                                      model.prior_std());
   try {
-    return mesh_doubt(model, MeshError(model.settings(), model.mesh()).study(question).shift);
+    return mesh_doubt(model, MeshError(model.settings(), model.mesh(), model.theta(w)).study(question).shift);
   } catch (const NumericalError&) {
     return none;
   }

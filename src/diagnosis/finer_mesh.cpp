@@ -8,6 +8,12 @@ namespace {
 
 constexpr double kSpread = 0.02;  // prior standard deviations: the finer mesh's fit is close
 
+Study on_finer_mesh(const Study& study, const ModelSettings& settings) {
+  const Model& model = study.model();
+  const TetMesh mesh = finer(model.mesh(), settings.mesh);
+  return {settings, mesh, refine(model.regions(), model.mesh(), mesh), study.recording()};
+}
+
 }  // namespace
 
 // Fitted anew, because a body that rings is soon out of phase with itself at another modulus: at the base's modulus the
@@ -16,8 +22,7 @@ Eigen::VectorXd finer_mesh(const Fitted& base) {
   Eigen::VectorXd out = Eigen::VectorXd::Zero(base.rows.error.size());
   const Model& model = base.study->model();
   if (model.nonlinear() || !MeshError::why_not(model).empty()) return out;
-  const TetMesh mesh = finer(model.mesh(), model.settings().mesh);
-  const Study fine(model.settings(), mesh, refine(model.regions(), model.mesh(), mesh), base.study->recording());
+  const Study fine = on_finer_mesh(*base.study, model.settings());
   const BatchFit fit = fine.fit(base.fit.w, kSpread * model.prior_std());
   const Study::Rows rows = fine.rows(fit.w);
   if (rows.predicted.size() != base.rows.predicted.size()) return out;
@@ -25,11 +30,9 @@ Eigen::VectorXd finer_mesh(const Fitted& base) {
 }
 
 double cost_on_finer_mesh(const Fitted& base, const Refit& refit) {
-  const Model& model = base.study->model();
-  ModelSettings settings = model.settings();
+  ModelSettings settings = base.study->model().settings();
   for (const std::string& entry : refit.entries) add_effect(settings, entry);
-  const TetMesh mesh = finer(model.mesh(), settings.mesh);
-  const Study fine(settings, mesh, refine(model.regions(), model.mesh(), mesh), base.study->recording());
+  const Study fine = on_finer_mesh(*base.study, settings);
   const Eigen::VectorXd start = fine.model().coordinates(refit.parameters, fine.model().prior_mean());
   const BatchFit fit = fine.fit(fine.scan_near(start, fine.shared_with(*base.study)).w, fine.spread_beyond(*base.study));
   return fine.rows(fit.w).error.squaredNorm();

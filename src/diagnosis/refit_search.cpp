@@ -76,9 +76,9 @@ class Search {
   }
   /// The best refit explains what its tangent did not see, and not all of it: its twins may not have been seen either.
   bool tangents_mislead() const;
+  bool mesh_counts() const { return look_.floor > kMeshCounts; }
   /// Where the mesh's error is much beside one that is smaller than the noise, several effects may explain it, and some
   /// that were not refitted: the modulus has taken most of it, and the tangents were taken there.
-  bool mesh_counts() const { return look_.floor > kMeshCounts && !look_.mesh_change.isZero(0.0); }
   bool quiet() const { return !refits_.empty() && mesh_counts() && look_.structured() < look_.rows; }
   bool explained() const { return !refits_.empty() && look_.explained_by(refits_.front()); }
 

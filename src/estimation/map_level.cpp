@@ -109,8 +109,7 @@ const MapLevel::MeshStudy& MapLevel::mesh_study() {
   const MeshError::Question q(model_, question_.frames, filter_->anchor(), filter_->spread(),
                               prior_covariance_.diagonal().cwiseSqrt());
   try {
-    const PatchModel known = with_patches(base_, patches_, log_modulus(), PatchModuli::known);
-    study_->answer = MeshError(model_.settings(), known.settings, model_.mesh(), model_.regions(), basis_).study(q);
+    study_->answer = MeshError(model_.settings(), model_.mesh(), model_.regions(), basis_, model_.theta(q.w)).study(q);
   } catch (const NumericalError& error) {
     study_->why_not = error.what();
   }

@@ -98,11 +98,16 @@ struct MeshError::Studies {
   ReducedModel coarse_runs, fine_runs;
   std::vector<std::unique_ptr<ObservationOperator>> operators;
 
-  Studies(const ModelSettings& settings, const ModelSettings& known, const TetMesh& mesh,
-          const std::map<std::string, Region>& regions, const BasisOptions& basis, const TetMesh& refined,
-          const Eigen::VectorXd* theta)
+  // The finer model knows theta, if there is one.
+  Studies(const ModelSettings& settings, const TetMesh& mesh, const std::map<std::string, Region>& regions,
+          const BasisOptions& basis, const Eigen::VectorXd* theta)
+      : Studies(settings, mesh, regions, basis, finer(mesh, settings.mesh), theta) {}
+
+ private:
+  Studies(const ModelSettings& settings, const TetMesh& mesh, const std::map<std::string, Region>& regions,
+          const BasisOptions& basis, const TetMesh& refined, const Eigen::VectorXd* theta)
       : coarse(settings, mesh, regions),
-        fine(known, refined, refine(regions, mesh, refined)),
+        fine(settings, refined, refine(regions, mesh, refined)),
         coarse_runs(coarse, of_linear_part(basis)),
         fine_runs(knowing(theta, fine), of_linear_part({})),
         operators(make_observation_operators(coarse)) {}
@@ -132,13 +137,13 @@ std::string MeshError::why_not(const Model& model) {
 }
 
 MeshError::MeshError(const ModelSettings& settings, const TetMesh& mesh)
-    : MeshError(settings, settings, mesh, resolve_regions(settings.regions, mesh), {}) {}
+    : studies_(
+          std::make_unique<Studies>(settings, mesh, resolve_regions(settings.regions, mesh), BasisOptions(), nullptr)) {}
 MeshError::MeshError(const ModelSettings& settings, const TetMesh& mesh, const Eigen::VectorXd& theta)
-    : studies_(std::make_unique<Studies>(settings, settings, mesh, resolve_regions(settings.regions, mesh), BasisOptions(),
-                                         finer(mesh, settings.mesh), &theta)) {}
-MeshError::MeshError(const ModelSettings& settings, const ModelSettings& fine, const TetMesh& mesh,
-                     const std::map<std::string, Region>& regions, const BasisOptions& basis)
-    : studies_(std::make_unique<Studies>(settings, fine, mesh, regions, basis, finer(mesh, settings.mesh), nullptr)) {}
+    : MeshError(settings, mesh, resolve_regions(settings.regions, mesh), {}, theta) {}
+MeshError::MeshError(const ModelSettings& settings, const TetMesh& mesh, const std::map<std::string, Region>& regions,
+                     const BasisOptions& basis, const Eigen::VectorXd& theta)
+    : studies_(std::make_unique<Studies>(settings, mesh, regions, basis, &theta)) {}
 MeshError::~MeshError() = default;
 
 MeshError::Question::Question(const Model& model, std::vector<Frame> seen, Eigen::VectorXd at, Eigen::VectorXd around,

@@ -61,8 +61,7 @@ Patch mapped_tets(const Model& model) {
                         model.regions());
 }
 
-PatchModel with_patches(const Model& model, const std::vector<Patch>& patches, const Eigen::VectorXd& log_modulus,
-                        PatchModuli moduli) {
+PatchModel with_patches(const Model& model, const std::vector<Patch>& patches, const Eigen::VectorXd& log_modulus) {
   require_map(model);
   const std::size_t mapped = mapped_effect(model);
   const EffectSettings whole = model.settings().effects[mapped];
@@ -77,8 +76,7 @@ PatchModel with_patches(const Model& model, const std::vector<Patch>& patches, c
     const std::string& path = whole.arguments.path();
     const Value median = Value::number(std::exp(log_modulus[static_cast<Eigen::Index>(r)]), path);
     const Value prior = Value::map({{"prior", median}, {"factor", Value::number(common.prior.spread, path)}}, path);
-    const Value& modulus = moduli == PatchModuli::known ? median : prior;
-    parts.push_back({whole.name, name, patch_arguments(whole.arguments, name, modulus)});
+    parts.push_back({whole.name, name, patch_arguments(whole.arguments, name, prior)});
   }
   auto& effects = out.settings.effects;
   const auto at = effects.erase(effects.begin() + static_cast<std::ptrdiff_t>(mapped));

@@ -1,6 +1,5 @@
 #include "tissue_stiffness/fem/discretisation.hpp"
 
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <Eigen/LU>
@@ -69,20 +68,14 @@ Eigen::Matrix3d jacobian(const Eigen::Matrix3Xd& derivative, const Eigen::Matrix
   return sum;
 }
 
-template <typename Work>
-void for_each(int count, const Work& work) {
-  constexpr int grain = 256;
-  tbb::parallel_for(tbb::blocked_range<int>(0, count, grain), [&](const tbb::blocked_range<int>& part) {
-    for (int i = part.begin(); i < part.end(); ++i) work(i);
-  });
-}
-
 }  // namespace
 
 Discretisation::Discretisation(const TetMesh& mesh)
     : node_count_(mesh.node_count()), elements_(mesh.tets), nodes_(mesh.nodes) {
   compute_gradients();
-  list_corners();
+  std::vector<int> all(static_cast<std::size_t>(element_count()));
+  std::iota(all.begin(), all.end(), 0);
+  corners_ = NodeCorners(elements_, all, node_count_);
   compute_pattern();
 }
 
@@ -115,26 +108,10 @@ void Discretisation::compute_gradients() {
   }
 }
 
-void Discretisation::list_corners() {
-  const int n = nodes_per_element();
-  first_corner_.assign(static_cast<std::size_t>(node_count_) + 1, 0);
-  for (int e = 0; e < element_count(); ++e) {
-    for (int a = 0; a < n; ++a) ++first_corner_[static_cast<std::size_t>(elements_(a, e)) + 1];
-  }
-  std::partial_sum(first_corner_.begin(), first_corner_.end(), first_corner_.begin());
-  corners_.resize(static_cast<std::size_t>(element_count() * n));
-  std::vector<int> next = first_corner_;
-  for (int e = 0; e < element_count(); ++e) {
-    for (int a = 0; a < n; ++a) {
-      corners_[static_cast<std::size_t>(next[static_cast<std::size_t>(elements_(a, e))]++)] = e * n + a;
-    }
-  }
-}
-
 void Discretisation::compute_pattern() {
   const int n = nodes_per_element();
   std::vector<std::vector<int>> neighbours(static_cast<std::size_t>(node_count_));
-  for_each(node_count_, [&](int node) {
+  tbb::parallel_for(0, node_count_, [&](int node) {
     auto& list = neighbours[static_cast<std::size_t>(node)];
     for_each_corner(node, [&](int e, int) {
       for (int a = 0; a < n; ++a) list.push_back(elements_(a, e));
@@ -152,7 +129,7 @@ void Discretisation::compute_pattern() {
   pattern_.resizeNonZeros(outer[3 * node_count_]);
   pattern_.coeffs().setZero();
   slots_.resize(static_cast<std::size_t>(element_count() * n * n));
-  for_each(node_count_, [&](int node) {
+  tbb::parallel_for(0, node_count_, [&](int node) {
     const auto& list = neighbours[static_cast<std::size_t>(node)];
     for (int j = 0; j < 3; ++j) {
       int* to = pattern_.innerIndexPtr() + outer[3 * node + j];
@@ -173,7 +150,7 @@ void Discretisation::compute_pattern() {
 template <typename Block>
 SparseMatrix Discretisation::assemble(const Eigen::VectorXd& element_weight, const Block& block) const {
   SparseMatrix result = pattern_;
-  for_each(node_count_, [&](int node) {
+  tbb::parallel_for(0, node_count_, [&](int node) {
     for_each_corner(node, [&](int e, int b) {
       if (element_weight[e] == 0.0) return;
       for (int a = 0; a < nodes_per_element(); ++a) add_block(result, e, a, b, element_weight[e] * block(e, a, b));
@@ -215,7 +192,7 @@ SparseMatrix Discretisation::volumetric_stiffness(const Eigen::VectorXd& element
 // Of nodes a and b with shape gradients g: w g_b g_a^T + w (g_a . g_b) I, where the volumetric one has w g_a g_b^T.
 SparseMatrix Discretisation::shear_stiffness(const SparseMatrix& volumetric) const {
   SparseMatrix result = pattern_;
-  for_each(node_count_, [&](int node) {
+  tbb::parallel_for(0, node_count_, [&](int node) {
     const int* starts = pattern_.outerIndexPtr() + 3 * node;
     const int blocks = (starts[1] - starts[0]) / 3;
     for (int k = 0; k < blocks; ++k) {

@@ -5,7 +5,6 @@
 
 #include <Eigen/LU>
 #include <cmath>
-#include <numeric>
 #include <string>
 
 #include "tissue_stiffness/types/error.hpp"
@@ -105,27 +104,13 @@ double stored(const Discretisation& fem, const std::vector<int>& list, const Lam
 NeoHookean::NeoHookean(const Discretisation& fem, std::vector<int> elements)
     : fem_(fem),
       elements_(std::move(elements)),
-      first_share_(static_cast<std::size_t>(fem.node_count() + 1), 0),
-      scratch_(std::make_unique<VectorPool>()) {
-  const int n = fem.nodes_per_element();
-  for (const int e : elements_) {
-    for (int a = 0; a < n; ++a) ++first_share_[static_cast<std::size_t>(fem.elements()(a, e) + 1)];
-  }
-  std::partial_sum(first_share_.begin(), first_share_.end(), first_share_.begin());
-  shares_.resize(elements_.size() * static_cast<std::size_t>(n));
-  std::vector<int> next = first_share_;
-  for (std::size_t i = 0; i < elements_.size(); ++i) {
-    for (int a = 0; a < n; ++a) {
-      int& at = next[static_cast<std::size_t>(fem.elements()(a, elements_[i]))];
-      shares_[static_cast<std::size_t>(at++)] = static_cast<int>(i) * n + a;
-    }
-  }
-}
+      corners_(fem.elements(), elements_, fem.node_count()),
+      scratch_(std::make_unique<VectorPool>()) {}
 
 // Elements in parallel, then nodes, each of which sums its shares in the same order whatever the threads do.
 template <int N, typename Law>
 void NeoHookean::force(const Lame& c, const Eigen::VectorXd& u, const Law& law, Eigen::VectorXd& f) const {
-  VectorPool::Loan shares(*scratch_, 3 * static_cast<Eigen::Index>(shares_.size()));
+  VectorPool::Loan shares(*scratch_, 3 * static_cast<Eigen::Index>(corners_.corners.size()));
   const auto count = static_cast<int>(elements_.size());
   tbb::parallel_for(tbb::blocked_range<int>(0, count, kElements), [&](const tbb::blocked_range<int>& part) {
     for (int i = part.begin(); i < part.end(); ++i) {
@@ -144,9 +129,9 @@ void NeoHookean::force(const Lame& c, const Eigen::VectorXd& u, const Law& law, 
   tbb::parallel_for(tbb::blocked_range<int>(0, fem_.node_count(), kNodes), [&](const tbb::blocked_range<int>& part) {
     for (int node = part.begin(); node < part.end(); ++node) {
       Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-      for (int k = first_share_[static_cast<std::size_t>(node)]; k < first_share_[static_cast<std::size_t>(node) + 1];
-           ++k) {
-        sum += shares->segment<3>(3 * static_cast<Eigen::Index>(shares_[static_cast<std::size_t>(k)]));
+      const auto at = static_cast<std::size_t>(node);
+      for (int k = corners_.first[at]; k < corners_.first[at + 1]; ++k) {
+        sum += shares->segment<3>(3 * static_cast<Eigen::Index>(corners_.corners[static_cast<std::size_t>(k)]));
       }
       f.segment<3>(3 * node) -= sum;
     }

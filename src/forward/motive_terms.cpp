@@ -50,6 +50,12 @@ std::vector<Eigen::VectorXd> moved(const Model& model, const PriorView& prior, c
   return list;
 }
 
+// Absent at the parameters p, but not elsewhere.
+template <typename Term>
+bool sleeps(const Term& term, const Eigen::VectorXd& p, const Eigen::VectorXd& elsewhere) {
+  return term.coefficient(p) == 0.0 && term.coefficient(elsewhere) != 0.0;
+}
+
 }  // namespace
 
 Eigen::VectorXd without(const Model& model, std::size_t part, Eigen::VectorXd theta) {
@@ -159,14 +165,13 @@ std::vector<SparseMatrix> sleeping_stiffness(const Model& model, const PriorView
     const Eigen::VectorXd p = part.parameters(prior.theta), generic = part.parameters(prior.generic);
     SparseMatrix sum = model.fem().pattern();
     bool any = false;
-    const auto sleeps = [&](const Coefficient& c) { return c(p) == 0.0 && c(generic) != 0.0; };
     for (const auto& term : part.terms.stiffness) {
-      if (!sleeps(term.coefficient)) continue;
+      if (!sleeps(term, p, generic)) continue;
       add_scaled(sum, term.coefficient(generic), *term.matrix);
       any = true;
     }
     for (const auto& term : part.terms.strain_stiffness) {
-      if (!sleeps(term.coefficient)) continue;
+      if (!sleeps(term, p, generic)) continue;
       add_strain_stiffness(model.fem(), term.at(p), term.coefficient(generic), sum);
       any = true;
     }
@@ -178,8 +183,9 @@ std::vector<SparseMatrix> sleeping_stiffness(const Model& model, const PriorView
 bool answers_motion(const Model& model, const PriorView& prior, std::size_t index) {
   const auto& part = model.parts()[index];
   const Eigen::VectorXd p = part.parameters(prior.theta), generic = part.parameters(prior.generic);
-  const auto sleeps = [&](const auto& term) { return term.coefficient(p) == 0.0 && term.coefficient(generic) != 0.0; };
-  const auto any = [&](const auto& terms) { return std::any_of(terms.begin(), terms.end(), sleeps); };
+  const auto any = [&](const auto& terms) {
+    return std::any_of(terms.begin(), terms.end(), [&](const auto& term) { return sleeps(term, p, generic); });
+  };
   const auto moves = [&](const StrainTerm& term) { return model.estimated(part, term.shape); };
   const std::vector<StrainTerm>& strained = part.terms.strain_stiffness;
   return any(part.terms.stiffness) || any(part.terms.mass) || any(strained) ||
@@ -191,12 +197,11 @@ Eigen::MatrixXd sleeping_forces(const Model& model, const PriorView& prior, std:
   const auto& part = model.parts()[index];
   const Eigen::VectorXd p = part.parameters(prior.theta), generic = part.parameters(prior.generic);
   Eigen::MatrixXd forces(u.rows(), 0), sum = Eigen::MatrixXd::Zero(u.rows(), u.cols());
-  const auto sleeps = [&](const Coefficient& c) { return c(p) == 0.0 && c(generic) != 0.0; };
   for (const auto& term : part.terms.stiffness) {
-    if (sleeps(term.coefficient)) sum += term.coefficient(generic) * (*term.matrix * u);
+    if (sleeps(term, p, generic)) sum += term.coefficient(generic) * (*term.matrix * u);
   }
   for (const auto& term : part.terms.strain_stiffness) {
-    if (sleeps(term.coefficient)) {
+    if (sleeps(term, p, generic)) {
       sum += term.coefficient(generic) * apply_strain_stiffness(model.fem(), term.at(p), strains);
     }
     if (term.coefficient(generic) == 0.0) continue;
@@ -206,7 +211,7 @@ Eigen::MatrixXd sleeping_forces(const Model& model, const PriorView& prior, std:
   }
   if (!sum.isZero(0.0)) append(forces, sum);
   for (const auto& term : part.terms.mass) {
-    if (sleeps(term.coefficient)) append(forces, *term.matrix * u);
+    if (sleeps(term, p, generic)) append(forces, *term.matrix * u);
   }
   return forces;
 }

@@ -38,10 +38,9 @@ class MeshError {
   MeshError(const ModelSettings& settings, const TetMesh& mesh);
   /// For studies at theta alone, which the finer mesh's basis then needs to hold alone: half the work.
   MeshError(const ModelSettings& settings, const TetMesh& mesh, const Eigen::VectorXd& theta);
-  /// With the regions' parts of the mesh as given, and a basis of that size. `fine`: the same model for the finer mesh, in
-  /// which more may be known, as it runs at one place only.
-  MeshError(const ModelSettings& settings, const ModelSettings& fine, const TetMesh& mesh,
-            const std::map<std::string, Region>& regions, const BasisOptions& basis);
+  /// The same with the regions' parts of the mesh as given, and the coarse model's basis of that size.
+  MeshError(const ModelSettings& settings, const TetMesh& mesh, const std::map<std::string, Region>& regions,
+            const BasisOptions& basis, const Eigen::VectorXd& theta);
   ~MeshError();
   MeshError(const MeshError&) = delete;
   MeshError& operator=(const MeshError&) = delete;

@@ -26,12 +26,8 @@ struct PatchModel {
   double common_std = 0.0;
 };
 
-enum class PatchModuli { estimated, known };
-
-/// `log_modulus`: of each patch, about which its modulus is looked for, or what it is known to be. Throws as require_map
-/// does.
-PatchModel with_patches(const Model& model, const std::vector<Patch>& patches, const Eigen::VectorXd& log_modulus,
-                        PatchModuli moduli = PatchModuli::estimated);
+/// `log_modulus`: of each patch, about which its modulus is looked for. Throws as require_map does.
+PatchModel with_patches(const Model& model, const std::vector<Patch>& patches, const Eigen::VectorXd& log_modulus);
 
 /// Prior covariance of all free parameters of a patch model: that of its moduli is common_std^2 + smooth_covariance, the
 /// body's modulus and how it varies; others keep their own variances.

@@ -4,8 +4,10 @@
 #include <Eigen/Sparse>
 #include <array>
 #include <memory>
+#include <utility>
 #include <vector>
 
+#include "tissue_stiffness/fem/node_corners.hpp"
 #include "tissue_stiffness/types/tet_mesh.hpp"
 
 namespace tissue_stiffness {
@@ -64,7 +66,6 @@ class Discretisation {
 
  private:
   void compute_gradients();
-  void list_corners();
   void compute_pattern();
   template <typename Block>
   SparseMatrix assemble(const Eigen::VectorXd& element_weight, const Block& block) const;
@@ -74,8 +75,8 @@ class Discretisation {
   void for_each_corner(int node, const Visit& visit) const {
     const auto at = static_cast<std::size_t>(node);
     const int n = nodes_per_element();
-    for (int k = first_corner_[at]; k < first_corner_[at + 1]; ++k) {
-      const int corner = corners_[static_cast<std::size_t>(k)];
+    for (int k = corners_.first[at]; k < corners_.first[at + 1]; ++k) {
+      const int corner = corners_.corners[static_cast<std::size_t>(k)];
       visit(corner / n, corner % n);
     }
   }
@@ -88,8 +89,7 @@ class Discretisation {
   Eigen::MatrixXd weights_;
   Eigen::Matrix3Xd positions_;
   SparseMatrix pattern_;
-  std::vector<int> first_corner_;  ///< of each node in corners_, and the end
-  std::vector<int> corners_;       ///< element times nodes an element, plus the node's local number
+  NodeCorners corners_;  ///< of all elements
   std::vector<int> slots_;
 };
 
@@ -99,7 +99,7 @@ inline void take(SparseMatrix& to, SparseMatrix&& from) {
 }
 inline std::shared_ptr<const SparseMatrix> shared(SparseMatrix&& matrix) {
   auto out = std::make_shared<SparseMatrix>();
-  out->swap(matrix);
+  take(*out, std::move(matrix));
   return out;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tissue_stiffness/fem/discretisation.hpp"
+#include "tissue_stiffness/fem/node_corners.hpp"
 #include "tissue_stiffness/fem/vector_pool.hpp"
 
 namespace tissue_stiffness {
@@ -51,8 +52,7 @@ class NeoHookean {
 
   const Discretisation& fem_;
   std::vector<int> elements_;
-  /// Where a node's shares of the elements' forces stand, N to an element of the list: the next of `shares_`.
-  std::vector<int> first_share_, shares_;
+  NodeCorners corners_;                  ///< where a node's shares of the elements' forces stand
   std::unique_ptr<VectorPool> scratch_;  ///< for those shares, of each force that is summed at the time
 };
 
