@@ -9,6 +9,7 @@
 #include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/estimation/mesh_error.hpp"
 #include "tissue_stiffness/estimation/posterior.hpp"
+#include "tissue_stiffness/settings/extend_model.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
@@ -33,9 +34,7 @@ Fitted fit_model(const ModelSettings& settings, const TetMesh& mesh, const Recor
 Fitted extended(const Fitted& base, const Refit& refit) {
   if (refit.model) return std::move(*refit.model);
   Fitted out;
-  ModelSettings settings = base.study->model().settings();
-  for (const std::string& entry : refit.entries) add_effect(settings, entry);
-  out.study = std::make_unique<Study>(settings, *base.study);
+  out.study = std::make_unique<Study>(extend_model(base.study->model().settings(), refit.entries), *base.study);
   const Model& model = out.study->model();
   out.fit = out.study->fit(model.coordinates(refit.parameters, model.prior_mean()), kAddedSpread * model.prior_std());
   out.rows = out.study->rows(out.fit.w);

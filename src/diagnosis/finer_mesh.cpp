@@ -1,6 +1,7 @@
 #include "tissue_stiffness/diagnosis/finding.hpp"
 #include "tissue_stiffness/estimation/mesh_error.hpp"
 #include "tissue_stiffness/meshing/refine.hpp"
+#include "tissue_stiffness/settings/extend_model.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
@@ -30,9 +31,7 @@ Eigen::VectorXd finer_mesh(const Fitted& base) {
 }
 
 double cost_on_finer_mesh(const Fitted& base, const Refit& refit) {
-  ModelSettings settings = base.study->model().settings();
-  for (const std::string& entry : refit.entries) add_effect(settings, entry);
-  const Study fine = on_finer_mesh(*base.study, settings);
+  const Study fine = on_finer_mesh(*base.study, extend_model(base.study->model().settings(), refit.entries));
   const Eigen::VectorXd start = fine.model().coordinates(refit.parameters, fine.model().prior_mean());
   const BatchFit fit = fine.fit(fine.scan_near(start, fine.shared_with(*base.study)).w, fine.spread_beyond(*base.study));
   return fine.rows(fit.w).error.squaredNorm();

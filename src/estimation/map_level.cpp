@@ -34,7 +34,6 @@ Eigen::VectorXd spread_out(const Eigen::VectorXd& base, Eigen::Index at, const E
 MapLevel::MapLevel(const MapQuestion& question, const Model& base, std::vector<Patch> patches, const Eigen::VectorXd& start,
                    const Eigen::VectorXd& log_modulus)
     : question_(question),
-      base_(base),
       patches_(std::move(patches)),
       centers_(centers(base.mesh(), patches_)),
       patch_model_(with_patches(base, patches_, log_modulus)),

@@ -26,6 +26,11 @@ void make_absolute(YAML::Node node, const std::string& directory) {
 
 }  // namespace
 
+ModelSettings extend_model(ModelSettings model, const std::vector<std::string>& entries) {
+  for (const std::string& entry : entries) add_effect(model, entry);
+  return model;
+}
+
 std::string extend_model(const std::string& text, const std::vector<std::string>& entries, const std::string& directory) {
   try {
     YAML::Node model = YAML::Load(text);

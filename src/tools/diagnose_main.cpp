@@ -28,16 +28,11 @@ std::string read_text(const std::string& file) {
 
 using namespace tissue_stiffness;
 
-ModelSettings last_model(ModelSettings settings, const Diagnosis& diagnosis) {
-  for (const std::string& entry : diagnosis.entries) add_effect(settings, entry);
-  return settings;
-}
-
 /// What an estimator makes of the last step's model; of a model that is integrated in full what the fit made of it: that
 /// would take as long as the diagnosis.
 Estimate estimate_at_last(const ModelSettings& settings, const TetMesh& mesh, const Recording& recording,
                           const Diagnosis& diagnosis) {
-  const ModelSettings last = last_model(settings, diagnosis);
+  const ModelSettings last = extend_model(settings, diagnosis.entries);
   if (Model(last, mesh).nonlinear()) return diagnosis.estimate;
   Estimator estimator(last, mesh);
   estimator.set_first_stamp(recording.first_stamp);
@@ -65,7 +60,7 @@ Showing show(const ModelSettings& settings, const RecordingReader& reader, const
   out.replays.back().name = "as given";
   if (diagnosis.entries.empty()) return out;
   try_run("the extended model", [&] {
-    const ModelSettings extended = last_model(settings, diagnosis);
+    const ModelSettings extended = extend_model(settings, diagnosis.entries);
     out.replays.push_back(replay_model(extended, reader.mesh(), recording, diagnosis.steps.back().parameters, stamps));
     out.replays.back().name = "with " + effect_list(diagnosis.final_effects);
   });

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <thread>
 
 #include "bar.hpp"
@@ -73,9 +74,14 @@ TEST(Background, ComesToTheSameEstimate) {
 TEST(Background, CatchesUpAfterTheLastFrame) {
   const std::vector<Frame> frames = recording();
   const ParameterEstimate at_once = estimated_at_once(frames);
-  Estimator estimator(box_settings(kPulled), bar_mesh());
-  estimator.work_in_background();
-  StepResult last = step_with_loads(estimator, frames, {});  // so fast that looks do not end in time
+  std::unique_ptr<Estimator> running;
+  StepResult last;
+  for (int k = 0; k < 10 && !(running && running->looks_back()); ++k) {  // now and then a look ends in time
+    running = std::make_unique<Estimator>(box_settings(kPulled), bar_mesh());
+    running->work_in_background();
+    last = step_with_loads(*running, frames, {});
+  }
+  Estimator& estimator = *running;
   const double time = last.estimate.time;
   EXPECT_TRUE(estimator.looks_back());
   for (int k = 0; k < 1000 && estimator.looks_back(); ++k) {
@@ -95,7 +101,7 @@ TEST(Background, HoldsUpNoFrame) {
   estimator.work_in_background();
   const double beside = revisits_within(estimator, frames), at_once = revisits_within(waiting, frames);
   std::printf("looks back within frames: %.2f ms in the background, %.2f ms at once\n", 1e3 * beside, 1e3 * at_once);
-  EXPECT_LT(beside, 0.5 * at_once);
+  EXPECT_LT(beside, 0.2 * at_once);
 }
 
 TEST(Background, IsGivenUpByAReset) {

@@ -57,7 +57,6 @@ class MapLevel {
   double prior_cost() const;
 
   const MapQuestion& question_;
-  const Model& base_;
   std::vector<Patch> patches_;
   Eigen::Matrix3Xd centers_;
   PatchModel patch_model_;
