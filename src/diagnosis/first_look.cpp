@@ -13,6 +13,10 @@ constexpr double kAdequate = 1.1;       // rms in sigmas up to which a residual 
 constexpr double kExplains = 0.8;       // of the structured part: less is no explanation
 constexpr double kPairExplains = 0.97;  // two effects imitate most of a third: gravity with a delay 94 % of viscoelasticity
 
+// Of the sum of squares: a mesh's change that would add more to it is none of the error's. The fit on the finer mesh has
+// ended in another minimum, or what is missing has led both fits astray.
+constexpr double kElsewhere = 0.2;
+
 }  // namespace
 
 FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Eigen::VectorXd change)
@@ -30,6 +34,10 @@ FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Eige
         if (mesh_change.size() == 0) mesh_change = finer_mesh(base);
       });
   by_mesh = cost - (r.error - mesh_change).squaredNorm();
+  if (by_mesh < -kElsewhere * cost) {
+    mesh_change.setZero();
+    by_mesh = 0.0;
+  }
   floor = Scorer(r.error, known, r.offsets, 1.0).remaining(mesh_change);
   // An effect has to explain what the mesh does not.
   scorer = std::make_unique<Scorer>(r.error - mesh_change, known, r.offsets, 1.0, kRemainder * mesh_change);

@@ -1,0 +1,55 @@
+// What the mesh is blamed for.
+#include "tissue_stiffness/diagnosis/first_look.hpp"
+
+#include <gtest/gtest.h>
+
+#include "../box_model.hpp"
+#include "verification/experiment.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr double kNoise = 1e-4;
+
+class BarWithADamping : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::vector<std::string> effects{
+        "inertia: {density: 1000}",
+        "elasticity: {law: linear, poisson_ratio: 0.45, young_modulus: {prior: 20.0e3, factor: 3}}",
+        "fixed: {region: clamp}", "gravity: {acceleration: [0.5, 1, -3]}"};
+    given_ = box_settings(effects);
+    effects.push_back("viscous_damping: {beta: 6.0e-3}");
+    const Experiment experiment(box_settings(effects), bar_mesh(), {20e3});
+    recording_.frames = see_all(experiment, experiment.film(0.0, 0.02, 40), kNoise, 1);
+    base_.study = std::make_unique<Study>(given_, bar_mesh(), recording_);
+    const Model& model = base_.study->model();
+    base_.fit = base_.study->fit(model.prior_mean(), 0.1 * model.prior_std());
+    base_.rows = base_.study->rows(base_.fit.w);
+  }
+
+  ModelSettings given_;
+  Recording recording_;
+  Fitted base_;
+};
+
+TEST_F(BarWithADamping, CountsAMeshsChangeThatIsPartOfTheError) {
+  const Eigen::VectorXd part = 0.3 * base_.rows.error;
+  const FirstLook look(base_, {}, part);
+  EXPECT_EQ(look.mesh_change, part);
+  EXPECT_NEAR(look.by_mesh, (1.0 - 0.49) * look.cost, 1e-9 * look.cost);
+  EXPECT_GT(look.floor, 0.0);
+  EXPECT_GT(look.unavoidable(), look.rows);
+}
+
+// A fit on a finer mesh that ended in another minimum: no effect has to explain more than that.
+TEST_F(BarWithADamping, DropsAMeshsChangeThatMakesTheErrorMuchLarger) {
+  const FirstLook look(base_, {}, -0.3 * base_.rows.error);
+  EXPECT_FALSE(look.mesh_change.any());
+  EXPECT_EQ(look.by_mesh, 0.0);
+  EXPECT_EQ(look.floor, 0.0);
+  EXPECT_EQ(look.unavoidable(), look.rows);
+}
+
+}  // namespace
+}  // namespace tissue_stiffness
