@@ -1,5 +1,7 @@
 #include "tissue_stiffness/estimation/batch_fit.hpp"
 
+#include <algorithm>
+
 #include "tissue_stiffness/estimation/compare.hpp"
 
 namespace tissue_stiffness {
@@ -7,11 +9,14 @@ namespace {
 
 constexpr int kMostIterations = 25;
 constexpr int kMostCuts = 5;
-constexpr double kLongestStep = 1.0;  // prior standard deviations at once
-constexpr double kSmallStep = 0.02;   // posterior standard deviations: converged
-constexpr double kFloor = 1e-4;       // of the prior's standard deviation: smallest span of the sigma points
-constexpr double kGain = 1e-5;        // relative fall of the cost below which it is over
-constexpr double kNarrower = 0.7;     // of the sigma points' span: with more than that a step comes out as it did
+constexpr double kCut = 0.3;
+constexpr double kLeastDamping = 1e-3;  // of the information's diagonal, once a step has failed
+constexpr double kHarder = 10.0;        // times that after each more
+constexpr double kLongestStep = 1.0;    // prior standard deviations at once
+constexpr double kSmallStep = 0.02;     // posterior standard deviations: converged
+constexpr double kFloor = 1e-4;         // of the prior's standard deviation: smallest span of the sigma points
+constexpr double kGain = 1e-5;          // relative fall of the cost below which it is over
+constexpr double kNarrower = 0.7;       // of the sigma points' span: with more than that a step comes out as it did
 
 void run(const FitProblem& problem, AnchoredFilter& filter, const Eigen::VectorXd& anchor, const Eigen::VectorXd& spread) {
   filter.move_anchor(anchor, spread);
@@ -25,22 +30,36 @@ void run(const FitProblem& problem, AnchoredFilter& filter, const Eigen::VectorX
   }
 }
 
+// Were the others known: where parameters make up for one another, a point that moves one of them by its own standard
+// deviation is far from what the data allow, and no line passes there.
+Eigen::VectorXd std_of_each(const AnchoredFilter& filter) {
+  const Eigen::Index p = filter.anchor().size();
+  return filter.covariance().ldlt().solve(Eigen::MatrixXd::Identity(p, p)).diagonal().cwiseSqrt().cwiseInverse();
+}
+
+// Shortened as a whole where it is too long: parameters that make up for one another have to move together.
+Eigen::VectorXd step(const AnchoredFilter& filter, double damping, const Eigen::VectorXd& prior) {
+  const Eigen::VectorXd move = filter.mean(damping) - filter.anchor();
+  return move / std::max(1.0, (move.array() / prior.array()).abs().maxCoeff() / kLongestStep);
+}
+
 }  // namespace
 
 AnchoredFilter fit_filter(const FitProblem& problem, AnchoredFilter filter, const Eigen::VectorXd& start,
                           const Eigen::VectorXd& spread) {
   const Eigen::VectorXd prior = filter.spread();
+  double damping = 0.0;
   run(problem, filter, start, spread);
   for (int k = 0; k < kMostIterations; ++k) {
-    const Eigen::VectorXd std = filter.covariance().diagonal().cwiseSqrt();
-    const Eigen::VectorXd limit = kLongestStep * prior;
-    Eigen::VectorXd move = (filter.mean() - filter.anchor()).cwiseMax(-limit).cwiseMin(limit);
-    if ((move.array().abs() < kSmallStep * std.array()).all()) break;
-    const Eigen::VectorXd next = (2.0 * std).cwiseMin(filter.spread()).cwiseMax(kFloor * prior);
     const AnchoredFilter before = filter;
+    const Eigen::VectorXd std = before.covariance().diagonal().cwiseSqrt();
+    if (((before.mean() - before.anchor()).array().abs() < kSmallStep * std.array()).all()) break;
+    const Eigen::VectorXd next = (2.0 * std_of_each(before)).cwiseMin(before.spread()).cwiseMax(kFloor * prior);
     bool better = false;
-    for (int cut = 0; cut < kMostCuts && !better; ++cut, move *= 0.3) {
-      run(problem, filter, before.anchor() + move, next);
+    int tried = 0;
+    for (double cut = 1.0; tried < kMostCuts && !better; ++tried, cut *= kCut) {
+      if (tried > 0) damping = std::max(kLeastDamping, kHarder * damping);
+      run(problem, filter, before.anchor() + cut * step(before, damping, prior), next);
       better = filter.cost() < before.cost();
     }
     if (!better) {
@@ -50,6 +69,7 @@ AnchoredFilter fit_filter(const FitProblem& problem, AnchoredFilter filter, cons
       continue;
     }
     if (before.cost() - filter.cost() < kGain * before.cost()) break;
+    if (tried == 1) damping = damping > kLeastDamping ? damping / kHarder : 0.0;
   }
   return filter;
 }

@@ -89,8 +89,13 @@ Eigen::MatrixXd AnchoredFilter::total_information() const {
 }
 
 Eigen::VectorXd AnchoredFilter::mean() const {
-  return anchor_ +
-         total_information().ldlt().solve(gradient_ / misfit_scale() + prior_information_ * (prior_mean_ - anchor_));
+  return mean(0.0);
+}
+
+Eigen::VectorXd AnchoredFilter::mean(double damping) const {
+  Eigen::MatrixXd information = total_information();
+  information.diagonal() *= 1.0 + damping;
+  return anchor_ + information.ldlt().solve(gradient_ / misfit_scale() + prior_information_ * (prior_mean_ - anchor_));
 }
 
 Eigen::MatrixXd AnchoredFilter::covariance() const {

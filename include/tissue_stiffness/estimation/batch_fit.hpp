@@ -14,9 +14,9 @@ struct BatchFit {
   double cost = 0.0;           ///< sum of squared errors over sigma at w, the prior's included
 };
 
-/// Gauss-Newton on the free run's posterior from `start`, linearised over `spread` (filter coordinates) at first and over a
-/// few posterior standard deviations later. Steps that do not lower the cost are cut. Throws NumericalError when the run at
-/// `start` diverges.
+/// Gauss-Newton on the free run's posterior from `start`, linearised over `spread` (filter coordinates) at first and later
+/// over what the data leave of each parameter beside the others. Steps that do not lower the cost are cut and damped
+/// (Marquardt 1963, eq. 28). Throws NumericalError when the run at `start` diverges.
 BatchFit fit_batch(const FitProblem& problem, const Eigen::VectorXd& start, const Eigen::VectorXd& spread);
 
 /// The same with any prior: that of `filter`, which has seen no frame. Ends anchored at the most probable parameters.

@@ -42,6 +42,9 @@ class AnchoredFilter {
                     const Eigen::VectorXd& weight);
 
   Eigen::VectorXd mean() const;
+  /// The same with `damping` times the information's diagonal added to it (Marquardt 1963): shorter, and more along what
+  /// the data tell.
+  Eigen::VectorXd mean(double damping) const;
   /// Inverse of the information; both count the noise as `misfit_scale` times larger in variance than the sensor's.
   Eigen::MatrixXd covariance() const;
   /// The same, wider where the errors of successive frames agree more than noise does (score_batches.hpp).

@@ -1,0 +1,82 @@
+// Fits of parameters that make up for one another: how stiff a ball in a bar is, how large, and the bar around it.
+#include "tissue_stiffness/estimation/batch_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+
+#include "bar.hpp"
+#include "tissue_stiffness/forward/observation_operator.hpp"
+#include "tissue_stiffness/forward/reduced_model.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr int kFrames = 60;
+constexpr double kModulus = 30e3;
+
+struct Ball {
+  Eigen::Vector3d center;
+  double radius, excess;
+};
+
+std::string text(const Eigen::Vector3d& x) {
+  return "[" + std::to_string(x[0]) + ", " + std::to_string(x[1]) + ", " + std::to_string(x[2]) + "]";
+}
+
+ModelSettings bar_with_ball(const std::string& young_modulus, const std::string& ball) {
+  std::vector<std::string> effects = bar_under_gravity(young_modulus);
+  effects.push_back("stiff_inclusion: " + ball);
+  return box_settings(effects);
+}
+
+ModelSettings looks_for(const Ball& ball) {
+  return bar_with_ball(prior(25e3, 3.0), "{center: {mean: " + text(ball.center) +
+                                             ", std: 0.008}, radius: " + prior(ball.radius, 1.5) +
+                                             ", excess: {mean: " + std::to_string(ball.excess) + ", std: 3}}");
+}
+
+// As the diagnosis does before it fits.
+Eigen::VectorXd with_best_modulus(const FitProblem& problem) {
+  Eigen::VectorXd best = problem.model.prior_mean();
+  double lowest = std::numeric_limits<double>::infinity();
+  for (double off = -0.4; off < 0.4; off += 0.01) {
+    Eigen::VectorXd w = problem.model.prior_mean();
+    w[0] = std::log(kModulus) + off;
+    const double cost = free_fit(problem, w).cost;
+    if (cost < lowest) lowest = cost, best = w;
+  }
+  return best;
+}
+
+TEST(BatchFit, FollowsValleysOfParametersThatMakeUpForOneAnother) {
+  const TetMesh mesh = bar_mesh(8, 2, 2);
+  std::mt19937 engine(1);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0), either(-1.0, 1.0);
+  for (int draw = 0; draw < 6; ++draw) {
+    Ball ball{{0.02 + 0.06 * uniform(engine), 0.02 * uniform(engine), 0.02 * uniform(engine)},
+              0.007 + 0.007 * uniform(engine),
+              0.5 + 2.0 * uniform(engine)};
+    const Experiment truth(
+        bar_with_ball(prior(kModulus, 2.0), "{center: " + text(ball.center) + ", radius: " + std::to_string(ball.radius) +
+                                                ", excess: " + std::to_string(ball.excess) + "}"),
+        mesh, {kModulus});
+    const std::vector<Frame> frames = see_all(truth, truth.film(0.0, kFilmed, kFrames), kNoise, 3);
+
+    for (double& x : ball.center) x += 0.004 * either(engine);
+    ball.radius *= std::exp(0.3 * either(engine));
+    ball.excess *= 1.0 + 0.5 * either(engine);
+    const Model model(looks_for(ball), mesh);
+    const ReducedModel runs(model);
+    const auto operators = make_observation_operators(model);
+    const FitProblem problem{model, runs, operators, frames, 0.0};
+    const Eigen::VectorXd start = with_best_modulus(problem);
+    const BatchFit fit = fit_batch(problem, start, 0.02 * model.prior_std());
+    const FreeFit left = free_fit(problem, fit.w);
+    EXPECT_LT(left.cost, 1.05 * left.rows) << "ball " << draw << ", from " << free_fit(problem, start).cost;
+  }
+}
+
+}  // namespace
+}  // namespace tissue_stiffness
