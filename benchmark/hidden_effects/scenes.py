@@ -7,6 +7,7 @@ STEP = 0.0005       # s, of a truth
 TRIAL_STEP = 0.001  # s, where only an effect's size is asked for
 RATE = 30.0         # frames/s
 NOISE = 2e-4        # m
+LAYER_CELLS = 2
 
 
 def elasticity(modulus, poisson=0.45, **more):
@@ -33,13 +34,17 @@ class Scene:
 
     def layer(self, hidden):
         """Thickness of what lies between the body and what holds it [m]."""
-        return 0.2 * self.size[0] if hidden == 'elastic_support' else 0.0
+        return 0.05 * self.size[0] if hidden == 'elastic_support' else 0.0
 
     def mesh(self, cells, hidden='none'):
-        """Nodes and tetrahedra of the body and of the layer that it may lie on."""
+        """Nodes and tetrahedra of the body and of the layer that it may be held by."""
         layer = self.layer(hidden)
-        more = round(cells[0] * layer / self.size[0])
-        return box([self.size[0] + layer] + self.size[1:], [cells[0] + more] + cells[1:], (-layer, 0, 0))
+        more = LAYER_CELLS if layer else 0
+        nodes, tets = box([cells[0] + more] + self.size[1:], [cells[0] + more] + cells[1:])
+
+        def place(i):
+            return layer * (i / more - 1) if i < more else self.size[0] * (i - more) / cells[0]
+        return [(place(round(node[0])), *node[1:]) for node in nodes], tets
 
     def truth(self, modulus, hidden, s, load):
         """Regions and effects of the body with `hidden` in it."""

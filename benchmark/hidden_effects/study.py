@@ -21,7 +21,8 @@ DURATION = 1.6    # s
 TOPIC = '/tissue/markers'
 MISFITS = (0.03, 0.1, 0.3)   # of the motion
 TWINS = [{'viscous_damping', 'mass_damping', 'viscoelasticity'}, {'density_error', 'force_scale', 'image_scale', 'added_mass'},
-         {'fibre_reinforcement', 'stiff_inclusion'}]
+         {'fibre_reinforcement', 'stiff_inclusion'},
+         {'elastic_support', 'stiff_inclusion'}]  # what is soft beside the clamp, and what is soft there
 HIDDEN = {
     'bar released under gravity': ['none', 'viscous_damping', 'viscoelasticity', 'elastic_support', 'stiff_inclusion',
                                    'added_mass', 'foundation', 'geometric_nonlinearity'],
