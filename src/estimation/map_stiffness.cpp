@@ -56,7 +56,8 @@ void paint(StiffnessMap& map, const std::vector<Patch>& patches, const TetMesh& 
     for (const int tet : patches[r]) {
       map.patch_of_tet[static_cast<std::size_t>(tet)] = static_cast<int>(r);
       if (!map.patches[r].identified) continue;
-      for (const int node : mesh.tets.col(tet)) {
+      for (Eigen::Index k = 0; k < mesh.tets.rows(); ++k) {
+        const int node = mesh.tets(k, tet);
         sum[node] += std::log(map.patches[r].young_modulus);
         count[node] += 1.0;
       }

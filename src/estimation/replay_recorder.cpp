@@ -61,8 +61,8 @@ FacingPoints facing_points(const Contour& contour, const Prediction& p, Eigen::I
 
 double mean_finite(const Eigen::VectorXd& values) {
   double sum = 0.0, count = 0.0;
-  for (const double value : values) {
-    if (std::isfinite(value)) sum += value, count += 1.0;
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    if (std::isfinite(values[i])) sum += values[i], count += 1.0;
   }
   return count > 0.0 ? sum / count : kNaN;
 }

@@ -56,11 +56,10 @@ Eigen::MatrixXd ScoreBatches::widened(const Eigen::MatrixXd& covariance, const E
   const double chance =
       kBeyondChance *
       std::pow(1.0 + std::sqrt(static_cast<double>(covariance.rows()) / static_cast<double>(batches_.size())), 2);
-  Eigen::VectorXd factor = eigen.eigenvalues();
-  for (double& f : factor) {
+  const Eigen::VectorXd factor = eigen.eigenvalues().unaryExpr([&](double f) {
     const double share = std::clamp((f - chance) / ((kFully - 1.0) * chance), 0.0, 1.0);
-    f = 1.0 + share * (std::max(f, 1.0) - 1.0);
-  }
+    return 1.0 + share * (std::max(f, 1.0) - 1.0);
+  });
   const Eigen::MatrixXd wide = l * eigen.eigenvectors() * factor.cwiseSqrt().asDiagonal();
   return wide * wide.transpose();
 }

@@ -39,9 +39,11 @@ Eigen::VectorXd interpolated(Eigen::VectorXd values, const TetMesh& mesh) {
   for (int ring = 0; ring < kRings; ++ring) {
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(values.size()), count = sum;
     for (Eigen::Index facet = 0; facet < mesh.facets.cols(); ++facet) {
-      for (const int from : mesh.facets.col(facet)) {
+      for (Eigen::Index i = 0; i < mesh.facets.rows(); ++i) {
+        const int from = mesh.facets(i, facet);
         if (!std::isfinite(values[from])) continue;
-        for (const int to : mesh.facets.col(facet)) {
+        for (Eigen::Index j = 0; j < mesh.facets.rows(); ++j) {
+          const int to = mesh.facets(j, facet);
           sum[to] += std::abs(values[from]);
           count[to] += 1.0;
         }
@@ -61,7 +63,7 @@ Eigen::VectorXd lights(const TetMesh& mesh, const Eigen::Matrix3Xd& positions) {
   for (Eigen::Index facet = 0; facet < mesh.facets.cols(); ++facet) {
     const auto corner = [&](int i) { return positions.col(mesh.facets(i, facet)); };
     const Eigen::Vector3d normal = (corner(1) - corner(0)).cross(corner(2) - corner(0));
-    for (const int node : mesh.facets.col(facet)) normals.col(node) += normal;
+    for (Eigen::Index i = 0; i < mesh.facets.rows(); ++i) normals.col(mesh.facets(i, facet)) += normal;
   }
   Eigen::VectorXd out(positions.cols());
   for (Eigen::Index i = 0; i < out.size(); ++i) {

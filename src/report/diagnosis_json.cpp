@@ -60,8 +60,8 @@ json force_json(const MissingForce& f) {
   for (const Eigen::Vector3d& v : f.total) total.push_back({number(v.x()), number(v.y()), number(v.z())});
   Eigen::VectorXd square = Eigen::VectorXd::Zero(f.places.cols());
   for (const Eigen::Matrix3Xd& at : f.at_nodes) square += at.colwise().squaredNorm().transpose();
-  std::vector<double> rms;
-  for (const double s : square) rms.push_back(std::sqrt(s / static_cast<double>(f.at_nodes.size())));
+  const Eigen::VectorXd mean = (square / static_cast<double>(f.at_nodes.size())).cwiseSqrt();
+  const std::vector<double> rms(mean.data(), mean.data() + mean.size());
   return {{"words", f.words},
           {"parameters", numbers(f.parameters)},
           {"explained", number(f.explained)},

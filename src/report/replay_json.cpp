@@ -56,16 +56,14 @@ json shorts(const std::vector<double>& values) {
 
 /// {most, data}: value = most * (8-bit number / 254)^2, so that small ones keep their digits.
 json shades(const std::vector<Eigen::VectorXd>& frames) {
+  std::vector<double> all;
+  for (const Eigen::VectorXd& frame : frames) all.insert(all.end(), frame.data(), frame.data() + frame.size());
   double most = 0.0;
-  for (const Eigen::VectorXd& frame : frames) {
-    for (const double value : frame) most = std::isfinite(value) ? std::max(most, value) : most;
-  }
+  for (const double value : all) most = std::isfinite(value) ? std::max(most, value) : most;
   std::string bytes;
-  for (const Eigen::VectorXd& frame : frames) {
-    for (const double value : frame) {
-      const double share = most > 0.0 ? std::sqrt(value / most) : 0.0;
-      append(bytes, std::isfinite(value) ? static_cast<unsigned>(std::lround(kShades * share)) : kNothingSeen, 1);
-    }
+  for (const double value : all) {
+    const double share = most > 0.0 ? std::sqrt(value / most) : 0.0;
+    append(bytes, std::isfinite(value) ? static_cast<unsigned>(std::lround(kShades * share)) : kNothingSeen, 1);
   }
   return {{"most", most}, {"data", base64(bytes)}};
 }
@@ -102,7 +100,7 @@ std::vector<long> pixels(const Eigen::MatrixXd& points, Eigen::Index stride) {
   std::vector<long> out;
   for (Eigen::Index i = 0; i < points.cols(); i += stride) {
     if (!points.col(i).allFinite()) continue;
-    for (const double value : Eigen::VectorXd(points.col(i))) out.push_back(std::lround(value / kOutlineStep));
+    for (Eigen::Index k = 0; k < points.rows(); ++k) out.push_back(std::lround(points(k, i) / kOutlineStep));
   }
   return out;
 }

@@ -31,8 +31,7 @@ Eigen::VectorXd noise(std::mt19937& engine, double memory) {
 Eigen::MatrixXd ringing(double frequency, double life, unsigned seed = 1) {
   std::mt19937 engine(seed);
   std::normal_distribution<double> normal;
-  Eigen::VectorXd shape(kRowsEach);
-  for (double& s : shape) s = normal(engine);
+  const Eigen::VectorXd shape = Eigen::VectorXd::NullaryExpr(kRowsEach, [&](auto) { return normal(engine); });
   Eigen::MatrixXd x(kRows, 1);
   for (Eigen::Index t = 0; t < kFrames; ++t) {
     const double course = std::exp(-static_cast<double>(t) / life) * std::sin(frequency * static_cast<double>(t));

@@ -64,7 +64,7 @@ TEST(BatchFit, FollowsValleysOfParametersThatMakeUpForOneAnother) {
         mesh, {kModulus});
     const std::vector<Frame> frames = see_all(truth, truth.film(0.0, kFilmed, kFrames), kNoise, 3);
 
-    for (double& x : ball.center) x += 0.004 * either(engine);
+    for (int axis = 0; axis < 3; ++axis) ball.center[axis] += 0.004 * either(engine);
     ball.radius *= std::exp(0.3 * either(engine));
     ball.excess *= 1.0 + 0.5 * either(engine);
     const Model model(looks_for(ball), mesh);

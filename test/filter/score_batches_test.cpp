@@ -28,8 +28,8 @@ Covered coverage(double memory) {
     for (int k = 0; k < kFrames; ++k) {
       shared = memory * shared + std::sqrt(1.0 - memory * memory) * normal(engine);
       const double x = 1.5 + std::sin(0.05 * k);
-      Eigen::VectorXd y(kRows);
-      for (double& value : y) value = 2.0 * x + (memory > 0.0 ? 0.5 * shared : 0.0) + normal(engine);
+      const Eigen::VectorXd y = Eigen::VectorXd::NullaryExpr(
+          kRows, [&](auto) { return 2.0 * x + (memory > 0.0 ? 0.5 * shared : 0.0) + normal(engine); });
       const Eigen::VectorXd one = Eigen::VectorXd::Ones(kRows);
       filter.update(y, x * one * filter.sigma_points(), one, one);
     }
