@@ -24,6 +24,8 @@ FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Eige
   const std::string step = "tangents of the library, and what a finer mesh would change";
   options.progress(step, 0, 0);
   const Study::Rows& r = base.rows;
+  const auto worsens = [&](const Eigen::VectorXd& by) { return (r.error - by).squaredNorm() > (1.0 + kElsewhere) * cost; };
+  if (mesh_change.size() > 0 && worsens(mesh_change)) mesh_change.resize(0);
   tbb::parallel_invoke(
       [&] {
         candidates = find_candidates(*base.study, base.fit.w, options.ignore,
@@ -33,11 +35,8 @@ FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Eige
       [&] {
         if (mesh_change.size() == 0) mesh_change = finer_mesh(base);
       });
+  if (worsens(mesh_change)) mesh_change.setZero();
   by_mesh = cost - (r.error - mesh_change).squaredNorm();
-  if (by_mesh < -kElsewhere * cost) {
-    mesh_change.setZero();
-    by_mesh = 0.0;
-  }
   floor = Scorer(r.error, known, r.offsets, 1.0).remaining(mesh_change);
   // An effect has to explain what the mesh does not.
   scorer = std::make_unique<Scorer>(r.error - mesh_change, known, r.offsets, 1.0, kRemainder * mesh_change);
