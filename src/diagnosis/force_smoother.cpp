@@ -16,7 +16,6 @@ constexpr double kModeLikelier = 10.0;                     // fall of the devian
 constexpr std::pair<double, double> kNoChange{1, 1};
 // of the common level and of its step, for a mode of its own
 constexpr std::pair<double, double> kOwn[] = {{0, 0}, {0.3, 0.3}, {3, 3}, {1, 0}, {1, 0.1}, {1, 0.3}, {1, 3}, {1, 10}};
-constexpr double kRegular = 1e-12;  // relative, keeps a covariance invertible
 
 /// The state, x = (q, v, f), after a transition.
 Eigen::MatrixXd after(const ModalTransition& t, const Eigen::MatrixXd& x) {
@@ -28,6 +27,23 @@ Eigen::MatrixXd after(const ModalTransition& t, const Eigen::MatrixXd& x) {
   out.bottomRows(m) = f.matrix();
   return out;
 }
+
+/// What weighs on the state before a transition of what weighs on it after: the transposed transition.
+Eigen::VectorXd before(const ModalTransition& t, const Eigen::VectorXd& r) {
+  const Eigen::Index m = t.qq.size();
+  const auto q = r.head(m).array(), v = r.segment(m, m).array(), f = r.tail(m).array();
+  Eigen::VectorXd out(r.size());
+  out << (t.qq * q + t.vq * v).matrix(), (t.qv * q + t.vv * v).matrix(), (t.qf * q + t.vf * v + f).matrix();
+  return out;
+}
+
+/// The state before a frame's evidence, and what that evidence does to it.
+struct Passed {
+  Eigen::VectorXd x;
+  Eigen::MatrixXd p;
+  Eigen::VectorXd pull;   ///< x + P (pull, 0, 0): after the evidence
+  Eigen::MatrixXd grasp;  ///< P - P (grasp, 0; 0, 0) P: likewise
+};
 
 }  // namespace
 
@@ -48,8 +64,7 @@ ModalTransition::ModalTransition(ModalStep step, double span, Eigen::Index modes
 SmoothedForce smooth_force(const std::vector<ModalTransition>& transitions, const std::vector<FrameEvidence>& evidence,
                            const ForcePrior& prior) {
   const Eigen::Index m = prior.level.size(), size = 3 * m;
-  std::vector<Eigen::VectorXd> predicted, filtered;  // the latter smoothed in the end
-  std::vector<Eigen::MatrixXd> predicted_p, filtered_p;
+  std::vector<Passed> passed;
   Eigen::VectorXd x = Eigen::VectorXd::Zero(size);
   Eigen::MatrixXd p = Eigen::MatrixXd::Zero(size, size);
   p.diagonal().tail(m) = prior.level.cwiseAbs2();
@@ -58,40 +73,33 @@ SmoothedForce smooth_force(const std::vector<ModalTransition>& transitions, cons
     x = after(transitions[k], x);
     p = after(transitions[k], after(transitions[k], p).transpose());
     p.diagonal().tail(m) += prior.walk.cwiseAbs2();
-    predicted.push_back(x);
-    predicted_p.push_back(p);
     // By information = L L^T: the gain needs no more than I + L^T P L.
     const Eigen::LDLT<Eigen::MatrixXd> factor(evidence[k].information);
     Eigen::MatrixXd l = factor.matrixL();
     l = factor.transpositionsP().transpose() * (l * factor.vectorD().cwiseMax(0.0).cwiseSqrt().asDiagonal()).eval();
-    const Eigen::MatrixXd pl = p.leftCols(m) * l;
-    const Eigen::MatrixXd s = Eigen::MatrixXd::Identity(m, m) + l.transpose() * pl.topRows(m);
-    const Eigen::LLT<Eigen::MatrixXd> solver(s);
+    const Eigen::MatrixXd lp = l.transpose() * p.topRows(m);
+    const Eigen::LLT<Eigen::MatrixXd> solver(Eigen::MatrixXd::Identity(m, m) + lp.leftCols(m) * l);
     const Eigen::VectorXd q = x.head(m);
     const Eigen::VectorXd innovation = evidence[k].seen - evidence[k].information * q;
-    const Eigen::VectorXd there = p.leftCols(m) * innovation;
-    const Eigen::VectorXd step = there - pl * solver.solve(l.transpose() * there.head(m));
+    const Eigen::VectorXd pull = innovation - l * solver.solve(lp.leftCols(m) * innovation);
+    const Eigen::VectorXd step = p.leftCols(m) * pull;
     out.deviance += evidence[k].square - 2.0 * evidence[k].seen.dot(q) + q.dot(evidence[k].information * q) -
                     innovation.dot(step.head(m)) + 2.0 * Eigen::MatrixXd(solver.matrixL()).diagonal().array().log().sum();
+    passed.push_back({x, p, pull, l * solver.solve(l.transpose())});
     x += step;
-    p -= pl * solver.solve(pl.transpose());
+    p -= lp.transpose() * solver.solve(lp);
     p = 0.5 * (p + p.transpose()).eval();
-    filtered.push_back(x);
-    filtered_p.push_back(p);
   }
-  for (std::size_t k = evidence.size() - 1; k-- > 0;) {
-    // G = P F^T (P-)^-1, in the scale of the states.
-    const Eigen::VectorXd unit = predicted_p[k + 1].diagonal().cwiseMax(1e-300).cwiseSqrt();
-    Eigen::MatrixXd ahead = unit.cwiseInverse().asDiagonal() * predicted_p[k + 1] * unit.cwiseInverse().asDiagonal();
-    ahead.diagonal().array() += kRegular;
-    const Eigen::VectorXd behind = filtered[k + 1] - predicted[k + 1];
-    const Eigen::VectorXd scaled = unit.cwiseInverse().asDiagonal() * behind;
-    const Eigen::VectorXd solved = unit.cwiseInverse().asDiagonal() * ahead.ldlt().solve(scaled);
-    filtered[k] += after(transitions[k + 1], filtered_p[k]).transpose() * solved;
-  }
-  for (const Eigen::VectorXd& state : filtered) {
-    out.displacement.emplace_back(state.head(m));
-    out.force.emplace_back(state.tail(m));
+  // Without the covariances' inverses: those of forces that never change have none.
+  Eigen::VectorXd r = Eigen::VectorXd::Zero(size);
+  out.displacement.resize(passed.size());
+  out.force.resize(passed.size());
+  for (std::size_t k = passed.size(); k-- > 0;) {
+    if (k + 1 < passed.size()) r = before(transitions[k + 1], r);
+    r.head(m) += passed[k].pull - passed[k].grasp * (passed[k].p.topRows(m) * r);
+    const Eigen::VectorXd state = passed[k].x + passed[k].p * r;
+    out.displacement[k] = state.head(m);
+    out.force[k] = state.tail(m);
   }
   return out;
 }

@@ -37,7 +37,8 @@ struct SmoothedForce {
 };
 
 /// Modes from rest under forces that walk at random from frame to frame, seen through the residual: Kalman
-/// filter, then the smoother of Rauch, Tung & Striebel (1965, AIAA J. 3(8), eq. 3.29-3.31). One transition to each frame.
+/// filter, then the smoother of de Jong (1989, J. Am. Stat. Assoc. 84(408)), which inverts no covariance. One transition to
+/// each frame.
 SmoothedForce smooth_force(const std::vector<ModalTransition>& transitions, const std::vector<FrameEvidence>& evidence,
                            const ForcePrior& prior);
 
