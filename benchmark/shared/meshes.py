@@ -2,12 +2,12 @@
 import itertools
 
 
-def box(size, cells, corner=(0.0, 0.0, 0.0)):
+def box(size, cells):
     """Nodes and tetrahedra of a box: six a cell, all around the cell's main diagonal (Kuhn's)."""
     def number(place):
         return place[0] + (cells[0] + 1) * (place[1] + (cells[1] + 1) * place[2])
 
-    nodes = [tuple(corner[d] + size[d] * (i, j, k)[d] / cells[d] for d in range(3))
+    nodes = [tuple(size[d] * (i, j, k)[d] / cells[d] for d in range(3))
              for k in range(cells[2] + 1) for j in range(cells[1] + 1) for i in range(cells[0] + 1)]
     tets = []
     for cell in itertools.product(*map(range, cells)):

@@ -25,7 +25,6 @@ FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Eige
   options.progress(step, 0, 0);
   const Study::Rows& r = base.rows;
   const auto worsens = [&](const Eigen::VectorXd& by) { return (r.error - by).squaredNorm() > (1.0 + kElsewhere) * cost; };
-  if (mesh_change.size() > 0 && worsens(mesh_change)) mesh_change.resize(0);
   tbb::parallel_invoke(
       [&] {
         candidates = find_candidates(*base.study, base.fit.w, options.ignore,
@@ -33,7 +32,7 @@ FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Eige
         known = base_tangents(*base.study, base.fit.w, base.fit.covariance.diagonal().cwiseSqrt(), r);
       },
       [&] {
-        if (mesh_change.size() == 0) mesh_change = finer_mesh(base);
+        if (!mesh_change.any() || worsens(mesh_change)) mesh_change = finer_mesh(base);
       });
   if (worsens(mesh_change)) mesh_change.setZero();
   by_mesh = cost - (r.error - mesh_change).squaredNorm();

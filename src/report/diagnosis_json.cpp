@@ -60,8 +60,7 @@ json force_json(const MissingForce& f) {
   for (const Eigen::Vector3d& v : f.total) total.push_back({number(v.x()), number(v.y()), number(v.z())});
   Eigen::VectorXd square = Eigen::VectorXd::Zero(f.places.cols());
   for (const Eigen::Matrix3Xd& at : f.at_nodes) square += at.colwise().squaredNorm().transpose();
-  const Eigen::VectorXd mean = (square / static_cast<double>(f.at_nodes.size())).cwiseSqrt();
-  const std::vector<double> rms(mean.data(), mean.data() + mean.size());
+  const Eigen::VectorXd rms = (square / static_cast<double>(f.at_nodes.size())).cwiseSqrt();
   return {{"words", f.words},
           {"parameters", numbers(f.parameters)},
           {"explained", number(f.explained)},
@@ -69,7 +68,7 @@ json force_json(const MissingForce& f) {
           {"time", numbers(f.time)},
           {"total", total},
           {"nodes", f.nodes},
-          {"node_rms", numbers(rms)}};
+          {"node_rms", numbers(std::vector<double>(rms.data(), rms.data() + rms.size()))}};
 }
 
 }  // namespace

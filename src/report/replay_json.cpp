@@ -54,10 +54,21 @@ json shorts(const std::vector<double>& values) {
   return {{"offset", offset}, {"scale", scale}, {"data", base64(bytes)}};
 }
 
+std::vector<double> flat(const Eigen::MatrixXd& m) {
+  return {m.data(), m.data() + m.size()};
+}
+
+/// All frames one after the other.
+template <typename Matrix>
+std::vector<double> flat(const std::vector<Matrix>& frames) {
+  std::vector<double> all;
+  for (const Matrix& frame : frames) all.insert(all.end(), frame.data(), frame.data() + frame.size());
+  return all;
+}
+
 /// {most, data}: value = most * (8-bit number / 254)^2, so that small ones keep their digits.
 json shades(const std::vector<Eigen::VectorXd>& frames) {
-  std::vector<double> all;
-  for (const Eigen::VectorXd& frame : frames) all.insert(all.end(), frame.data(), frame.data() + frame.size());
+  const std::vector<double> all = flat(frames);
   double most = 0.0;
   for (const double value : all) most = std::isfinite(value) ? std::max(most, value) : most;
   std::string bytes;
@@ -68,20 +79,14 @@ json shades(const std::vector<Eigen::VectorXd>& frames) {
   return {{"most", most}, {"data", base64(bytes)}};
 }
 
-std::vector<double> flat(const Eigen::MatrixXd& m) {
-  return {m.data(), m.data() + m.size()};
-}
-
 json surface_json(const ReplaySurface& surface) {
-  std::vector<double> moved;
-  for (const Eigen::Matrix3Xd& frame : surface.displacement)
-    moved.insert(moved.end(), frame.data(), frame.data() + frame.size());
   std::string corners;
   for (Eigen::Index i = 0; i < surface.triangles.size(); ++i) {
     append(corners, static_cast<unsigned>(surface.triangles.data()[i]), 2);
   }
-  return {{"rest", shorts(flat(surface.rest))}, {"triangles", base64(corners)},   {"frames", surface.frames},
-          {"displacement", shorts(moved)},      {"error", shades(surface.error)}, {"sigmas", shades(surface.sigmas)}};
+  return {{"rest", shorts(flat(surface.rest))}, {"triangles", base64(corners)},
+          {"frames", surface.frames},           {"displacement", shorts(flat(surface.displacement))},
+          {"error", shades(surface.error)},     {"sigmas", shades(surface.sigmas)}};
 }
 
 json track_json(const ReplayTrack& track) {

@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "../box_model.hpp"
+#include "tissue_stiffness/diagnosis/finding.hpp"
+#include "tissue_stiffness/diagnosis/first_look.hpp"
 #include "verification/experiment.hpp"
 
 namespace tissue_stiffness {
@@ -178,6 +180,22 @@ TEST(Diagnose, TakesTheErrorOfACoarseMeshForNoEffect) {
   EXPECT_EQ(d.verdict, "numerics") << "noise of 0.01 mm under an error of the mesh of " << d.metres.numerical << " m";
   EXPECT_TRUE(d.set.empty());
   EXPECT_GT(d.sigmas.numerical, 1.0);
+}
+
+// What an earlier look found belongs to another model.
+TEST(Diagnose, FindsTheMeshsChangeOutAnewWhereAnEarlierLookHasItWrong) {
+  ModelSettings settings = box_settings(bar("{prior: 20.0e3, factor: 3}"));
+  const TetMesh coarse = bar_mesh(8, 2, 2);
+  const Recording recording = film_finer(settings, coarse);
+  settings.mesh.discretisation_error = true;
+  Fitted base;
+  base.study = std::make_unique<Study>(settings, coarse, recording);
+  const Model& model = base.study->model();
+  base.fit = base.study->fit(model.prior_mean(), 0.1 * model.prior_std());
+  base.rows = base.study->rows(base.fit.w);
+  const FirstLook look(base, {}, -base.rows.error);
+  EXPECT_GT(look.by_mesh, 0.8 * look.structured());
+  EXPECT_TRUE(look.mesh_change.isApprox(finer_mesh(base)));
 }
 
 // Fibres imitate the mesh's error besides, and explain more than the springs that are there.

@@ -15,7 +15,7 @@ struct Finding {
   std::vector<MissingEffect> effects;  ///< best first
   std::vector<Refit> refits;           ///< best first
   double floor = 0.0;                  ///< rms of what a finer mesh would change [sigma]
-  Eigen::VectorXd by_mesh;             ///< what a finer mesh would change of each row [sigma]; empty: unknown
+  Eigen::VectorXd by_mesh;             ///< what a finer mesh would change of each row [sigma]
 };
 
 /// Ranks the library by tangents, refits the best (or `wanted` ones, if any), and the best pairs where no single effect

@@ -12,7 +12,7 @@ namespace tissue_stiffness {
 /// What a fitted model's error shows before anything is refitted: the library, ranked by its tangents, and the mesh's part.
 struct FirstLook {
   /// `by_mesh`: what a finer mesh changes, as an earlier look at the same recording found it; found out now where it is
-  /// empty or makes the error much larger.
+  /// empty or zero, or makes the error much larger.
   FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Eigen::VectorXd by_mesh);
 
   const Fitted& base;
