@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 namespace tissue_stiffness {
 
 /// Columns of right-hand sides that one reading of a panel serves.
@@ -24,5 +26,17 @@ void tile_product(long rows, const double* a, const double* b, double* c);
 
 /// y = sum over k < count of values[k] times row rows[k] of x, rows of `columns` doubles each, a multiple of kRowWidth.
 void sum_rows(int count, const double* values, const int* rows, const double* x, long columns, double* y);
+
+/// The functions above for one instruction set.
+struct PanelKernels {
+  const char* instructions;
+  decltype(&tissue_stiffness::panel_subtract) panel_subtract;
+  decltype(&tissue_stiffness::panel_dot) panel_dot;
+  decltype(&tissue_stiffness::tile_product) tile_product;
+  decltype(&tissue_stiffness::sum_rows) sum_rows;
+};
+
+/// Those that this machine can run, the fastest first, which the functions above are.
+std::vector<PanelKernels> panel_kernels();
 
 }  // namespace tissue_stiffness
