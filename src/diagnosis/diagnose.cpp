@@ -16,8 +16,8 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr std::size_t kFewestFrames = 18;
-constexpr double kBaseSpread = 0.1;    // prior standard deviations, of the sigma points of the first fit
-constexpr double kLeastExcess = 0.01;  // of the mean squared error in sigmas: that of an effect of 0.1 sigma
+constexpr double kBaseSpread = 0.1;     // prior standard deviations, of the sigma points of the first fit
+constexpr double kLeastDeficit = 0.01;  // of the mean square of what the stated noise is: it is overstated
 constexpr double kWorthAdding = 0.2;
 constexpr double kAddedSpread = 0.02;  // and of a model's that starts from a refit
 
@@ -51,9 +51,10 @@ DiagnosisStep step_of(const Fitted& model, const Recording& recording, const std
   return step;
 }
 
-// Exactly the noise that the model file states, to what the least effect would add: there is nothing left to look for.
+// The noise that the model file states: there is nothing left to look for.
 bool is_noise(const Study::Rows& rows) {
-  return std::abs(rows.error.squaredNorm() / rows.count() - 1.0) < kLeastExcess;
+  const double square = rows.error.squaredNorm() / rows.count();
+  return square > 1.0 - kLeastDeficit && square < kExplained * kExplained;
 }
 
 void describe_residual(const Fitted& model, double floor, Diagnosis& out) {

@@ -25,7 +25,6 @@ constexpr std::size_t kBegunOf = 2;    // of one effect
 constexpr std::size_t kKindsOf = 2;    // leading refits whose other kinds are tried
 constexpr std::size_t kOthers = 4;     // and more, when those leave more than noise
 constexpr std::size_t kPairs = 3;      // and pairs
-constexpr double kExplained = 1.02;    // and up to which a refit need not be bettered
 constexpr double kPromise = 0.2;       // of the structured part
 constexpr double kClean = 1.1;         // rms in sigmas that a refit with no rival leaves
 constexpr double kMeshCounts = 0.2;    // rms of its error [sigma] from which leaders are compared on a finer one
@@ -59,7 +58,7 @@ class Search {
   void compare_on_finer_mesh();
   void add_other_way(const Ranked& r, std::vector<std::vector<Addition>>& list) const;
   std::vector<const Candidate*> different_ways() const;
-  void refit_all(const std::vector<std::vector<Addition>>& list);
+  void refit_all(std::vector<std::vector<Addition>> list);
   void try_each(std::size_t count, const std::function<std::string(std::size_t)>& name,
                 const std::function<void(std::size_t)>& work) const;
   void sort_refits();
@@ -123,7 +122,19 @@ void Search::try_each(std::size_t count, const std::function<std::string(std::si
   tbb::parallel_for(std::size_t{0}, count, try_one, tbb::simple_partitioner());
 }
 
-void Search::refit_all(const std::vector<std::vector<Addition>>& list) {
+std::size_t quantities_of(const std::vector<Addition>& additions) {
+  std::size_t count = 0;
+  for (const Addition& a : additions) {
+    const std::string& entry = a.way->proposal.refine;
+    for (std::size_t at = entry.find(": {"); at != std::string::npos; at = entry.find(": {", at + 1)) ++count;
+  }
+  return count;
+}
+
+void Search::refit_all(std::vector<std::vector<Addition>> list) {
+  // The longest fits first: the last one to end keeps one core busy only.
+  std::stable_sort(list.begin(), list.end(),
+                   [](const auto& a, const auto& b) { return quantities_of(a) > quantities_of(b); });
   std::vector<std::optional<Refit>> done(list.size());
   try_each(
       list.size(), [&](std::size_t i) { return "refit with " + names_of(list[i]); },

@@ -24,6 +24,9 @@ struct Finding {
 Finding look(const Fitted& base, const std::vector<std::string>& wanted, const DiagnosisOptions& options,
              const Eigen::VectorXd& by_mesh = {});
 
+/// rms over what has to be left, of a fit that need not be bettered.
+constexpr double kExplained = 1.02;
+
 /// Held-out frames agree that the refit is better than the base.
 bool proven(const Fitted& base, const Refit& refit);
 
