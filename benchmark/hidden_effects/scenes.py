@@ -8,6 +8,8 @@ TRIAL_STEP = 0.001  # s, where only an effect's size is asked for
 RATE = 30.0         # frames/s
 NOISE = 2e-4        # m
 LAYER_CELLS = 2
+PUSH_TOPIC = '/unknown/wrench'
+PUSH_DIRECTION = [0.0, 0.6, 0.8]
 
 
 def elasticity(modulus, poisson=0.45, **more):
@@ -31,6 +33,15 @@ class Scene:
         """The known effects, the gravity `load` times as strong."""
         scaled = {'gravity': lambda v: {'acceleration': [load * a for a in v['acceleration']]}}
         return [{name: scaled.get(name, lambda v: v)(value) for name, value in effect.items()} for effect in self.effects]
+
+    def loads_with(self, modulus, hidden, s):
+        """What acts, and an unknown push that bends the body like a cantilever by about 2 mm where s is 1."""
+        if hidden != 'push':
+            return self.loads
+        force = 0.5 * s * modulus * self.size[1] * self.size[2] ** 3 / self.size[0] ** 3 * 2e-3
+        lean = [{'direction': PUSH_DIRECTION, 'ramp': {'to': to, 'start': start, 'end': start + 0.1}}
+                for to, start in ((force, 0.4), (-force, 0.9))]
+        return dict(self.loads, **{PUSH_TOPIC: {'rate': 200, 'terms': lean}})
 
     def layer(self, hidden):
         """Thickness of what lies between the body and what holds it [m]."""
@@ -74,6 +85,8 @@ class Scene:
             effects[0] = elasticity(modulus, poisson=0.45 - 0.1 * min(s, 4.0))
         elif hidden == 'gravity':
             effects.append({'gravity': {'acceleration': [0.0, 0.7 * s, 0.7 * s]}})
+        elif hidden == 'push':  # somebody leans on the body for a while: no effect of the library
+            effects.append({'traction': {'region': 'side', 'topic': PUSH_TOPIC}})
         elif hidden == 'geometric_nonlinearity':  # a hyperelastic law, under s times the load
             effects[0] = {'elasticity': {'law': 'neo_hookean', 'young_modulus': modulus, 'poisson_ratio': 0.45}}
         elif hidden != 'none':

@@ -33,6 +33,7 @@ HIDDEN = {
 MODULUS = 'elasticity.young_modulus'
 TIME_LIMIT = 600  # s a run
 VISIBLE = 1.15    # held-out error over a clean recording's: there is something to find
+PUSHES, PUSH_EVERY = 10000, 8  # number of the first draw of what no effect of the library is, and how often one comes
 MOST_TRIALS = 5   # of a strength
 STRONGEST = 10.0
 
@@ -61,10 +62,11 @@ def observations(scene):
 def simulate(arguments, folder, scene, modulus, hidden, strength, load=1.0, cells=None, noise=1e-9, memory=0.0, seed=1,
              step=STEP):
     regions, effects = scene.truth(modulus, hidden, strength, load)
+    loads = scene.loads_with(modulus, hidden, strength)
     write_vtk(os.path.join(folder, 'true.vtk'), *scene.mesh(cells or scene.cells, hidden))
     content = {'mesh': {'file': 'true.vtk'}, 'regions': regions, 'effects': effects, 'observations': observations(scene),
                'simulation': {'duration': DURATION, 'rate': RATE, 'step': step, 'spectral_radius': 1.0, 'seed': seed,
-                              **({'loads': scene.loads} if scene.loads else {}),
+                              **({'loads': loads} if loads else {}),
                               'sensors': {TOPIC: {'noise': noise, 'memory': memory}}}}
     bag = os.path.join(folder, 'recording.bag')
     call([arguments.simulate, write(folder, 'scene.yaml', content), '--output', bag, '--quiet'])
@@ -124,7 +126,7 @@ def draw(task):
         model = write(folder, 'model.yaml', {'mesh': {'file': 'mesh.vtk'}, 'regions': scene.regions,
                                              'effects': effects + scene.effects_under(load), 'observations': observations(scene)})
         command = [arguments.diagnose, model, bag, '--auto', '--quiet', '--output', folder]
-        for name in sorted(like(hidden)) if absent else []:
+        for name in sorted(like(hidden)) if absent and hidden != 'push' else []:
             command += ['--ignore', name]
         call(command)
         with open(os.path.join(folder, 'diagnosis.json')) as file:
@@ -132,24 +134,29 @@ def draw(task):
     except (Failed, subprocess.TimeoutExpired) as error:
         row['failed'] = str(error)
         return row
-    last = found['steps'][-1]
-    row.update(strength=strength, verdict=found['verdict'], set=found['set'], final=found['final'],
-               modulus_error=found['final']['parameters'][MODULUS]['mean'] / modulus - 1, seconds=found['seconds'], whole=time.time() - begun,
-               given=found['steps'][0]['held_out_rms'] / found['steps'][0]['noise_floor'],
-               held_out=last['held_out_rms'] / last['noise_floor'],
-               p_values=[c['p_value'] for c in found['candidates']] if hidden == 'none' else [])
+    first, last = found['steps'][0], found['steps'][-1]
+    row.update(verdict=found['verdict'], set=found['set'], final=found['final']['effects'])
+    for name, value in (('strength', strength), ('modulus_error', found['final']['parameters'][MODULUS]['mean'] / modulus - 1),
+                        ('seconds', found['seconds']), ('whole', time.time() - begun),
+                        ('given', first['held_out_rms'] / first['noise_floor']),
+                        ('held_out', last['held_out_rms'] / last['noise_floor'])):
+        row[name] = float('%.5g' % value)
+    row['p_values'] = [float('%.4g' % c['p_value']) for c in found['candidates']] if hidden == 'none' else []
     return row
 
 
 def tasks(arguments):
     """Draws in an order of which any beginning is a fair sample."""
-    rng = random.Random(7)
+    rng, rng_of_pushes = random.Random(7), random.Random(8)
     out = []
     for number in range(arguments.draws):
         scene = rng.choice(sorted(HIDDEN))
         hidden = rng.choice(HIDDEN[scene]) if rng.random() > 0.15 else 'none'
         absent = hidden != 'none' and rng.random() < 0.15
         out.append((arguments, number, scene, hidden, rng.choice(MISFITS), rng.choice((0.0, 0.6)), absent))
+        if number % PUSH_EVERY == 0:
+            out.append((arguments, PUSHES + number, rng_of_pushes.choice(sorted(HIDDEN)), 'push', rng_of_pushes.choice(MISFITS),
+                        rng_of_pushes.choice((0.0, 0.6)), True))
     return out
 
 
@@ -186,9 +193,12 @@ def tables(rows):
     line('E within 3 % after adding', lambda row: abs(row['modulus_error']) < 0.03)
     line('held-out error within 1.2x of the noise', lambda row: row['held_out'] < 1.2)
     ratios = sorted(row['held_out'] for row in seen)
+    silent = {row['number']: row['verdict'] != 'missing' for row in absent if row['number'] in leaves}
     lines += ['', '* false alarms on clean recordings: ' + share([row['verdict'] == 'missing' for row in clean]),
-              '* abstention when the effect is not in the library: ' +
-              share([row['verdict'] != 'missing' for row in absent if row['number'] in leaves]),
+              '* abstention when the effect is not in the library: ' + share(list(silent.values())),
+              '  * a push that nobody recorded: ' + share([no for number, no in silent.items() if number >= PUSHES]),
+              '  * an effect that was taken out of the library, with its twins: ' +
+              share([no for number, no in silent.items() if number < PUSHES]),
               '* p-values below 5 %% on clean recordings: %s' % share([p < 0.05 for row in clean for p in row['p_values']]),
               '* held-out error over noise after adding: median %.3f' % (ratios[len(ratios) // 2] if ratios else float('nan')),
               '* hidden but within the noise after the fit of E: %d of %d' % (len(hidden) - len(seen), len(hidden)),
@@ -225,23 +235,31 @@ def picture(names, found, counts, path):
     save(figure, path, 110)
 
 
+def keep(rows, path):
+    """One draw a line."""
+    lines = [json.dumps(row, sort_keys=True) for row in sorted(rows, key=lambda row: row['number'])]
+    with open(path, 'w') as file:
+        file.write('[' + ',\n'.join(lines) + ']\n')
+
+
 def main():
     parser = argparse.ArgumentParser(prog='hidden_effects')
     parser.add_argument('root')
     parser.add_argument('--draws', type=int, default=200)
     parser.add_argument('--jobs', type=int, default=os.cpu_count())
     parser.add_argument('--output')
-    parser.add_argument('--resume', action='store_true', help='keep the draws that are in the output folder already')
+    parser.add_argument('--resume', action='store_true', help='keep the draws that are in doc/hidden_effects.json already: of the same search')
     arguments = parser.parse_args()
     arguments.output = arguments.output or os.path.join(arguments.root, 'output', 'hidden_effects')
     for tool in ('simulate', 'diagnose'):
         setattr(arguments, tool, os.path.join(arguments.root, 'build/devel/lib/tissue_stiffness', tool))
     os.makedirs(arguments.output, exist_ok=True)
-    kept = os.path.join(arguments.output, 'rows.json')
+    doc = os.path.join(arguments.root, 'doc')
+    kept = os.path.join(doc, 'hidden_effects.json')
     rows = []
     if arguments.resume and os.path.exists(kept):
         with open(kept) as file:
-            rows = [row for row in json.load(file) if row['number'] < arguments.draws]
+            rows = [row for row in json.load(file) if row['number'] % PUSHES < arguments.draws]
     done = {row['number'] for row in rows}
     with multiprocessing.Pool(arguments.jobs) as pool:
         for row in pool.imap_unordered(draw, [task for task in tasks(arguments) if task[1] not in done]):
@@ -249,14 +267,12 @@ def main():
             what = row.get('failed') or '%s %s' % (row['verdict'], ' '.join(row['set']))
             print('%3d/%d %-28s %-22s %4.0f %% -> %s' % (len(rows), arguments.draws, row['scene'], row['hidden'] +
                   (' (absent)' if row['absent'] else ''), 100 * row['misfit'], what), flush=True)
-            with open(kept, 'w') as file:
-                json.dump(sorted(rows, key=lambda r: r['number']), file, indent=1)
+            keep(rows, kept)
     lines, (names, found, counts) = tables(rows)
-    doc = os.path.join(arguments.root, 'doc')
     with open(os.path.join(doc, 'hidden_effects.md'), 'w') as file:
         file.write('\n'.join(['# How often the hidden effect is found', '',
                               'Written by `scripts/hidden_effects --draws %d`; `benchmark/hidden_effects/scenes.py` says what is '
-                              'hidden and how.' % arguments.draws, ''] + lines +
+                              'hidden and how, `doc/hidden_effects.json` what came of each draw.' % arguments.draws, ''] + lines +
                              ['', '![confusion](hidden_effects.png)', ''] + confusion_table(names, found, counts)) + '\n')
     picture(names, found, counts, os.path.join(doc, 'hidden_effects.png'))
     print('\n'.join(lines))
