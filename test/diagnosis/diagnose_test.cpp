@@ -46,7 +46,12 @@ TEST(Diagnose, FindsNothingWhereNothingIsMissing) {
 TEST(Diagnose, NamesHiddenDampingAndAddsIt) {
   DiagnosisOptions options;
   options.automatic = true;
+  int looks = 0;
+  options.progress = [&](const std::string& what, std::size_t, std::size_t total) {
+    if (what.rfind("tangents", 0) == 0 && total == 0) ++looks;
+  };
   const Diagnosis d = diagnose_bar(film({"viscous_damping: {beta: 6.0e-3}"}, 1), options);
+  EXPECT_EQ(looks, 1) << "what the damping leaves is noise";
   EXPECT_EQ(d.verdict, "missing");
   EXPECT_NE(std::find(d.set.begin(), d.set.end(), "viscous_damping"), d.set.end());
   ASSERT_GE(d.steps.size(), 2U);
