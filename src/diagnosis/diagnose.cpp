@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kFewestFrames = 18;
 constexpr double kBaseSpread = 0.1;     // prior standard deviations, of the sigma points of the first fit
-constexpr double kLeastDeficit = 0.01;  // of the mean square of what the stated noise is: it is overstated
+constexpr double kLeastDeficit = 0.01;  // of the mean squared error in sigmas: the stated noise is too large
 constexpr double kWorthAdding = 0.2;
 constexpr double kAddedSpread = 0.02;  // and of a model's that starts from a refit
 

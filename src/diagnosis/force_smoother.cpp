@@ -45,6 +45,42 @@ struct Passed {
   Eigen::MatrixXd grasp;  ///< P - P (grasp, 0; 0, 0) P: likewise
 };
 
+struct Filtered {
+  std::vector<Passed> passed;  ///< a frame each
+  double deviance = 0.0;
+};
+
+Filtered filter_force(const std::vector<ModalTransition>& transitions, const std::vector<FrameEvidence>& evidence,
+                      const ForcePrior& prior) {
+  const Eigen::Index m = prior.level.size(), size = 3 * m;
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(size);
+  Eigen::MatrixXd p = Eigen::MatrixXd::Zero(size, size);
+  p.diagonal().tail(m) = prior.level.cwiseAbs2();
+  Filtered out;
+  for (std::size_t k = 0; k < evidence.size(); ++k) {
+    x = after(transitions[k], x);
+    p = after(transitions[k], after(transitions[k], p).transpose());
+    p.diagonal().tail(m) += prior.walk.cwiseAbs2();
+    // By information = L L^T: the gain needs no more than I + L^T P L.
+    const Eigen::LDLT<Eigen::MatrixXd> factor(evidence[k].information);
+    Eigen::MatrixXd l = factor.matrixL();
+    l = factor.transpositionsP().transpose() * (l * factor.vectorD().cwiseMax(0.0).cwiseSqrt().asDiagonal()).eval();
+    const Eigen::MatrixXd lp = l.transpose() * p.topRows(m);
+    const Eigen::LLT<Eigen::MatrixXd> solver(Eigen::MatrixXd::Identity(m, m) + lp.leftCols(m) * l);
+    const Eigen::VectorXd q = x.head(m);
+    const Eigen::VectorXd innovation = evidence[k].seen - evidence[k].information * q;
+    const Eigen::VectorXd pull = innovation - l * solver.solve(lp.leftCols(m) * innovation);
+    const Eigen::VectorXd step = p.leftCols(m) * pull;
+    out.deviance += evidence[k].square - 2.0 * evidence[k].seen.dot(q) + q.dot(evidence[k].information * q) -
+                    innovation.dot(step.head(m)) + 2.0 * Eigen::MatrixXd(solver.matrixL()).diagonal().array().log().sum();
+    out.passed.push_back({x, p, pull, l * solver.solve(l.transpose())});
+    x += step;
+    p -= lp.transpose() * solver.solve(lp);
+    p = 0.5 * (p + p.transpose()).eval();
+  }
+  return out;
+}
+
 }  // namespace
 
 ModalTransition::ModalTransition(ModalStep step, double span, Eigen::Index modes, Eigen::Index all) {
@@ -63,35 +99,13 @@ ModalTransition::ModalTransition(ModalStep step, double span, Eigen::Index modes
 
 SmoothedForce smooth_force(const std::vector<ModalTransition>& transitions, const std::vector<FrameEvidence>& evidence,
                            const ForcePrior& prior) {
-  const Eigen::Index m = prior.level.size(), size = 3 * m;
-  std::vector<Passed> passed;
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(size);
-  Eigen::MatrixXd p = Eigen::MatrixXd::Zero(size, size);
-  p.diagonal().tail(m) = prior.level.cwiseAbs2();
+  const Filtered filtered = filter_force(transitions, evidence, prior);
+  const std::vector<Passed>& passed = filtered.passed;
+  const Eigen::Index m = prior.level.size();
   SmoothedForce out;
-  for (std::size_t k = 0; k < evidence.size(); ++k) {
-    x = after(transitions[k], x);
-    p = after(transitions[k], after(transitions[k], p).transpose());
-    p.diagonal().tail(m) += prior.walk.cwiseAbs2();
-    // By information = L L^T: the gain needs no more than I + L^T P L.
-    const Eigen::LDLT<Eigen::MatrixXd> factor(evidence[k].information);
-    Eigen::MatrixXd l = factor.matrixL();
-    l = factor.transpositionsP().transpose() * (l * factor.vectorD().cwiseMax(0.0).cwiseSqrt().asDiagonal()).eval();
-    const Eigen::MatrixXd lp = l.transpose() * p.topRows(m);
-    const Eigen::LLT<Eigen::MatrixXd> solver(Eigen::MatrixXd::Identity(m, m) + lp.leftCols(m) * l);
-    const Eigen::VectorXd q = x.head(m);
-    const Eigen::VectorXd innovation = evidence[k].seen - evidence[k].information * q;
-    const Eigen::VectorXd pull = innovation - l * solver.solve(lp.leftCols(m) * innovation);
-    const Eigen::VectorXd step = p.leftCols(m) * pull;
-    out.deviance += evidence[k].square - 2.0 * evidence[k].seen.dot(q) + q.dot(evidence[k].information * q) -
-                    innovation.dot(step.head(m)) + 2.0 * Eigen::MatrixXd(solver.matrixL()).diagonal().array().log().sum();
-    passed.push_back({x, p, pull, l * solver.solve(l.transpose())});
-    x += step;
-    p -= lp.transpose() * solver.solve(lp);
-    p = 0.5 * (p + p.transpose()).eval();
-  }
+  out.deviance = filtered.deviance;
   // Without the covariances' inverses: those of forces that never change have none.
-  Eigen::VectorXd r = Eigen::VectorXd::Zero(size);
+  Eigen::VectorXd r = Eigen::VectorXd::Zero(3 * m);
   out.displacement.resize(passed.size());
   out.force.resize(passed.size());
   for (std::size_t k = passed.size(); k-- > 0;) {
@@ -109,7 +123,7 @@ ForcePrior likeliest_force_prior(const std::vector<ModalTransition>& transitions
   const Eigen::Index m = evidence.front().seen.size();
   const auto deviances = [&](const std::vector<ForcePrior>& priors) {
     std::vector<double> out(priors.size());
-    for_each_index(priors.size(), [&](std::size_t i) { out[i] = smooth_force(transitions, evidence, priors[i]).deviance; });
+    for_each_index(priors.size(), [&](std::size_t i) { out[i] = filter_force(transitions, evidence, priors[i]).deviance; });
     return out;
   };
   std::vector<ForcePrior> common, own;

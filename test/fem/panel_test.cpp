@@ -18,6 +18,16 @@ class Kernels : public testing::Test {
     std::uniform_real_distribution<double> uniform(-1.0, 1.0);
     return Matrix::NullaryExpr(rows, columns, [&] { return static_cast<typename Matrix::Scalar>(uniform(engine_)); });
   }
+  /// Of every instruction set's kernels, heights and widths of a panel.
+  template <typename Check>
+  void for_every_panel(const Check& check) {
+    for (const PanelKernels& kernels : panel_kernels()) {
+      for (const int rows : {0, 3, 16, 83}) {
+        for (int columns = 1; columns <= kPanelColumns; ++columns) check(kernels, rows, columns);
+      }
+    }
+  }
+  static constexpr int kStride = 90;
   std::mt19937 engine_{1};
 };
 
@@ -27,35 +37,25 @@ TEST_F(Kernels, BeginWithTheFastestAndEndWithOneForAnyMachine) {
 }
 
 TEST_F(Kernels, SubtractAPanel) {
-  constexpr int stride = 90;
-  for (const PanelKernels& kernels : panel_kernels()) {
-    for (const int rows : {0, 3, 16, 83}) {
-      for (int columns = 1; columns <= kPanelColumns; ++columns) {
-        const auto panel = random<Eigen::MatrixXf>(stride, kPanelWidth), c = random<Eigen::MatrixXf>(kPanelWidth, columns);
-        auto t = random<Eigen::MatrixXf>(stride, columns);
-        Eigen::MatrixXf expected = t;
-        expected.topRows(rows) -= panel.topRows(rows) * c;
-        kernels.panel_subtract(rows, panel.data(), stride, c.data(), columns, t.data(), stride);
-        EXPECT_LT((t - expected).cwiseAbs().maxCoeff(), 1e-6F) << kernels.instructions << ' ' << rows << ' ' << columns;
-      }
-    }
-  }
+  for_every_panel([this](const PanelKernels& kernels, int rows, int columns) {
+    const auto panel = random<Eigen::MatrixXf>(kStride, kPanelWidth), c = random<Eigen::MatrixXf>(kPanelWidth, columns);
+    auto t = random<Eigen::MatrixXf>(kStride, columns);
+    Eigen::MatrixXf expected = t;
+    expected.topRows(rows) -= panel.topRows(rows) * c;
+    kernels.panel_subtract(rows, panel.data(), kStride, c.data(), columns, t.data(), kStride);
+    EXPECT_LT((t - expected).cwiseAbs().maxCoeff(), 1e-6F) << kernels.instructions << ' ' << rows << ' ' << columns;
+  });
 }
 
 TEST_F(Kernels, MultiplyByATransposedPanel) {
-  constexpr int stride = 90;
-  for (const PanelKernels& kernels : panel_kernels()) {
-    for (const int rows : {0, 3, 16, 83}) {
-      for (int columns = 1; columns <= kPanelColumns; ++columns) {
-        const auto panel = random<Eigen::MatrixXf>(stride, kPanelWidth), t = random<Eigen::MatrixXf>(stride, columns);
-        Eigen::MatrixXf sums = Eigen::MatrixXf::Constant(kPanelWidth, kPanelColumns, 7.0F);
-        kernels.panel_dot(rows, panel.data(), stride, t.data(), stride, columns, sums.data());
-        const Eigen::MatrixXf expected = panel.topRows(rows).transpose() * t.topRows(rows);
-        EXPECT_LT((sums.leftCols(columns) - expected).cwiseAbs().maxCoeff(), 1e-5F) << kernels.instructions << ' ' << rows;
-        EXPECT_TRUE((sums.rightCols(kPanelColumns - columns).array() == 7.0F).all()) << "no column beyond";
-      }
-    }
-  }
+  for_every_panel([this](const PanelKernels& kernels, int rows, int columns) {
+    const auto panel = random<Eigen::MatrixXf>(kStride, kPanelWidth), t = random<Eigen::MatrixXf>(kStride, columns);
+    Eigen::MatrixXf sums = Eigen::MatrixXf::Constant(kPanelWidth, kPanelColumns, 7.0F);
+    kernels.panel_dot(rows, panel.data(), kStride, t.data(), kStride, columns, sums.data());
+    const Eigen::MatrixXf expected = panel.topRows(rows).transpose() * t.topRows(rows);
+    EXPECT_LT((sums.leftCols(columns) - expected).cwiseAbs().maxCoeff(), 1e-5F) << kernels.instructions << ' ' << rows;
+    EXPECT_TRUE((sums.rightCols(kPanelColumns - columns).array() == 7.0F).all()) << "no column beyond";
+  });
 }
 
 TEST_F(Kernels, MultiplyTiles) {
