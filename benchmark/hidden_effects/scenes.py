@@ -38,7 +38,7 @@ class Scene:
         """What acts, and an unknown push that bends the body like a cantilever by about 2 mm where s is 1."""
         if hidden != 'push':
             return self.loads
-        force = 0.5 * s * modulus * self.size[1] * self.size[2] ** 3 / self.size[0] ** 3 * 2e-3
+        force = 1e-3 * s * modulus * self.size[1] * self.size[2] ** 3 / self.size[0] ** 3
         lean = [{'direction': PUSH_DIRECTION, 'ramp': {'to': to, 'start': start, 'end': start + 0.1}}
                 for to, start in ((force, 0.4), (-force, 0.9))]
         return dict(self.loads, **{PUSH_TOPIC: {'rate': 200, 'terms': lean}})

@@ -193,12 +193,12 @@ def tables(rows):
     line('E within 3 % after adding', lambda row: abs(row['modulus_error']) < 0.03)
     line('held-out error within 1.2x of the noise', lambda row: row['held_out'] < 1.2)
     ratios = sorted(row['held_out'] for row in seen)
-    silent = {row['number']: row['verdict'] != 'missing' for row in absent if row['number'] in leaves}
+    silent = [(row['hidden'], row['verdict'] != 'missing') for row in absent if row['number'] in leaves]
     lines += ['', '* false alarms on clean recordings: ' + share([row['verdict'] == 'missing' for row in clean]),
-              '* abstention when the effect is not in the library: ' + share(list(silent.values())),
-              '  * a push that nobody recorded: ' + share([no for number, no in silent.items() if number >= PUSHES]),
+              '* abstention when the effect is not in the library: ' + share([no for _, no in silent]),
+              '  * a push that nobody recorded: ' + share([no for what, no in silent if what == 'push']),
               '  * an effect that was taken out of the library, with its twins: ' +
-              share([no for number, no in silent.items() if number < PUSHES]),
+              share([no for what, no in silent if what != 'push']),
               '* p-values below 5 %% on clean recordings: %s' % share([p < 0.05 for row in clean for p in row['p_values']]),
               '* held-out error over noise after adding: median %.3f' % (ratios[len(ratios) // 2] if ratios else float('nan')),
               '* hidden but within the noise after the fit of E: %d of %d' % (len(hidden) - len(seen), len(hidden)),
@@ -256,16 +256,17 @@ def main():
     os.makedirs(arguments.output, exist_ok=True)
     doc = os.path.join(arguments.root, 'doc')
     kept = os.path.join(doc, 'hidden_effects.json')
+    planned = {task[1]: task for task in tasks(arguments)}
     rows = []
     if arguments.resume and os.path.exists(kept):
         with open(kept) as file:
-            rows = [row for row in json.load(file) if row['number'] % PUSHES < arguments.draws]
+            rows = [row for row in json.load(file) if row['number'] in planned]
     done = {row['number'] for row in rows}
     with multiprocessing.Pool(arguments.jobs) as pool:
-        for row in pool.imap_unordered(draw, [task for task in tasks(arguments) if task[1] not in done]):
+        for row in pool.imap_unordered(draw, [task for number, task in planned.items() if number not in done]):
             rows.append(row)
             what = row.get('failed') or '%s %s' % (row['verdict'], ' '.join(row['set']))
-            print('%3d/%d %-28s %-22s %4.0f %% -> %s' % (len(rows), arguments.draws, row['scene'], row['hidden'] +
+            print('%3d/%d %-28s %-22s %4.0f %% -> %s' % (len(rows), len(planned), row['scene'], row['hidden'] +
                   (' (absent)' if row['absent'] else ''), 100 * row['misfit'], what), flush=True)
             keep(rows, kept)
     lines, (names, found, counts) = tables(rows)
