@@ -12,7 +12,9 @@ constexpr double kSpread = 0.02;  // prior standard deviations: the finer mesh's
 Study on_finer_mesh(const Study& study, const ModelSettings& settings) {
   const Model& model = study.model();
   const TetMesh mesh = finer(model.mesh(), settings.mesh);
-  return {settings, mesh, refine(model.regions(), model.mesh(), mesh), study.recording()};
+  BasisOptions basis;
+  basis.coarser = std::make_shared<const Prolongation>(prolongation(model.mesh(), mesh));
+  return {settings, mesh, refine(model.regions(), model.mesh(), mesh), study.recording(), basis};
 }
 
 }  // namespace

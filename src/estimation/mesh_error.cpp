@@ -109,8 +109,14 @@ struct MeshError::Studies {
       : coarse(settings, mesh, regions),
         fine(settings, refined, refine(regions, mesh, refined)),
         coarse_runs(coarse, of_linear_part(basis)),
-        fine_runs(knowing(theta, fine), of_linear_part({})),
+        fine_runs(knowing(theta, fine), of_linear_part(beside(mesh, refined))),
         operators(make_observation_operators(coarse)) {}
+
+  static BasisOptions beside(const TetMesh& mesh, const TetMesh& refined) {
+    BasisOptions basis;
+    basis.coarser = std::make_shared<const Prolongation>(prolongation(mesh, refined));
+    return basis;
+  }
 
   static const Model& knowing(const Eigen::VectorXd* theta, Model& model) {
     if (theta != nullptr) model.know(*theta);

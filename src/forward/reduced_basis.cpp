@@ -4,50 +4,26 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
-#include "tissue_stiffness/fem/sparse_solver.hpp"
 #include "tissue_stiffness/forward/motive_terms.hpp"
 #include "tissue_stiffness/forward/orthonormal_basis.hpp"
+#include "tissue_stiffness/forward/static_response.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kShift = 1e-6;         // makes the stiffness of a body that nothing holds invertible
 constexpr int kLeading = 4;             // modes that tell what an absent effect would do
 constexpr double kResponseShare = 0.6;  // of the room for absent effects: static responses; dynamic ones fill the rest
 constexpr int kFew = 3;                 // absent effects that may grow large: their stiffness acts on what is added, too
 constexpr double kFaint = 1e-12;        // of the strongest response, squared: what is left out
-constexpr Eigen::Index kLarge = 6000;   // unknowns from which on single precision is faster
 constexpr double kFree = 1e-9;          // of the highest eigenvalue: below it a body moves freely
 
-void zero_fixed(Eigen::MatrixXd& x, const std::vector<char>& fixed) {
-  for (Eigen::Index i = 0; i < x.rows(); ++i) {
-    if (fixed[static_cast<std::size_t>(i)] != 0) x.row(i).setZero();
-  }
-}
-
-// K^-1 with some nodes held.
-class StaticResponse {
- public:
-  StaticResponse(SparseMatrix stiffness, const SparseMatrix& mass, std::vector<char> fixed) : fixed_(std::move(fixed)) {
-    const bool held = std::any_of(fixed_.begin(), fixed_.end(), [](char flag) { return flag != 0; });
-    if (!held) stiffness += kShift * stiffness.diagonal().sum() / mass.diagonal().sum() * mass;
-    fix_dofs(stiffness, fixed_, stiffness.diagonal().mean());
-    solver_.factorize(stiffness);
-  }
-  Eigen::MatrixXd operator()(Eigen::MatrixXd loads) const {
-    zero_fixed(loads, fixed_);
-    return solver_.solve(loads);
-  }
-  // In single precision where that is faster: what a basis lacks to the last digits, its other vectors hold.
-  Eigen::MatrixXd roughly(Eigen::MatrixXd loads) const {
-    zero_fixed(loads, fixed_);
-    return loads.rows() < kLarge ? solver_.solve(loads) : solver_.solve_roughly(loads);
-  }
-
- private:
-  std::vector<char> fixed_;
-  SparseSolver solver_;
+// (P^T K P)^-1 on the coarser mesh.
+struct CoarseResponse {
+  const TwoGrid& grids;
+  Eigen::MatrixXd operator()(const Eigen::MatrixXd& loads) const { return grids.solve_coarse(loads); }
+  Eigen::MatrixXd roughly(const Eigen::MatrixXd& loads) const { return grids.solve_coarse(loads); }
 };
 
 bool same(const SparseMatrix& a, const SparseMatrix& b) {
@@ -124,9 +100,15 @@ class Builder {
     root->size = std::min<Eigen::Index>(options_.size, std::min(most, free_dofs));
     const bool same_body = known && known->same_body(*root);
     if (same_body && known->same_motion(*root)) return known;
-    root->held = same_body ? known->held : std::make_shared<StaticResponse>(root->stiffness, root->mass, root->fixed);
+    root->held = same_body
+                     ? known->held
+                     : std::make_shared<StaticResponse>(root->stiffness, root->mass, root->fixed, options_.coarser.get());
     OrthonormalBasis basis(root->mass, root->size);
-    if (root->loads.cols() > 0) extend(basis, *root->held, root->loads, root->groups, root->size);
+    if (root->held->grids() != nullptr && root->groups.empty()) {
+      refine(basis, *root);
+    } else if (root->loads.cols() > 0) {
+      extend(basis, *root->held, root->loads, root->groups, root->size);
+    }
     root->vectors = basis.vectors();
     root->weighted = basis.weighted();
     return root;
@@ -139,7 +121,8 @@ class Builder {
   }
 
   // Static responses to the loads, then to the inertia (and, with several moduli, the stiffnesses) of what was added last.
-  static void extend(OrthonormalBasis& basis, const StaticResponse& respond, const Eigen::MatrixXd& loads,
+  template <typename Response>
+  static void extend(OrthonormalBasis& basis, const Response& respond, const Eigen::MatrixXd& loads,
                      const std::vector<SparseMatrix>& groups, Eigen::Index size) {
     Eigen::MatrixXd x = respond(loads);
     for (;;) {
@@ -154,6 +137,21 @@ class Builder {
       }
       x = respond.roughly(std::move(next));
     }
+  }
+
+  // The same from the vectors of the coarser mesh: static responses to the loads and to the inertia of each, all at once.
+  static void refine(OrthonormalBasis& basis, const BasisRoot& root) {
+    if (root.loads.cols() == 0) return;
+    const TwoGrid& grids = *root.held->grids();
+    const SparseMatrix mass = grids.to_coarse(root.mass);
+    OrthonormalBasis coarse(mass, std::min(root.size, mass.rows()));
+    const CoarseResponse respond{grids};
+    extend(coarse, respond, grids.to_coarse(root.loads), {}, root.size);
+    Eigen::MatrixXd loads(root.loads.rows(), root.size);
+    const Eigen::Index first = std::min(root.loads.cols(), root.size), rest = std::min(root.size - first, coarse.size());
+    loads.leftCols(first) = root.loads.leftCols(first);
+    loads.middleCols(first, rest) = symmetric_product(root.mass, grids.to_fine(coarse.vectors().leftCols(rest)));
+    basis.add(root.held->roughly(loads.leftCols(first + rest)), root.size);
   }
 
   // The modes of the basis that the loads move most.
@@ -266,7 +264,7 @@ class Builder {
       Eigen::VectorXd theta = prior_.theta;
       const Eigen::VectorXd& soft = part.effect->releases(part.parameters(prior)) ? prior : prior_.generic;
       for (const int index : part.indices) theta[index] = soft[index];
-      const StaticResponse respond(model_.reference_stiffness(theta), mass_, model_.fixed(theta));
+      const StaticResponse respond(model_.reference_stiffness(theta), mass_, model_.fixed(theta), nullptr);
       const Eigen::Index before = held.size();
       OrthonormalBasis basis(mass_, before + options_.released);
       basis.add(held.vectors(), before);

@@ -168,4 +168,42 @@ std::map<std::string, Region> refine(const std::map<std::string, Region>& region
   return out;
 }
 
+namespace {
+
+int place_of(int node, const TetMesh& mesh, int tet) {
+  const auto nodes = mesh.tets.col(tet);
+  return static_cast<int>(std::find(nodes.data(), nodes.data() + nodes.size(), node) - nodes.data());
+}
+
+}  // namespace
+
+Eigen::SparseMatrix<double, Eigen::RowMajor> prolongation(const TetMesh& mesh, const TetMesh& refined) {
+  static const Eigen::Matrix<double, 4, 10> coordinates = node_coordinates();
+  std::vector<Eigen::Triplet<double>> shares;
+  std::vector<char> done(static_cast<std::size_t>(refined.node_count()), 0);
+  for (int node = 0; node < mesh.node_count(); ++node) {
+    shares.emplace_back(node, node, 1.0);
+    done[static_cast<std::size_t>(node)] = 1;
+  }
+  const auto add = [&](int node, int parent, const Eigen::Vector4d& at) {
+    if (std::exchange(done[static_cast<std::size_t>(node)], 1) != 0) return;
+    const Eigen::VectorXd shape = mesh.quadratic() ? Eigen::VectorXd(quadratic_shape(at)) : Eigen::VectorXd(at);
+    for (int i = 0; i < mesh.tets.rows(); ++i) {
+      if (shape[i] != 0.0) shares.emplace_back(node, mesh.tets(i, parent), shape[i]);
+    }
+  };
+  TetMesh parents = mesh;
+  elevate(parents);
+  for (int t = 0; t < refined.tet_count(); ++t) {
+    const auto at = [&](int corner) { return coordinates.col(place_of(refined.tets(corner, t), parents, t / 8)); };
+    for (int i = 0; i < 4; ++i) add(refined.tets(i, t), t / 8, at(i));
+    for (int e = 0; refined.quadratic() && e < 6; ++e) {
+      add(refined.tets(4 + e, t), t / 8, 0.5 * (at(kTetEdges[e][0]) + at(kTetEdges[e][1])));
+    }
+  }
+  Eigen::SparseMatrix<double, Eigen::RowMajor> out(refined.node_count(), mesh.node_count());
+  out.setFromTriplets(shares.begin(), shares.end());
+  return out;
+}
+
 }  // namespace tissue_stiffness

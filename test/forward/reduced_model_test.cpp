@@ -10,6 +10,7 @@
 #include "tissue_stiffness/fem/sparse_solver.hpp"
 #include "tissue_stiffness/forward/full_model.hpp"
 #include "tissue_stiffness/forward/reduced_trajectory.hpp"
+#include "tissue_stiffness/meshing/refine.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -198,6 +199,29 @@ TEST(ReducedModel, RefusesWhatItCannotDo) {
   EXPECT_NE(refusal([&] { const ReducedModel reduced(finite); }).find("nonlinear"), std::string::npos);
   const Model still(box_settings({kInertia, elastic("3.0e4"), kFixed}), mesh);
   EXPECT_NE(refusal([&] { const ReducedModel reduced(still); }).find("nothing that moves"), std::string::npos);
+}
+
+// What the mesh does to a body's frequencies is found without a factor.
+TEST(ReducedModel, NeedsNoFactorBesideTheMeshThatItsOwnWasRefinedFrom) {
+  const TetMesh coarse = bar_mesh(8, 2, 2), fine = refine(coarse);
+  BasisOptions between;
+  between.coarser = std::make_shared<const Prolongation>(prolongation(coarse, fine));
+  const std::vector<std::string> known = {kInertia, elastic("{prior: 3.0e4, factor: 2}"), kFixed, kGravity};
+  std::vector<std::string> more = known;
+  more.push_back("foundation: {region: top, stiffness: {mean: 0, std: 1.0e4}}");
+  for (const std::vector<std::string>& effects : {known, more}) {
+    const Model parent(box_settings(effects), coarse), model(box_settings(effects), fine);
+    ASSERT_GT(model.fem().dof_count(), 6000);
+    const auto lowest = [](const Model& of, const BasisOptions& options) {
+      const Eigen::VectorXd theta = of.theta(of.prior_mean() + 0.3 * of.prior_std());
+      return Eigen::ArrayXd(ReducedModel(of, options).modes(theta)->square.head(6));
+    };
+    const Eigen::ArrayXd wanted = lowest(model, {}), found = lowest(model, between);
+    const double mesh = (lowest(parent, {}) / wanted - 1.0).abs().mean(), off = (found / wanted - 1.0).abs().mean();
+    std::printf("frequencies' squares, %s: of the mesh %.1e, without a factor %.1e\n", effects.back().c_str(), mesh, off);
+    EXPECT_GT(mesh, 1e-3) << effects.back();
+    EXPECT_LT(off, 0.02 * mesh) << effects.back();
+  }
 }
 
 }  // namespace

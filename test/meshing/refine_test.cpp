@@ -57,5 +57,20 @@ TEST(Refine, KeepsRegionsWhateverShapeTheyHad) {
   }
 }
 
+// A mesh of its own order holds a polynomial of that order; its children have to read the same one.
+TEST(Refine, ProlongsWhatTheMeshHolds) {
+  for (const int order : {1, 2}) {
+    const TetMesh coarse = make_box_mesh({1.0, 1.0, 1.0}, 2, 3, 2, order);
+    const TetMesh fine = refine(coarse);
+    const auto held = [order](const TetMesh& mesh) {
+      const Eigen::ArrayXd x = mesh.nodes.row(0), y = mesh.nodes.row(1), z = mesh.nodes.row(2);
+      const Eigen::ArrayXd bent = x * x - 0.7 * x * y + 1.3 * y * z - z * z;
+      return Eigen::VectorXd(1.0 + x - 2.0 * y + 3.0 * z + (order - 1) * bent);
+    };
+    const Eigen::VectorXd difference = prolongation(coarse, fine) * held(coarse) - held(fine);
+    EXPECT_LT(difference.cwiseAbs().maxCoeff(), 1e-13) << "order " << order;
+  }
+}
+
 }  // namespace
 }  // namespace tissue_stiffness

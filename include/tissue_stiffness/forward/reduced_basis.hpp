@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "tissue_stiffness/fem/two_grid.hpp"
 #include "tissue_stiffness/forward/model.hpp"
 
 namespace tissue_stiffness {
@@ -28,7 +29,9 @@ struct BasisOptions {
   /// What becomes of effects that are not linear: simulated in full, at first order (FirstOrderModel), or not at all.
   enum class Nonlinear { in_full, first_order, left_out } nonlinear = Nonlinear::in_full;
   int steps_per_frame = 4;  ///< of simulations in full
-  bool keep_root = false;   ///< for models of the same body that are to come; it holds the stiffness's factor
+  /// From the mesh that this one was refined from: the stiffness needs no factor then, vectors are good to about a percent.
+  std::shared_ptr<const Prolongation> coarser = nullptr;
+  bool keep_root = false;  ///< for models of the same body that are to come; it holds the stiffness's factor
 };
 
 /// Load-dependent Ritz vectors (Wilson, Yuan & Dickens 1982), repeated K^-1 M solves from the static responses to the

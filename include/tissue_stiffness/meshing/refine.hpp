@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/SparseCore>
 #include <map>
 #include <string>
 
@@ -16,5 +17,9 @@ TetMesh refine(const TetMesh& mesh);
 /// was cut out with.
 std::map<std::string, Region> refine(const std::map<std::string, Region>& regions, const TetMesh& mesh,
                                      const TetMesh& refined);
+
+/// Values at the nodes of refine(mesh) of what is quadratic in each tetrahedron of `mesh` (linear, when that has no
+/// mid-edge nodes), nodes there x nodes here.
+Eigen::SparseMatrix<double, Eigen::RowMajor> prolongation(const TetMesh& mesh, const TetMesh& refined);
 
 }  // namespace tissue_stiffness

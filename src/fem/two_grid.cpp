@@ -1,0 +1,258 @@
+#include "tissue_stiffness/fem/two_grid.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "tissue_stiffness/fem/panel.hpp"
+#include "tissue_stiffness/fem/products.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+using Rows = GramSum::Rows;
+using Row = Eigen::Matrix<double, 1, Eigen::Dynamic>;
+
+constexpr int kSweeps = 3;                 // a smoothing's products
+constexpr double kSmoothed = 8.0;          // of the spectrum: the upper part that smoothing is for begins at 1 / 8
+constexpr double kSafety = 1.1;            // of the largest eigenvalue that was found
+constexpr int kPowers = 12;                // iterations that find it
+constexpr double kTolerance = 3e-2;        // of a residual in the preconditioner's norm, before a last V-cycle
+constexpr int kTrials = 7;                 // V-cycles that tell how fast errors fall
+constexpr double kSlow = 0.82;             // what one may leave: where Poisson's ratio is 0.48, about
+constexpr int kMostIterations = 12;        // more are no faster than a factor
+constexpr Eigen::Index kMostColumns = 24;  // at once
+constexpr Eigen::Index kGrain = 512, kShare = 4096;  // rows of a task, and of a summand
+constexpr Eigen::Index kBlock = 256;                 // columns of a product of matrices that are a task
+
+template <typename Work>
+void each_row(Eigen::Index rows, const Work& work) {
+  tbb::parallel_for(tbb::blocked_range<Eigen::Index>(0, rows, kGrain), [&](const auto& part) {
+    for (Eigen::Index j = part.begin(); j < part.end(); ++j) work(j);
+  });
+}
+
+// Of each column, the same whatever the number of cores.
+Row dot(const Rows& a, const Rows& b) {
+  const Eigen::Index shares = (a.rows() + kShare - 1) / kShare;
+  Rows sums(shares, a.cols());
+  tbb::parallel_for(Eigen::Index{0}, shares, [&](Eigen::Index share) {
+    const Eigen::Index begin = kShare * share, count = std::min(kShare, a.rows() - begin);
+    sums.row(share) = (a.middleRows(begin, count).array() * b.middleRows(begin, count).array()).colwise().sum();
+  });
+  return sums.colwise().sum();
+}
+
+// Of all wavelengths.
+double wave(Eigen::Index i) {
+  return std::cos(2.4 * static_cast<double>(i));
+}
+
+// to = by * from.
+void interpolate(const Prolongation& by, const Rows& from, Rows& to) {
+  each_row(by.rows(), [&](Eigen::Index j) {
+    to.row(j).setZero();
+    for (Prolongation::InnerIterator entry(by, j); entry; ++entry) to.row(j) += entry.value() * from.row(entry.col());
+  });
+}
+
+Prolongation of_degrees_of_freedom(const Prolongation& nodes, const std::vector<char>& fixed) {
+  std::vector<Eigen::Triplet<double>> list;
+  list.reserve(3 * static_cast<std::size_t>(nodes.nonZeros()));
+  for (Eigen::Index node = 0; node < nodes.rows(); ++node) {
+    for (Prolongation::InnerIterator entry(nodes, node); entry; ++entry) {
+      for (Eigen::Index c = 0; c < 3; ++c) {
+        if (fixed[static_cast<std::size_t>(3 * node + c)] != 0) continue;
+        list.emplace_back(static_cast<int>(3 * node + c), static_cast<int>(3 * entry.col() + c), entry.value());
+      }
+    }
+  }
+  Prolongation out(3 * nodes.rows(), 3 * nodes.cols());
+  out.setFromTriplets(list.begin(), list.end());
+  return out;
+}
+
+// What nothing on the fine mesh depends on stays where it is.
+void hold_idle(SparseMatrix& matrix) {
+  const Eigen::VectorXd diagonal = matrix.diagonal();
+  std::vector<char> idle(static_cast<std::size_t>(diagonal.size()));
+  for (Eigen::Index i = 0; i < diagonal.size(); ++i) idle[static_cast<std::size_t>(i)] = diagonal[i] > 0.0 ? 0 : 1;
+  fix_dofs(matrix, idle, diagonal.mean());
+}
+
+}  // namespace
+
+// Some right-hand sides side by side, a row a degree of freedom.
+class TwoGrid::Iteration {
+ public:
+  Iteration(const TwoGrid& system, Eigen::Index columns)
+      : a_(system), columns_(columns), width_(kRowWidth * ((columns + kRowWidth - 1) / kRowWidth)) {
+    for (Rows* rows : {&x_, &r_, &z_, &p_, &rest_, &d_, &next_}) rows->setZero(a_.matrix_.rows(), width_);
+    coarse_.setZero(a_.prolongation_.cols(), width_);
+  }
+
+  // Of the energy norm of an error that some V-cycles have worked on, what one more leaves.
+  double slowest() {
+    for (Eigen::Index i = 0; i < x_.rows(); ++i) x_(i, 0) = wave(i);
+    double before = 0.0, energy = 0.0;
+    for (int k = 0; k < kTrials; ++k) {
+      multiply(x_, [&](Eigen::Index j, const auto& product) { r_.row(j) = product; });
+      before = std::exchange(energy, dot(x_, r_)[0]);
+      v_cycle();
+      x_ -= z_;
+    }
+    return std::sqrt(energy / before);
+  }
+
+  bool operator()(const Eigen::Ref<const Eigen::MatrixXd>& b, Eigen::Ref<Eigen::MatrixXd> out) {
+    r_.leftCols(columns_) = b;
+    v_cycle();
+    p_ = z_;
+    Row power = dot(r_, z_);
+    const Row first = power;
+    for (int k = 0; k < kMostIterations; ++k) {
+      multiply(p_, [&](Eigen::Index j, const auto& product) { rest_.row(j) = product; });
+      const Row along = ratio(power, dot(p_, rest_));
+      each_row(x_.rows(), [&](Eigen::Index j) {
+        x_.row(j).array() += along.array() * p_.row(j).array();
+        r_.row(j).array() -= along.array() * rest_.row(j).array();
+      });
+      v_cycle();
+      const Row now = dot(r_, z_), left = ratio(now, first);
+      if (!left.allFinite()) return false;
+      if (std::sqrt(left.maxCoeff()) < kTolerance) {
+        out = (x_ + z_).leftCols(columns_);
+        return true;
+      }
+      const Row keep = ratio(now, power);
+      each_row(p_.rows(), [&](Eigen::Index j) { p_.row(j) = z_.row(j).array() + keep.array() * p_.row(j).array(); });
+      power = now;
+    }
+    return false;
+  }
+
+ private:
+  // Columns of zeros, which are solved, stay.
+  static Row ratio(const Row& a, const Row& b) { return (b.array() == 0.0).select(0.0, a.array() / b.array()); }
+
+  // then(j, row j of A of).
+  template <typename Then>
+  void multiply(const Rows& of, const Then& then) const {
+    const SparseMatrix& a = a_.matrix_;
+    each_row(a.outerSize(), [&](Eigen::Index j) {
+      alignas(64) double sum[kMostColumns];
+      const int begin = a.outerIndexPtr()[j], end = a.outerIndexPtr()[j + 1];
+      sum_rows(end - begin, a.valuePtr() + begin, a.innerIndexPtr() + begin, of.data(), width_, sum);
+      then(j, Eigen::Map<const Row>(sum, width_));
+    });
+  }
+
+  // z = about A^-1 r.
+  void v_cycle() {
+    rest_ = r_;
+    z_.setZero();
+    smooth();
+    multiply(d_, [&](Eigen::Index j, const auto& product) { rest_.row(j) -= product; });
+    interpolate(a_.restriction_, rest_, coarse_);
+    coarse_.leftCols(columns_) = a_.solve_coarse(coarse_.leftCols(columns_));
+    interpolate(a_.prolongation_, coarse_, d_);
+    multiply(d_, [&](Eigen::Index j, const auto& product) {
+      rest_.row(j) -= product;
+      z_.row(j) += d_.row(j);
+    });
+    smooth();
+  }
+
+  // Chebyshev iteration from z on (Saad, Iterative Methods for Sparse Linear Systems, 2003, algorithm 12.1). `rest_`: what
+  // z leaves of r before its last change, `d_`.
+  void smooth() {
+    const double upper = a_.largest_, lower = upper / kSmoothed;
+    const double middle = 0.5 * (upper + lower), half = 0.5 * (upper - lower), sigma = middle / half;
+    double rho = 1.0 / sigma;
+    each_row(d_.rows(), [&](Eigen::Index j) {
+      d_.row(j) = (a_.inverse_diagonal_[j] / middle) * rest_.row(j);
+      z_.row(j) += d_.row(j);
+    });
+    for (int k = 1; k < kSweeps; ++k) {
+      const double next_rho = 1.0 / (2.0 * sigma - rho), keep = next_rho * rho, step = 2.0 * next_rho / half;
+      multiply(d_, [&](Eigen::Index j, const auto& product) {
+        rest_.row(j) -= product;
+        next_.row(j) = keep * d_.row(j) + (step * a_.inverse_diagonal_[j]) * rest_.row(j);
+        z_.row(j) += next_.row(j);
+      });
+      d_.swap(next_);
+      rho = next_rho;
+    }
+  }
+
+  const TwoGrid& a_;
+  Eigen::Index columns_, width_;
+  Rows x_, r_, z_, p_, rest_, d_, next_, coarse_;
+};
+
+TwoGrid::TwoGrid(SparseMatrix matrix, const std::vector<char>& fixed, const Prolongation& nodes)
+    : matrix_(std::move(matrix)),
+      prolongation_(of_degrees_of_freedom(nodes, fixed)),
+      restriction_(prolongation_.transpose()),
+      inverse_diagonal_(matrix_.diagonal().cwiseInverse()) {
+  SparseMatrix coarse = to_coarse(matrix_);
+  hold_idle(coarse);
+  coarse_.factorize(coarse);
+  Eigen::VectorXd x(matrix_.rows());
+  for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = wave(i);
+  for (int k = 0; k < kPowers; ++k) {
+    const Eigen::VectorXd y = inverse_diagonal_.cwiseProduct(symmetric_product(matrix_, x).col(0));
+    largest_ = kSafety * y.norm() / x.norm();
+    x = y.normalized();
+  }
+  slow_ = !(Iteration(*this, 1).slowest() < kSlow);
+}
+
+Eigen::MatrixXd TwoGrid::to_fine(const Eigen::MatrixXd& x) const {
+  return prolongation_ * x;
+}
+
+Eigen::MatrixXd TwoGrid::to_coarse(const Eigen::MatrixXd& b) const {
+  return restriction_ * b;
+}
+
+SparseMatrix TwoGrid::to_coarse(const SparseMatrix& s) const {
+  const SparseMatrix down = prolongation_, up = restriction_;
+  const Eigen::Index count = (down.cols() + kBlock - 1) / kBlock;
+  std::vector<SparseMatrix> blocks(static_cast<std::size_t>(count));
+  tbb::parallel_for(Eigen::Index{0}, count, [&](Eigen::Index i) {
+    const Eigen::Index begin = kBlock * i;
+    const SparseMatrix product = s * SparseMatrix(down.middleCols(begin, std::min(kBlock, down.cols() - begin)));
+    blocks[static_cast<std::size_t>(i)] = up * product;
+  });
+  SparseMatrix out(down.cols(), down.cols());
+  Eigen::Index size = 0;
+  for (const SparseMatrix& block : blocks) size += block.nonZeros();
+  out.reserve(size);
+  Eigen::Index column = 0;
+  for (const SparseMatrix& block : blocks) {
+    for (Eigen::Index j = 0; j < block.cols(); ++j, ++column) {
+      out.startVec(column);
+      for (SparseMatrix::InnerIterator entry(block, j); entry; ++entry) {
+        out.insertBack(entry.row(), column) = entry.value();
+      }
+    }
+  }
+  out.finalize();
+  return out;
+}
+
+std::optional<Eigen::MatrixXd> TwoGrid::solve(const Eigen::MatrixXd& b) const {
+  if (slow_) return std::nullopt;
+  Eigen::MatrixXd x(b.rows(), b.cols());
+  for (Eigen::Index at = 0; at < b.cols(); at += kMostColumns) {
+    const Eigen::Index count = std::min(kMostColumns, b.cols() - at);
+    if (!Iteration(*this, count)(b.middleCols(at, count), x.middleCols(at, count))) return std::nullopt;
+  }
+  return x;
+}
+
+}  // namespace tissue_stiffness
