@@ -125,7 +125,9 @@ def draw(task):
         effects = [{'elasticity': {'law': 'linear', 'young_modulus': {'prior': start, 'factor': 3.0}, 'poisson_ratio': 0.45}}]
         model = write(folder, 'model.yaml', {'mesh': {'file': 'mesh.vtk'}, 'regions': scene.regions,
                                              'effects': effects + scene.effects_under(load), 'observations': observations(scene)})
-        command = [arguments.diagnose, model, bag, '--auto', '--quiet', '--output', folder]
+        command = [arguments.diagnose, model, bag, '--quiet', '--output', folder]
+        if not absent:  # what the library lacks can only be told from the given model
+            command.append('--auto')
         for name in sorted(like(hidden)) if absent and hidden != 'push' else []:
             command += ['--ignore', name]
         call(command)
