@@ -59,13 +59,15 @@ void interpolate(const Prolongation& by, const Rows& from, Rows& to) {
   });
 }
 
+// Of what is free; on the coarse mesh too, where functions of nodes that are held could depend on one another.
 Prolongation of_degrees_of_freedom(const Prolongation& nodes, const std::vector<char>& fixed) {
+  const auto held = [&fixed](Eigen::Index dof) { return fixed[static_cast<std::size_t>(dof)] != 0; };
   std::vector<Eigen::Triplet<double>> list;
   list.reserve(3 * static_cast<std::size_t>(nodes.nonZeros()));
   for (Eigen::Index node = 0; node < nodes.rows(); ++node) {
     for (Prolongation::InnerIterator entry(nodes, node); entry; ++entry) {
       for (Eigen::Index c = 0; c < 3; ++c) {
-        if (fixed[static_cast<std::size_t>(3 * node + c)] != 0) continue;
+        if (held(3 * node + c) || held(3 * entry.col() + c)) continue;
         list.emplace_back(static_cast<int>(3 * node + c), static_cast<int>(3 * entry.col() + c), entry.value());
       }
     }
@@ -75,12 +77,17 @@ Prolongation of_degrees_of_freedom(const Prolongation& nodes, const std::vector<
   return out;
 }
 
-// What nothing on the fine mesh depends on stays where it is.
+// What is held has no entry, and stays where it is.
 void hold_idle(SparseMatrix& matrix) {
   const Eigen::VectorXd diagonal = matrix.diagonal();
-  std::vector<char> idle(static_cast<std::size_t>(diagonal.size()));
-  for (Eigen::Index i = 0; i < diagonal.size(); ++i) idle[static_cast<std::size_t>(i)] = diagonal[i] > 0.0 ? 0 : 1;
-  fix_dofs(matrix, idle, diagonal.mean());
+  const double mean = diagonal.mean();
+  SparseMatrix idle(matrix.rows(), matrix.cols());
+  for (int i = 0; i < diagonal.size(); ++i) {
+    idle.startVec(i);
+    if (diagonal[i] == 0.0) idle.insertBack(i, i) = mean;
+  }
+  idle.finalize();
+  matrix += idle;
 }
 
 }  // namespace

@@ -19,7 +19,8 @@ using Prolongation = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 class TwoGrid {
  public:
   /// `matrix`: three rows a node, both triangles; rows and columns of `fixed` degrees of freedom zero but for their
-  /// diagonal. Throws NumericalError when not positive definite.
+  /// diagonal. `nodes`: P; the coarser mesh's nodes are the first of the finer one. Throws NumericalError when the matrix
+  /// is not positive definite.
   TwoGrid(SparseMatrix matrix, const std::vector<char>& fixed, const Prolongation& nodes);
 
   /// Columns of about A^-1 b, where nothing is fixed, within a few percent of their energy norm; empty when a factor is
@@ -27,7 +28,7 @@ class TwoGrid {
   std::optional<Eigen::MatrixXd> solve(const Eigen::MatrixXd& b) const;
 
   const SparseMatrix& matrix() const { return matrix_; }
-  /// P x, zero where a degree of freedom is fixed; P^T b; P^T S P of a symmetric S.
+  /// P x, zero where a degree of freedom is fixed; P^T b; P^T S P of a symmetric S. P: of what is free on both meshes.
   Eigen::MatrixXd to_fine(const Eigen::MatrixXd& x) const;
   Eigen::MatrixXd to_coarse(const Eigen::MatrixXd& b) const;
   SparseMatrix to_coarse(const SparseMatrix& s) const;
