@@ -9,6 +9,7 @@
 
 #include "tissue_stiffness/fem/panel.hpp"
 #include "tissue_stiffness/fem/products.hpp"
+#include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -59,15 +60,17 @@ void interpolate(const Prolongation& by, const Rows& from, Rows& to) {
   });
 }
 
-// Of what is free; on the coarse mesh too, where functions of nodes that are held could depend on one another.
-Prolongation of_degrees_of_freedom(const Prolongation& nodes, const std::vector<char>& fixed) {
+enum class Coarse { all, free };
+
+// Of what is free on the fine mesh; on the coarse one, too, or of all that there is.
+Prolongation of_degrees_of_freedom(const Prolongation& nodes, const std::vector<char>& fixed, Coarse coarse) {
   const auto held = [&fixed](Eigen::Index dof) { return fixed[static_cast<std::size_t>(dof)] != 0; };
   std::vector<Eigen::Triplet<double>> list;
   list.reserve(3 * static_cast<std::size_t>(nodes.nonZeros()));
   for (Eigen::Index node = 0; node < nodes.rows(); ++node) {
     for (Prolongation::InnerIterator entry(nodes, node); entry; ++entry) {
       for (Eigen::Index c = 0; c < 3; ++c) {
-        if (held(3 * node + c) || held(3 * entry.col() + c)) continue;
+        if (held(3 * node + c) || (coarse == Coarse::free && held(3 * entry.col() + c))) continue;
         list.emplace_back(static_cast<int>(3 * node + c), static_cast<int>(3 * entry.col() + c), entry.value());
       }
     }
@@ -77,7 +80,7 @@ Prolongation of_degrees_of_freedom(const Prolongation& nodes, const std::vector<
   return out;
 }
 
-// What is held has no entry, and stays where it is.
+// What nothing depends on has no entry, and stays where it is.
 void hold_idle(SparseMatrix& matrix) {
   const Eigen::VectorXd diagonal = matrix.diagonal();
   const double mean = diagonal.mean();
@@ -201,13 +204,20 @@ class TwoGrid::Iteration {
 };
 
 TwoGrid::TwoGrid(SparseMatrix matrix, const std::vector<char>& fixed, const Prolongation& nodes)
-    : matrix_(std::move(matrix)),
-      prolongation_(of_degrees_of_freedom(nodes, fixed)),
-      restriction_(prolongation_.transpose()),
-      inverse_diagonal_(matrix_.diagonal().cwiseInverse()) {
-  SparseMatrix coarse = to_coarse(matrix_);
-  hold_idle(coarse);
-  coarse_.factorize(coarse);
+    : matrix_(std::move(matrix)), inverse_diagonal_(matrix_.diagonal().cwiseInverse()) {
+  const auto couple = [&](Coarse coarse) {
+    prolongation_ = of_degrees_of_freedom(nodes, fixed, coarse);
+    restriction_ = prolongation_.transpose();
+    SparseMatrix below = to_coarse(matrix_);
+    hold_idle(below);
+    coarse_.factorize(below);
+  };
+  // Functions of held nodes help beside a face; where few free nodes share many of them they depend on one another.
+  try {
+    couple(Coarse::all);
+  } catch (const NumericalError&) {
+    couple(Coarse::free);
+  }
   Eigen::VectorXd x(matrix_.rows());
   for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = wave(i);
   for (int k = 0; k < kPowers; ++k) {

@@ -28,7 +28,7 @@ class TwoGrid {
   std::optional<Eigen::MatrixXd> solve(const Eigen::MatrixXd& b) const;
 
   const SparseMatrix& matrix() const { return matrix_; }
-  /// P x, zero where a degree of freedom is fixed; P^T b; P^T S P of a symmetric S. P: of what is free on both meshes.
+  /// P x, zero where a degree of freedom is fixed; P^T b; P^T S P of a symmetric S. P: of what is free.
   Eigen::MatrixXd to_fine(const Eigen::MatrixXd& x) const;
   Eigen::MatrixXd to_coarse(const Eigen::MatrixXd& b) const;
   SparseMatrix to_coarse(const SparseMatrix& s) const;
