@@ -39,7 +39,7 @@ class Search {
   std::vector<Refit> operator()(const std::vector<std::string>& wanted) {
     refit_singles(wanted);
     if (!wanted.empty() || look_.noise() || look_.numerics()) return std::move(refits_);
-    if (leaves_more_than_noise()) refit_others();
+    if (leaves_more_than_noise() || faint()) refit_others();
     if (leaves_more_than_noise()) refit_other_kinds();
     if (leaves_more_than_noise()) refit_rest();
     if ((leaves_more_than_noise() && !explained()) || tangents_mislead() || quiet()) refit_from_beginning();
@@ -76,9 +76,11 @@ class Search {
   /// The best refit explains what its tangent did not see, and not all of it: its twins may not have been seen either.
   bool tangents_mislead() const;
   bool mesh_counts() const { return look_.floor > kMeshCounts; }
-  /// Where the mesh's error is much beside one that is smaller than the noise, several effects may explain it, and some
-  /// that were not refitted: the modulus has taken most of it, and the tangents were taken there.
-  bool quiet() const { return !refits_.empty() && mesh_counts() && look_.structured() < look_.rows; }
+  /// Smaller than the noise, several effects may explain the error, and others than were declared: the modulus has taken
+  /// most of it, and the tangents were taken there.
+  bool faint() const { return look_.structured() < look_.rows; }
+  /// All the more, where the mesh's error is much beside it.
+  bool quiet() const { return !refits_.empty() && mesh_counts() && faint(); }
   bool explained() const { return !refits_.empty() && look_.explained_by(refits_.front()); }
 
   const FirstLook& look_;
@@ -156,7 +158,7 @@ void Search::refit_singles(const std::vector<std::string>& wanted) {
   refit_all(list);
 }
 
-// What correlated errors could have made as well; and other ways of the leading effects.
+// What correlated errors, too, could have made; and other ways of the leading effects.
 void Search::refit_others() {
   std::vector<std::vector<Addition>> list;
   std::size_t others = 0;

@@ -100,6 +100,17 @@ TEST(Diagnose, SeesWeakSurroundingsOfASlenderBar) {
   EXPECT_NEAR(d.candidates.front().parameters.at("foundation.stiffness"), 20.0, 1.0);
 }
 
+// Smaller than the noise: what the tangents do not declare may explain it as well.
+TEST(Diagnose, RefitsTheRivalsOfAFaintEffect) {
+  const Diagnosis d = diagnose_bar(film({"foundation: {region: top, stiffness: 24}"}, 7), {});
+  ASSERT_FALSE(d.set.empty());
+  EXPECT_EQ(d.set.front(), "foundation");
+  const auto mass = std::find_if(d.candidates.begin(), d.candidates.end(),
+                                 [](const MissingEffect& c) { return c.effect == "added_mass"; });
+  ASSERT_NE(mass, d.candidates.end());
+  EXPECT_TRUE(std::isfinite(mass->held_out_rms_after));
+}
+
 TEST(Diagnose, AddsWhatItIsTold) {
   DiagnosisOptions options;
   options.add = {"mass_damping"};
