@@ -51,10 +51,10 @@ DiagnosisStep step_of(const Fitted& model, const Recording& recording, const std
   return step;
 }
 
-// The noise that the model file states: there is nothing left to look for.
-bool is_noise(const Study::Rows& rows) {
+// The noise that the model file states, and what the mesh adds to it: there is nothing left to look for.
+bool is_noise(const Study::Rows& rows, double of_mesh) {
   const double square = rows.error.squaredNorm() / rows.count();
-  return square > 1.0 - kLeastDeficit && square < kExplained * kExplained;
+  return square > 1.0 - kLeastDeficit && square < kExplained * kExplained * (1.0 + of_mesh * of_mesh);
 }
 
 void describe_residual(const Fitted& model, double floor, Diagnosis& out) {
@@ -143,7 +143,7 @@ Diagnosis diagnose(const ModelSettings& settings, const TetMesh& mesh, const Rec
     out.entries.insert(out.entries.end(), best.entries.begin(), best.entries.end());
     model = std::move(next);
     out.steps.push_back(step_of(model, recording, out.final_effects));
-    if (k + 1 >= asked && is_noise(model.rows)) {
+    if (k + 1 >= asked && is_noise(model.rows, finding.floor)) {
       out.final_verdict = "adequate";
       break;
     }

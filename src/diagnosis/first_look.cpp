@@ -10,7 +10,10 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr double kAdequate = 1.1;       // rms in sigmas up to which a residual may be noise
-constexpr double kExplains = 0.8;       // of the structured part: less is no explanation
+constexpr double kNumerics = 0.8;       // of the structured part, from which a finer mesh explains it
+constexpr double kExplains = 0.85;      // of it: less is no explanation
+constexpr double kNearly = 0.8;         // unless what is left is little beside the noise
+constexpr double kLittle = 0.1;         // of the noise's sum of squares
 constexpr double kPairExplains = 0.97;  // two effects imitate most of a third: gravity with a delay 94 % of viscoelasticity
 
 // Of the sum of squares: a mesh's change that would add more to it is none of the error's. The fit on the finer mesh has
@@ -55,12 +58,14 @@ bool FirstLook::noise() const {
 }
 
 bool FirstLook::numerics() const {
-  return by_mesh > kExplains * structured();
+  return by_mesh > kNumerics * structured();
 }
 
 bool FirstLook::explained_by(const Refit& refit) const {
-  const double share = refit.effects.size() > 1 ? kPairExplains : kExplains, left = refit.cost - rows;
-  return left < (1.0 - share) * structured() || left < floor * floor * rows;
+  const double left = refit.cost - rows, of_mesh = floor * floor * rows;
+  if (refit.effects.size() > 1) return left < std::max((1.0 - kPairExplains) * structured(), of_mesh);
+  const double share = left < of_mesh + kLittle * rows ? kNearly : kExplains;
+  return left < std::max((1.0 - share) * structured(), of_mesh);
 }
 
 }  // namespace tissue_stiffness

@@ -1,7 +1,10 @@
-// What the mesh is blamed for.
+// What the mesh is blamed for, and what counts as an explanation.
 #include "tissue_stiffness/diagnosis/first_look.hpp"
 
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <utility>
 
 #include "../box_model.hpp"
 #include "verification/experiment.hpp"
@@ -49,6 +52,27 @@ TEST_F(BarWithADamping, DropsAMeshsChangeThatMakesTheErrorMuchLarger) {
   EXPECT_EQ(look.by_mesh, 0.0);
   EXPECT_EQ(look.floor, 0.0);
   EXPECT_EQ(look.unavoidable(), look.rows);
+}
+
+// Most of it, and more where much is left beside the noise; of two effects, nearly all.
+TEST_F(BarWithADamping, IsExplainedByWhatLeavesLittle) {
+  const auto explained = [](const FirstLook& look, double share, std::vector<std::string> effects) {
+    Refit refit;
+    refit.effects = std::move(effects);
+    refit.cost = look.rows + (1.0 - share) * look.structured();
+    return look.explained_by(refit);
+  };
+  const FirstLook strong(base_, {}, 1e-6 * base_.rows.error);
+  ASSERT_GT(strong.structured(), strong.rows);
+  EXPECT_FALSE(explained(strong, 0.84, {"a"}));
+  EXPECT_TRUE(explained(strong, 0.86, {"a"}));
+  EXPECT_FALSE(explained(strong, 0.96, {"a", "b"}));
+  EXPECT_TRUE(explained(strong, 0.98, {"a", "b"}));
+  base_.rows.error *= std::sqrt(1.4 * strong.rows / strong.cost);
+  const FirstLook faint(base_, {}, 1e-6 * base_.rows.error);
+  EXPECT_TRUE(explained(faint, 0.84, {"a"}));
+  EXPECT_FALSE(explained(faint, 0.7, {"a"}));
+  EXPECT_FALSE(explained(faint, 0.84, {"a", "b"}));
 }
 
 }  // namespace
