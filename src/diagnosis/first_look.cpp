@@ -23,7 +23,11 @@ constexpr double kElsewhere = 0.2;
 }  // namespace
 
 FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Eigen::VectorXd change)
-    : base(fitted), rows(fitted.rows.count()), cost(fitted.rows.error.squaredNorm()), mesh_change(std::move(change)) {
+    : base(fitted),
+      rows(fitted.rows.count()),
+      cost(fitted.rows.error.squaredNorm()),
+      first(change.size() == 0),
+      mesh_change(std::move(change)) {
   const std::string step = "tangents of the library, and what a finer mesh would change";
   options.progress(step, 0, 0);
   const Study::Rows& r = base.rows;

@@ -39,7 +39,7 @@ class Search {
   std::vector<Refit> operator()(const std::vector<std::string>& wanted) {
     refit_singles(wanted);
     if (!wanted.empty() || look_.noise() || look_.numerics()) return std::move(refits_);
-    if (leaves_more_than_noise() || faint()) refit_others();
+    if (leaves_more_than_noise() || (faint() && look_.first)) refit_others();  // the first look's set is told
     if (leaves_more_than_noise()) refit_other_kinds();
     if (leaves_more_than_noise()) refit_rest();
     if ((leaves_more_than_noise() && !explained()) || tangents_mislead() || quiet()) refit_from_beginning();

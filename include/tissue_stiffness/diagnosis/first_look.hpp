@@ -17,6 +17,7 @@ struct FirstLook {
 
   const Fitted& base;
   const double rows, cost;  ///< number, and sum of squared errors [sigma^2]
+  const bool first;         ///< no earlier look at the same recording
   std::vector<Candidate> candidates;
   Eigen::MatrixXd known;           ///< tangents of the base's parameters
   Eigen::VectorXd mesh_change;     ///< of each row, by a finer mesh [sigma]; zero where that makes the error much larger
