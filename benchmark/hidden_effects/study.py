@@ -181,6 +181,7 @@ def tables(rows):
     floor = {name: values[len(values) // 2] for name, values in plain.items()}
     leaves = {row['number'] for row in good if row['given'] > VISIBLE * floor[row['scene']]}
     seen = [row for row in hidden if row['number'] in leaves]
+    faint = [row for row in hidden if row['number'] not in leaves and row['verdict'] == 'missing']
     lines = ['| figure | all that leave a misfit | %s |' % ' | '.join('misfit %g %%' % (100 * m) for m in MISFITS),
              '|---|---|' + '---|' * len(MISFITS)]
 
@@ -204,6 +205,9 @@ def tables(rows):
               '* p-values below 5 %% on clean recordings: %s' % share([p < 0.05 for row in clean for p in row['p_values']]),
               '* held-out error over noise after adding: median %.3f' % (ratios[len(ratios) // 2] if ratios else float('nan')),
               '* hidden but within the noise after the fit of E: %d of %d' % (len(hidden) - len(seen), len(hidden)),
+              '  * named all the same: %d; in the set: %s, first: %s' % (
+                  len(faint), share([row['hidden'] in row['set'] for row in faint]),
+                  share([row['set'][:1] == [row['hidden']] for row in faint])),
               '* failed: %d of %d' % (len(rows) - len(good), len(rows))]
     return lines, confusion(seen)
 
