@@ -12,9 +12,7 @@ constexpr double kSpread = 0.02;  // prior standard deviations: the finer mesh's
 Study on_finer_mesh(const Study& study, const ModelSettings& settings) {
   const Model& model = study.model();
   const TetMesh mesh = finer(model.mesh(), settings.mesh);
-  BasisOptions basis;
-  basis.coarser = std::make_shared<const Prolongation>(prolongation(model.mesh(), mesh));
-  return {settings, mesh, refine(model.regions(), model.mesh(), mesh), study.recording(), basis};
+  return {settings, mesh, refine(model.regions(), model.mesh(), mesh), study.recording(), basis_beside(model.mesh(), mesh)};
 }
 
 }  // namespace

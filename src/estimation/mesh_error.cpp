@@ -81,6 +81,12 @@ TetMesh finer(const TetMesh& mesh, const MeshSettings& settings) {
   return refine(smooth);
 }
 
+BasisOptions basis_beside(const TetMesh& mesh, const TetMesh& finer) {
+  BasisOptions basis;
+  basis.coarser = std::make_shared<const Prolongation>(prolongation(mesh, finer));
+  return basis;
+}
+
 Eigen::MatrixXd mesh_doubt(const Model& model, const Eigen::VectorXd& shift) {
   const double left = model.nonlinear() ? 1.0 : kLeftByCorrection;
   Eigen::VectorXd modulus = Eigen::VectorXd::Zero(shift.size());
@@ -109,14 +115,8 @@ struct MeshError::Studies {
       : coarse(settings, mesh, regions),
         fine(settings, refined, refine(regions, mesh, refined)),
         coarse_runs(coarse, of_linear_part(basis)),
-        fine_runs(knowing(theta, fine), of_linear_part(beside(mesh, refined))),
+        fine_runs(knowing(theta, fine), of_linear_part(basis_beside(mesh, refined))),
         operators(make_observation_operators(coarse)) {}
-
-  static BasisOptions beside(const TetMesh& mesh, const TetMesh& refined) {
-    BasisOptions basis;
-    basis.coarser = std::make_shared<const Prolongation>(prolongation(mesh, refined));
-    return basis;
-  }
 
   static const Model& knowing(const Eigen::VectorXd* theta, Model& model) {
     if (theta != nullptr) model.know(*theta);

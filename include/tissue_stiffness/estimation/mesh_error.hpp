@@ -20,6 +20,9 @@ namespace tissue_stiffness {
 /// Nodes keep their numbers.
 TetMesh finer(const TetMesh& mesh, const MeshSettings& settings);
 
+/// Of a model on finer(mesh): the stiffness there needs no factor.
+BasisOptions basis_beside(const TetMesh& mesh, const TetMesh& finer);
+
 /// Covariance of what stays wrong (filter coordinates): of a linear model, which the shift corrects, half of it, 1 sigma,
 /// and half of the moduli's rms shift for a modulus whose own happens to be small; of a nonlinear one, all of both.
 Eigen::MatrixXd mesh_doubt(const Model& model, const Eigen::VectorXd& shift);
