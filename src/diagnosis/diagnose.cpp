@@ -54,7 +54,7 @@ DiagnosisStep step_of(const Fitted& model, const Recording& recording, const std
 // The noise that the model file states, and what the mesh adds to it: there is nothing left to look for.
 bool is_noise(const Study::Rows& rows, double of_mesh) {
   const double square = rows.error.squaredNorm() / rows.count();
-  return square > 1.0 - kLeastDeficit && square < kExplained * kExplained * (1.0 + of_mesh * of_mesh);
+  return square > 1.0 - kLeastDeficit && square < kExplained * kExplained * unavoidable_mean_square(of_mesh);
 }
 
 void describe_residual(const Fitted& model, double floor, Diagnosis& out) {

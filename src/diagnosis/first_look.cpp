@@ -54,7 +54,7 @@ double FirstLook::structured() const {
 }
 
 double FirstLook::unavoidable() const {
-  return (1.0 + floor * floor) * rows;
+  return unavoidable_mean_square(floor) * rows;
 }
 
 bool FirstLook::noise() const {
@@ -67,8 +67,8 @@ bool FirstLook::numerics() const {
 
 bool FirstLook::explained_by(const Refit& refit) const {
   const double left = refit.cost - rows, of_mesh = floor * floor * rows;
-  if (refit.effects.size() > 1) return left < std::max((1.0 - kPairExplains) * structured(), of_mesh);
-  const double share = left < of_mesh + kLittle * rows ? kNearly : kExplains;
+  const double alone = left < of_mesh + kLittle * rows ? kNearly : kExplains;
+  const double share = refit.effects.size() > 1 ? kPairExplains : alone;
   return left < std::max((1.0 - share) * structured(), of_mesh);
 }
 
