@@ -82,15 +82,9 @@ Prolongation of_degrees_of_freedom(const Prolongation& nodes, const std::vector<
 
 // What nothing depends on has no entry, and stays where it is.
 void hold_idle(SparseMatrix& matrix) {
-  const Eigen::VectorXd diagonal = matrix.diagonal();
-  const double mean = diagonal.mean();
-  SparseMatrix idle(matrix.rows(), matrix.cols());
-  for (int i = 0; i < diagonal.size(); ++i) {
-    idle.startVec(i);
-    if (diagonal[i] == 0.0) idle.insertBack(i, i) = mean;
-  }
-  idle.finalize();
-  matrix += idle;
+  const Eigen::VectorXd diagonal = matrix.diagonal(), none = Eigen::VectorXd::Zero(diagonal.size());
+  const Eigen::VectorXd idle = (diagonal.array() == 0.0).select(diagonal.mean(), none);
+  matrix += SparseMatrix(idle.asDiagonal());
 }
 
 }  // namespace

@@ -104,10 +104,9 @@ class Builder {
                      ? known->held
                      : std::make_shared<StaticResponse>(root->stiffness, root->mass, root->fixed, options_.coarser.get());
     OrthonormalBasis basis(root->mass, root->size);
-    if (root->held->grids() != nullptr && root->groups.empty()) {
-      refine(basis, *root);
-    } else if (root->loads.cols() > 0) {
-      extend(basis, *root->held, root->loads, root->groups, root->size);
+    const bool between = root->held->grids() != nullptr && root->groups.empty();
+    if (root->loads.cols() > 0) {
+      between ? refine(basis, *root) : extend(basis, *root->held, root->loads, root->groups, root->size);
     }
     root->vectors = basis.vectors();
     root->weighted = basis.weighted();
@@ -141,7 +140,6 @@ class Builder {
 
   // The same from the vectors of the coarser mesh: static responses to the loads and to the inertia of each, all at once.
   static void refine(OrthonormalBasis& basis, const BasisRoot& root) {
-    if (root.loads.cols() == 0) return;
     const TwoGrid& grids = *root.held->grids();
     const SparseMatrix mass = grids.to_coarse(root.mass);
     OrthonormalBasis coarse(mass, std::min(root.size, mass.rows()));
