@@ -64,4 +64,8 @@ void sum_rows(int count, const double* values, const int* rows, const double* x,
   kernels.sum_rows(count, values, rows, x, columns, y);
 }
 
+void sum_blocks(int count, const float* blocks, const int* nodes, const float* x, long columns, float* y) {
+  kernels.sum_blocks(count, blocks, nodes, x, columns, y);
+}
+
 }  // namespace tissue_stiffness

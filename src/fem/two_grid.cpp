@@ -14,18 +14,19 @@
 namespace tissue_stiffness {
 namespace {
 
-using Rows = GramSum::Rows;
-using Row = Eigen::Matrix<double, 1, Eigen::Dynamic>;
+using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using Row = Eigen::Matrix<float, 1, Eigen::Dynamic>;
+using Sums = Eigen::RowVectorXd;  // of squares, a column each
 
 constexpr int kSweeps = 3;                 // a smoothing's products
-constexpr double kSmoothed = 8.0;          // of the spectrum: the upper part that smoothing is for begins at 1 / 8
+constexpr float kSmoothed = 8.0F;          // of the spectrum: the upper part that smoothing is for begins at 1 / 8
 constexpr double kSafety = 1.1;            // of the largest eigenvalue that was found
 constexpr int kPowers = 12;                // iterations that find it
 constexpr double kTolerance = 3e-2;        // of a residual in the preconditioner's norm, before a last V-cycle
 constexpr int kTrials = 7;                 // V-cycles that tell how fast errors fall
 constexpr double kSlow = 0.82;             // what one may leave: where Poisson's ratio is 0.48, about
 constexpr int kMostIterations = 12;        // more are no faster than a factor
-constexpr Eigen::Index kMostColumns = 24;  // at once
+constexpr Eigen::Index kMostColumns = 32;  // at once
 constexpr Eigen::Index kGrain = 512, kShare = 4096;  // rows of a task, and of a summand
 constexpr Eigen::Index kBlock = 256;                 // columns of a product of matrices that are a task
 
@@ -37,14 +38,15 @@ void each_row(Eigen::Index rows, const Work& work) {
 }
 
 // Of each column, the same whatever the number of cores.
-Row dot(const Rows& a, const Rows& b) {
+Sums dot(const Rows& a, const Rows& b) {
   const Eigen::Index shares = (a.rows() + kShare - 1) / kShare;
-  Rows sums(shares, a.cols());
+  Eigen::MatrixXd sums(a.cols(), shares);
   tbb::parallel_for(Eigen::Index{0}, shares, [&](Eigen::Index share) {
     const Eigen::Index begin = kShare * share, count = std::min(kShare, a.rows() - begin);
-    sums.row(share) = (a.middleRows(begin, count).array() * b.middleRows(begin, count).array()).colwise().sum();
+    const Row sum = (a.middleRows(begin, count).array() * b.middleRows(begin, count).array()).colwise().sum();
+    sums.col(share) = sum.transpose().cast<double>();
   });
-  return sums.colwise().sum();
+  return sums.rowwise().sum().transpose();
 }
 
 // Of all wavelengths.
@@ -56,7 +58,9 @@ double wave(Eigen::Index i) {
 void interpolate(const Prolongation& by, const Rows& from, Rows& to) {
   each_row(by.rows(), [&](Eigen::Index j) {
     to.row(j).setZero();
-    for (Prolongation::InnerIterator entry(by, j); entry; ++entry) to.row(j) += entry.value() * from.row(entry.col());
+    for (Prolongation::InnerIterator entry(by, j); entry; ++entry) {
+      to.row(j) += static_cast<float>(entry.value()) * from.row(entry.col());
+    }
   });
 }
 
@@ -93,14 +97,14 @@ void hold_idle(SparseMatrix& matrix) {
 class TwoGrid::Iteration {
  public:
   Iteration(const TwoGrid& system, Eigen::Index columns)
-      : a_(system), columns_(columns), width_(kRowWidth * ((columns + kRowWidth - 1) / kRowWidth)) {
+      : a_(system), columns_(columns), width_(kFloatWidth * ((columns + kFloatWidth - 1) / kFloatWidth)) {
     for (Rows* rows : {&x_, &r_, &z_, &p_, &rest_, &d_, &next_}) rows->setZero(a_.matrix_.rows(), width_);
     coarse_.setZero(a_.prolongation_.cols(), width_);
   }
 
   // Of the energy norm of an error that some V-cycles have worked on, what one more leaves.
   double slowest() {
-    for (Eigen::Index i = 0; i < x_.rows(); ++i) x_(i, 0) = wave(i);
+    for (Eigen::Index i = 0; i < x_.rows(); ++i) x_(i, 0) = static_cast<float>(wave(i));
     double before = 0.0, energy = 0.0;
     for (int k = 0; k < kTrials; ++k) {
       multiply(x_, [&](Eigen::Index j, const auto& product) { r_.row(j) = product; });
@@ -112,26 +116,28 @@ class TwoGrid::Iteration {
   }
 
   bool operator()(const Eigen::Ref<const Eigen::MatrixXd>& b, Eigen::Ref<Eigen::MatrixXd> out) {
-    r_.leftCols(columns_) = b;
+    const Eigen::RowVectorXd largest = b.cwiseAbs().colwise().maxCoeff(),
+                             size = (largest.array() > 0.0).select(largest, 1.0);
+    r_.leftCols(columns_) = (b.array().rowwise() / size.array()).cast<float>();
     v_cycle();
     p_ = z_;
-    Row power = dot(r_, z_);
-    const Row first = power;
+    Sums power = dot(r_, z_);
+    const Sums first = power;
     for (int k = 0; k < kMostIterations; ++k) {
       multiply(p_, [&](Eigen::Index j, const auto& product) { rest_.row(j) = product; });
-      const Row along = ratio(power, dot(p_, rest_));
+      const Row along = ratio(power, dot(p_, rest_)).cast<float>();
       each_row(x_.rows(), [&](Eigen::Index j) {
         x_.row(j).array() += along.array() * p_.row(j).array();
         r_.row(j).array() -= along.array() * rest_.row(j).array();
       });
       v_cycle();
-      const Row now = dot(r_, z_), left = ratio(now, first);
+      const Sums now = dot(r_, z_), left = ratio(now, first);
       if (!left.allFinite()) return false;
       if (std::sqrt(left.maxCoeff()) < kTolerance) {
-        out = (x_ + z_).leftCols(columns_);
+        out = (x_ + z_).leftCols(columns_).cast<double>().array().rowwise() * size.array();
         return true;
       }
-      const Row keep = ratio(now, power);
+      const Row keep = ratio(now, power).cast<float>();
       each_row(p_.rows(), [&](Eigen::Index j) { p_.row(j) = z_.row(j).array() + keep.array() * p_.row(j).array(); });
       power = now;
     }
@@ -140,17 +146,15 @@ class TwoGrid::Iteration {
 
  private:
   // Columns of zeros, which are solved, stay.
-  static Row ratio(const Row& a, const Row& b) { return (b.array() == 0.0).select(0.0, a.array() / b.array()); }
+  static Sums ratio(const Sums& a, const Sums& b) { return (b.array() == 0.0).select(0.0, a.array() / b.array()); }
 
   // then(j, row j of A of).
   template <typename Then>
   void multiply(const Rows& of, const Then& then) const {
-    const SparseMatrix& a = a_.matrix_;
-    each_row(a.outerSize(), [&](Eigen::Index j) {
-      alignas(64) double sum[kMostColumns];
-      const int begin = a.outerIndexPtr()[j], end = a.outerIndexPtr()[j + 1];
-      sum_rows(end - begin, a.valuePtr() + begin, a.innerIndexPtr() + begin, of.data(), width_, sum);
-      then(j, Eigen::Map<const Row>(sum, width_));
+    each_row(a_.single_.nodes(), [&](Eigen::Index node) {
+      alignas(64) float sum[3 * kMostColumns];
+      a_.single_.multiply(static_cast<int>(node), of.data(), width_, sum);
+      for (int i = 0; i < 3; ++i) then(3 * node + i, Eigen::Map<const Row>(sum + width_ * i, width_));
     });
   }
 
@@ -161,7 +165,7 @@ class TwoGrid::Iteration {
     smooth();
     multiply(d_, [&](Eigen::Index j, const auto& product) { rest_.row(j) -= product; });
     interpolate(a_.restriction_, rest_, coarse_);
-    coarse_.leftCols(columns_) = a_.solve_coarse(coarse_.leftCols(columns_));
+    coarse_.leftCols(columns_) = a_.solve_coarse(coarse_.leftCols(columns_).cast<double>()).cast<float>();
     interpolate(a_.prolongation_, coarse_, d_);
     multiply(d_, [&](Eigen::Index j, const auto& product) {
       rest_.row(j) -= product;
@@ -173,15 +177,15 @@ class TwoGrid::Iteration {
   // Chebyshev iteration from z on (Saad, Iterative Methods for Sparse Linear Systems, 2003, algorithm 12.1). `rest_`: what
   // z leaves of r before its last change, `d_`.
   void smooth() {
-    const double upper = a_.largest_, lower = upper / kSmoothed;
-    const double middle = 0.5 * (upper + lower), half = 0.5 * (upper - lower), sigma = middle / half;
-    double rho = 1.0 / sigma;
+    const auto upper = static_cast<float>(a_.largest_), lower = upper / kSmoothed;
+    const float middle = 0.5F * (upper + lower), half = 0.5F * (upper - lower), sigma = middle / half;
+    float rho = 1.0F / sigma;
     each_row(d_.rows(), [&](Eigen::Index j) {
       d_.row(j) = (a_.inverse_diagonal_[j] / middle) * rest_.row(j);
       z_.row(j) += d_.row(j);
     });
     for (int k = 1; k < kSweeps; ++k) {
-      const double next_rho = 1.0 / (2.0 * sigma - rho), keep = next_rho * rho, step = 2.0 * next_rho / half;
+      const float next_rho = 1.0F / (2.0F * sigma - rho), keep = next_rho * rho, step = 2.0F * next_rho / half;
       multiply(d_, [&](Eigen::Index j, const auto& product) {
         rest_.row(j) -= product;
         next_.row(j) = keep * d_.row(j) + (step * a_.inverse_diagonal_[j]) * rest_.row(j);
@@ -198,7 +202,7 @@ class TwoGrid::Iteration {
 };
 
 TwoGrid::TwoGrid(SparseMatrix matrix, const std::vector<char>& fixed, const Prolongation& nodes)
-    : matrix_(std::move(matrix)), inverse_diagonal_(matrix_.diagonal().cwiseInverse()) {
+    : matrix_(std::move(matrix)), single_(matrix_), inverse_diagonal_(matrix_.diagonal().cwiseInverse().cast<float>()) {
   const auto couple = [&](Coarse coarse) {
     prolongation_ = of_degrees_of_freedom(nodes, fixed, coarse);
     restriction_ = prolongation_.transpose();
@@ -215,7 +219,7 @@ TwoGrid::TwoGrid(SparseMatrix matrix, const std::vector<char>& fixed, const Prol
   Eigen::VectorXd x(matrix_.rows());
   for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = wave(i);
   for (int k = 0; k < kPowers; ++k) {
-    const Eigen::VectorXd y = inverse_diagonal_.cwiseProduct(symmetric_product(matrix_, x).col(0));
+    const Eigen::VectorXd y = symmetric_product(matrix_, x).col(0).cwiseQuotient(matrix_.diagonal());
     largest_ = kSafety * y.norm() / x.norm();
     x = y.normalized();
   }

@@ -83,5 +83,21 @@ TEST_F(Kernels, SumRows) {
   }
 }
 
+TEST_F(Kernels, SumBlocks) {
+  using Single = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const std::vector<int> nodes{3, 0, 6, 4, 4};
+  for (const PanelKernels& kernels : panel_kernels()) {
+    for (int columns = kFloatWidth; columns <= 10 * kFloatWidth; columns += kFloatWidth) {
+      const auto x = random<Single>(21, columns), blocks = random<Single>(15, 3);
+      Single expected = Single::Zero(3, columns), y = expected;
+      for (Eigen::Index k = 0; k < 5; ++k) {
+        expected += blocks.middleRows<3>(3 * k) * x.middleRows<3>(3 * nodes[static_cast<std::size_t>(k)]);
+      }
+      kernels.sum_blocks(5, blocks.data(), nodes.data(), x.data(), columns, y.data());
+      EXPECT_LT((y - expected).cwiseAbs().maxCoeff(), 1e-5F) << kernels.instructions << ' ' << columns;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace tissue_stiffness

@@ -27,6 +27,13 @@ void tile_product(long rows, const double* a, const double* b, double* c);
 /// y = sum over k < count of values[k] times row rows[k] of x, rows of `columns` doubles each, a multiple of kRowWidth.
 void sum_rows(int count, const double* values, const int* rows, const double* x, long columns, double* y);
 
+/// Floats of a row that a kernel takes at once.
+constexpr int kFloatWidth = 16;
+
+/// y = sum over k < count of block k (3 x 3, row by row) times rows 3 nodes[k] to 3 nodes[k] + 2 of x; rows of `columns`
+/// floats each, a multiple of kFloatWidth.
+void sum_blocks(int count, const float* blocks, const int* nodes, const float* x, long columns, float* y);
+
 /// The functions above for one instruction set.
 struct PanelKernels {
   const char* instructions;
@@ -34,6 +41,7 @@ struct PanelKernels {
   decltype(&tissue_stiffness::panel_dot) panel_dot;
   decltype(&tissue_stiffness::tile_product) tile_product;
   decltype(&tissue_stiffness::sum_rows) sum_rows;
+  decltype(&tissue_stiffness::sum_blocks) sum_blocks;
 };
 
 /// Those that this machine can run, the fastest first, which the functions above are.
