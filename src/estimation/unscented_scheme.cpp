@@ -260,7 +260,7 @@ class UnscentedScheme : public Scheme {
       if (mesh_error_ == nullptr) mesh_error_ = std::make_unique<MeshError>(model_->settings(), model_->mesh());
       studied_ = mesh_error_->study(question);
     };
-    study_ = background() ? aside(study) : std::async(std::launch::async, study);
+    study_ = background() ? aside(study) : std::async(std::launch::deferred, study);  // with every core
     if (!background()) study_mesh();
   }
 
