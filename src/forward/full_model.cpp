@@ -74,8 +74,10 @@ class FullTrajectories : public Trajectories {
   // Impacts are filmed so fast that a few explicit steps reach the next frame.
   void choose(const std::vector<double>& spans) {
     chosen_ = true;
-    central_.emplace_back(*systems_.front(), states_.front().time);
-    explicit_steps_ = options_.step <= 0.0 && spans.front() < kExplicitSteps * central_.front().largest_step();
+    if (options_.step <= 0.0 && systems_.front()->can_be_lumped()) {
+      central_.emplace_back(*systems_.front(), states_.front().time);
+      explicit_steps_ = spans.front() < kExplicitSteps * central_.front().largest_step();
+    }
     if (!explicit_steps_) return newmark_.initialise(states_);
     for (std::size_t i = 1; i < systems_.size(); ++i) central_.emplace_back(*systems_[i], states_[i].time);
     for (std::size_t i = 0; i < systems_.size(); ++i) central_[i].initialise(states_[i]);
@@ -159,16 +161,19 @@ ModelSystem::ModelSystem(const Model& model, const Eigen::VectorXd& theta)
       stiffness_(model.stiffness(theta)),
       fixed_(model.fixed(theta)),
       relaxations_(model.relaxations(theta)) {
-  const double alpha = model.mass_damping(theta), beta = model.stiffness_damping(theta);
+  const double alpha = model.mass_damping(theta), beta = model.stiffness_damping(theta),
+               inertia = model.stiffness_inertia(theta);
   mass_.prune(0.0);  // of each pair of nodes' 3 x 3 block, a third
   linear_part_ = stiffness_.coeffs().cwiseAbs().maxCoeff() > 0.0;
   damped_ = alpha > 0.0 || beta > 0.0;
-  if (beta > 0.0 || !relaxations_.empty()) reference_ = model.reference_stiffness(theta);
+  if (beta > 0.0 || inertia > 0.0 || !relaxations_.empty()) reference_ = model.reference_stiffness(theta);
   if (damped_) {
     damping_ = alpha * mass_;
     if (beta > 0.0) damping_ += beta * reference_;
   }
   gravity_ = mass_ * model.body_acceleration(theta).replicate(mass_.rows() / 3, 1);
+  lumps_ = !(inertia > 0.0);
+  if (!lumps_) mass_ += inertia * reference_;
   if (!linear_part_) rotations_.emplace(model.fem());
 }
 

@@ -91,6 +91,10 @@ double Model::stiffness_damping(const Eigen::VectorXd& theta) const {
   return sum_of(parts_, theta, &LinearTerms::stiffness_damping);
 }
 
+double Model::stiffness_inertia(const Eigen::VectorXd& theta) const {
+  return sum_of(parts_, theta, &LinearTerms::stiffness_inertia);
+}
+
 double Model::mass_factor(const Eigen::VectorXd& theta) const {
   return product_of(parts_, theta, &LinearTerms::mass_factor);
 }

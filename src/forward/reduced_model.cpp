@@ -138,7 +138,7 @@ std::vector<int> ReducedModel::active(const Eigen::VectorXd& theta, bool half) c
 
 // Everything that the modes depend on.
 Eigen::VectorXd ReducedModel::key(const Eigen::VectorXd& theta, bool half) const {
-  std::vector<double> values{half ? 1.0 : 0.0, model_.mass_factor(theta)};
+  std::vector<double> values{half ? 1.0 : 0.0, model_.mass_factor(theta), model_.stiffness_inertia(theta)};
   for (const auto& part : model_.parts()) {
     const LinearTerms& terms = part.terms;
     if (terms.mass.empty() && terms.stiffness.empty() && terms.strain_stiffness.empty()) continue;
@@ -215,6 +215,8 @@ ReducedModes ReducedModel::solve(const Eigen::VectorXd& theta, bool half) const 
       stiffness += c * (constant ? part.strain_stiffness[k] : *shaped(term, p));
     }
   }
+  modes.stiffness_inertia = model_.stiffness_inertia(theta);
+  if (modes.stiffness_inertia > 0.0) mass += modes.stiffness_inertia * stiffness;
   const std::vector<int> columns = active(theta, half);
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(chosen(stiffness, columns, columns),
                                                                         chosen(mass, columns, columns));

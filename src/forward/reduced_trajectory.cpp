@@ -18,7 +18,7 @@ ReducedTrajectory::ReducedTrajectory(const ReducedModel& reduced, const Eigen::V
       load_factor_(reduced.model().load_factor(theta)),
       modes_(reduced.modes(theta, half_basis)),
       constant_force_(modes_->weight * reduced.model().body_acceleration(theta)),
-      damping_(reduced.model().mass_damping(theta) + reduced.model().stiffness_damping(theta) * modes_->square.array()),
+      damping_(modes_->damping(reduced.model().mass_damping(theta), reduced.model().stiffness_damping(theta))),
       step_(modes_->square, damping_, reduced.model().relaxations(theta)),
       state_(Eigen::MatrixXd::Zero(modes_->square.size(), step_.states())) {
   state_.col(1) = modes_->momentum * reduced.model().initial_velocity(theta);

@@ -31,6 +31,8 @@ std::string effect_sign(const std::string& effect) {
        "every deflection is too large, or too small, by the same share, as if the load sensor's scale were off"},
       {"image_scale", "everything seen is larger, or smaller, by the same share, as with a wrong pixel size"},
       {"time_offset", "the motion is right but comes late, or early, against the loads: the clocks disagree"},
+      {"period_elongation",
+       "quick swings take longer than the model's, slow ones do not: a simulation with a long time step"},
       {"rigid_drift", "the whole body wanders or turns steadily, as when the sensor itself moves"},
       {"sensor_rotation",
        "the body moves in a direction that is turned against the model's, as with a misregistered sensor"},

@@ -9,6 +9,7 @@
 #include "../box_model.hpp"
 #include "tissue_stiffness/diagnosis/finding.hpp"
 #include "tissue_stiffness/diagnosis/first_look.hpp"
+#include "tissue_stiffness/forward/full_model.hpp"
 #include "verification/experiment.hpp"
 
 namespace tissue_stiffness {
@@ -109,6 +110,30 @@ TEST(Diagnose, RefitsTheRivalsOfAFaintEffect) {
                                  [](const MissingEffect& c) { return c.effect == "added_mass"; });
   ASSERT_NE(mass, d.candidates.end());
   EXPECT_TRUE(std::isfinite(mass->held_out_rms_after));
+}
+
+// Newmark's average acceleration, a step a frame: swings of the second mode take a tenth longer.
+TEST(Diagnose, KnowsASimulationByItsTimeSteps) {
+  constexpr double step = 0.02;
+  const Experiment truth(box_settings(bar("{prior: 20.0e3, factor: 3}")), bar_mesh(), {kTruth});
+  FullModel::Options options;
+  options.step = step;
+  options.spectral_radius = 1.0;
+  const auto run = FullModel(truth.model(), options).start(truth.model().theta(truth.model().prior_mean()), 0.0);
+  std::vector<Experiment::Moment> moments;
+  for (int k = 0; k < 60; ++k) {
+    run->advance(step * k);
+    moments.push_back({step * k, run->displacement()});
+  }
+  Recording recording;
+  recording.frames = see_all(truth, moments, kNoise, 8);
+  const Diagnosis d = diagnose_bar(recording, {});
+  EXPECT_EQ(d.verdict, "missing");
+  ASSERT_FALSE(d.set.empty());
+  EXPECT_EQ(d.set.front(), "period_elongation");
+  const auto& found = d.candidates.front().parameters;
+  EXPECT_NEAR(std::sqrt(found.at("period_elongation.step_squared")), step, 0.1 * step);
+  EXPECT_NEAR(found.at("elasticity.young_modulus") / kTruth, 1.0, 0.003);
 }
 
 TEST(Diagnose, AddsWhatItIsTold) {

@@ -35,14 +35,23 @@ std::string text(const ParameterSpec& parameter, double value) {
 // A value that does something on the bar, or one inside the bounds and away from their ends.
 std::string example(const EffectSpec& spec, const ParameterSpec& parameter) {
   static const Arguments typical{
-      {"viscoelasticity.gamma", "0.5"},         {"viscoelasticity.tau", "0.01"},
-      {"elastic_support.compliance", "1.0e-6"}, {"foundation.stiffness", "1.0e5"},
-      {"stiff_inclusion.excess", "2"},          {"stiff_inclusion.center", "[0.03, 0.01, 0.01]"},
-      {"stiff_inclusion.radius", "0.012"},      {"fibre_reinforcement.modulus", "2.0e4"},
-      {"active_contraction.amplitude", "800"},  {"compressibility.shift", "0.05"},
-      {"strain_stiffening.exponent", "5"},      {"density_error.relative", "0.2"},
-      {"force_scale.relative", "0.2"},          {"image_scale.ratio", "1.1"},
-      {"time_offset.offset", "0.004"},          {"contour_bias.bias", "0.001"},
+      {"viscoelasticity.gamma", "0.5"},
+      {"viscoelasticity.tau", "0.01"},
+      {"elastic_support.compliance", "1.0e-6"},
+      {"foundation.stiffness", "1.0e5"},
+      {"stiff_inclusion.excess", "2"},
+      {"stiff_inclusion.center", "[0.03, 0.01, 0.01]"},
+      {"stiff_inclusion.radius", "0.012"},
+      {"fibre_reinforcement.modulus", "2.0e4"},
+      {"active_contraction.amplitude", "800"},
+      {"compressibility.shift", "0.05"},
+      {"strain_stiffening.exponent", "5"},
+      {"density_error.relative", "0.2"},
+      {"force_scale.relative", "0.2"},
+      {"image_scale.ratio", "1.1"},
+      {"time_offset.offset", "0.004"},
+      {"contour_bias.bias", "0.001"},
+      {"period_elongation.step_squared", "1.0e-5"},
   };
   const auto known = typical.find(spec.name + "." + parameter.name);
   if (known != typical.end()) return known->second;

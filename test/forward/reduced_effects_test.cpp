@@ -106,5 +106,29 @@ TEST(ReducedEffects, AShiftOfPoissonsRatio) {
   EXPECT_LT(worst({"compressibility: {shift: {mean: 0, std: 0.05}}"}, {at({-0.1}), at({0.03})}), 4e-3);
 }
 
+TEST(ReducedEffects, MassGrowsWithStiffness) {
+  EXPECT_LT(worst({"period_elongation: {step_squared: {mean: 0, std: 1.0e-5}}", "mass_damping: {alpha: 1}",
+                   "viscous_damping: {beta: 2.0e-3}", "viscoelasticity: {gamma: 0.3, tau: 0.05}"},
+                  {at({0.0}), at({1e-5}), at({4e-5})}),
+            1e-3);
+}
+
+// Newmark's average acceleration in long steps against exact modes of the grown mass.
+TEST(ReducedEffects, PeriodElongationStandsForLongSteps) {
+  const TetMesh mesh = bar_mesh(4);
+  const auto left = [&](double h, double step_squared) {
+    const Model stepped(box_settings(bar_with({})), mesh);
+    const Model model(box_settings(bar_with({"period_elongation: {step_squared: " + yaml(step_squared) + "}"})), mesh);
+    const double error = full_against_reduced(stepped, ReducedModel(model), model.theta(model.prior_mean()), h);
+    std::printf("steps of %g s, step_squared %g: %.1e of the motion\n", h, step_squared, error);
+    return error;
+  };
+  for (const double h : {0.008, 0.004}) {
+    const double without = left(h, 0.0);
+    EXPECT_GT(without, 1e-3);
+    EXPECT_LT(left(h, h * h), 0.15 * without);
+  }
+}
+
 }  // namespace
 }  // namespace tissue_stiffness

@@ -28,11 +28,12 @@ struct Candidate {
 
 using CountProgress = std::function<void(std::size_t done, std::size_t total)>;
 
-/// Everything that the library proposes for the fitted base model, but for effects to `ignore`. The tangents of all linear
+/// Everything that the library proposes for the fitted base model, whose error is `misfit` [sigma] rms, but for effects to
+/// `ignore`. The tangents of all linear
 /// ones come from one reduced model that holds them all at their absent values, those of the others from one at first
 /// order. What is not linear in the base is left out of it. `progress` hears how many of them are done, from any thread.
-std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd& w, const std::vector<std::string>& ignore,
-                                       const CountProgress& progress);
+std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd& w, double misfit,
+                                       const std::vector<std::string>& ignore, const CountProgress& progress);
 
 /// d rows / d w of the fitted base model, in sigmas: N x free parameters.
 Eigen::MatrixXd base_tangents(const Study& base, const Eigen::VectorXd& w, const Eigen::VectorXd& std,

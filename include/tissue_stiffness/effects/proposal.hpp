@@ -21,6 +21,7 @@ struct ProposalContext {
   double density;                    ///< [kg/m^3]
   double frame_interval;             ///< [s]
   double duration;                   ///< of the recording [s]
+  double misfit;                     ///< rms of the model's error [sigma]
   std::vector<double> periods = {};  ///< rhythms to try [s]; empty: some that fit the recording
 
   bool holds(const std::string& effect) const;

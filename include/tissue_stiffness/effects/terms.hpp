@@ -65,6 +65,7 @@ struct LinearTerms {
   std::vector<Coefficient> acceleration[3];    ///< body acceleration [m/s^2]; its force is the whole mass matrix times it
   std::vector<Coefficient> mass_damping;       ///< alpha [1/s]
   std::vector<Coefficient> stiffness_damping;  ///< beta [s]
+  std::vector<Coefficient> stiffness_inertia;  ///< of a mass proportional to the stiffness at rest [s^2]
   std::vector<RelaxationTerm> relaxation;
   std::vector<Coefficient> mass_factor;   ///< multiplies every mass
   std::vector<Coefficient> load_factor;   ///< multiplies every measured load

@@ -90,6 +90,8 @@ class Model {
   /// out.
   double mass_damping(const Eigen::VectorXd& theta) const;
   double stiffness_damping(const Eigen::VectorXd& theta) const;
+  /// What moves has the mass M + gamma K_reference [s^2]; gravity and alpha act on M alone.
+  double stiffness_inertia(const Eigen::VectorXd& theta) const;
   std::vector<Relaxation> relaxations(const Eigen::VectorXd& theta) const;
   Eigen::Vector3d body_acceleration(const Eigen::VectorXd& theta) const;
   /// What every mass, and what every measured load, is multiplied by.

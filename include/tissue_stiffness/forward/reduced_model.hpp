@@ -12,11 +12,17 @@ namespace tissue_stiffness {
 
 /// Free vibrations of a reduced model at one theta: (K - omega^2 M) phi = 0.
 struct ReducedModes {
-  Eigen::MatrixXd shapes;     ///< basis coordinates of each mode, basis size x modes, M-orthonormal
-  Eigen::MatrixXd to_modal;   ///< modal coordinates of basis coordinates, modes x basis size
-  Eigen::VectorXd square;     ///< omega^2, ascending [rad^2/s^2]
-  Eigen::MatrixX3d weight;    ///< modal force of a unit body acceleration along each axis
-  Eigen::MatrixX3d momentum;  ///< modal velocity of a unit initial velocity of the nodes that nothing holds
+  Eigen::MatrixXd shapes;          ///< basis coordinates of each mode, basis size x modes, M-orthonormal
+  Eigen::MatrixXd to_modal;        ///< modal coordinates of basis coordinates, modes x basis size
+  Eigen::VectorXd square;          ///< omega^2, ascending [rad^2/s^2]
+  Eigen::MatrixX3d weight;         ///< modal force of a unit body acceleration along each axis
+  Eigen::MatrixX3d momentum;       ///< modal velocity of a unit initial velocity of the nodes that nothing holds
+  double stiffness_inertia = 0.0;  ///< gamma, where M is that of the body and gamma K [s^2]
+
+  /// Modal value of alpha M_body + beta K [1/s].
+  Eigen::ArrayXd damping(double alpha, double beta) const {
+    return alpha + (beta - alpha * stiffness_inertia) * square.array();
+  }
 };
 
 /// A linear model in a basis of load-dependent Ritz vectors. In the basis every step is exact for loads that are linear in
