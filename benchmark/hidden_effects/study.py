@@ -15,7 +15,7 @@ import yaml
 
 from figures import plt, save
 from meshes import write_vtk
-from scenes import NOISE, RATE, STEP, TRIAL_STEP, scenes
+from scenes import NOISE, RATE, STEP, TRIAL_STEP, scenes, step_of
 
 DURATION = 1.6    # s
 TOPIC = '/tissue/markers'
@@ -33,7 +33,8 @@ HIDDEN = {
 MODULUS = 'elasticity.young_modulus'
 TIME_LIMIT = 600  # s a run
 VISIBLE = 1.15    # held-out error over a clean recording's: there is something to find
-PUSHES, PUSH_EVERY = 10000, 8  # number of the first draw of what no effect of the library is, and how often one comes
+EVERY = 8  # draws there come one of each of these, numbered from here on:
+PUSHES, LONG_STEPS = 10000, 20000  # pushes that nobody recorded, which no effect of the library is; truths in long time steps
 MOST_TRIALS = 5   # of a strength
 STRONGEST = 10.0
 
@@ -61,6 +62,7 @@ def observations(scene):
 
 def simulate(arguments, folder, scene, modulus, hidden, strength, load=1.0, cells=None, noise=1e-9, memory=0.0, seed=1,
              step=STEP):
+    step = step_of(hidden, strength, step)
     regions, effects = scene.truth(modulus, hidden, strength, load)
     loads = scene.loads_with(modulus, hidden, strength)
     write_vtk(os.path.join(folder, 'true.vtk'), *scene.mesh(cells or scene.cells, hidden))
@@ -149,16 +151,18 @@ def draw(task):
 
 def tasks(arguments):
     """Draws in an order of which any beginning is a fair sample."""
-    rng, rng_of_pushes = random.Random(7), random.Random(8)
+    rng, rng_of_pushes, rng_of_steps = random.Random(7), random.Random(8), random.Random(9)
     out = []
     for number in range(arguments.draws):
         scene = rng.choice(sorted(HIDDEN))
         hidden = rng.choice(HIDDEN[scene]) if rng.random() > 0.15 else 'none'
         absent = hidden != 'none' and rng.random() < 0.15
         out.append((arguments, number, scene, hidden, rng.choice(MISFITS), rng.choice((0.0, 0.6)), absent))
-        if number % PUSH_EVERY == 0:
-            out.append((arguments, PUSHES + number, rng_of_pushes.choice(sorted(HIDDEN)), 'push', rng_of_pushes.choice(MISFITS),
-                        rng_of_pushes.choice((0.0, 0.6)), True))
+        for first, what, own, missing in ((PUSHES, 'push', rng_of_pushes, True),
+                                          (LONG_STEPS, 'period_elongation', rng_of_steps, False)):
+            if number % EVERY == 0:
+                out.append((arguments, first + number, own.choice(sorted(HIDDEN)), what, own.choice(MISFITS),
+                            own.choice((0.0, 0.6)), missing))
     return out
 
 
