@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "tissue_stiffness/filter/anchored_filter.hpp"
+#include "tissue_stiffness/forward/reduced_trajectory.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -29,19 +30,21 @@ bool looked_at(std::size_t frame, const FitProblem& problem) {
 
 }  // namespace
 
-BasisError basis_error(const ReducedModel& reduced, const FitProblem& problem, const Eigen::VectorXd& w) {
+BasisError basis_error(const ReducedModel& reduced, const FitProblem& problem, const Eigen::VectorXd& w,
+                       const std::vector<int>& nodes) {
   const Eigen::VectorXd theta = problem.model.theta(w);
+  const Eigen::MatrixXd basis = reduced.basis_at(nodes);
   const double delay = problem.model.delay(theta);
-  const auto whole = reduced.start(theta, problem.start.time), half = reduced.start_in_half(theta, problem.start.time);
+  ReducedTrajectory whole(reduced, theta, problem.start.time), half(reduced, theta, problem.start.time, true);
   double square = 0.0;
   for (std::size_t k = 0; k < problem.frames.size(); ++k) {
     const double time = problem.frames[k].time - delay;
-    whole->advance(time);
-    half->advance(time);
+    whole.advance(time);
+    half.advance(time);
     if (!looked_at(k, problem)) continue;
-    square = std::max(square, (whole->displacement() - half->displacement()).squaredNorm());
+    square = std::max(square, (basis * (whole.coordinates() - half.coordinates())).squaredNorm());
   }
-  const double rms = kBasisDoubt * std::sqrt(square / (3.0 * reduced.nodes_in_focus()));
+  const double rms = kBasisDoubt * std::sqrt(square / static_cast<double>(basis.rows()));
   return {rms, rms / least_noise(problem.model)};
 }
 

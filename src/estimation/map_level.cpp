@@ -57,12 +57,13 @@ void MapLevel::fit(const Eigen::VectorXd& start) {
   const RunStart rest{question_.first_stamp + model_.settings().time.start};
   for (int growth = 0;; ++growth) {
     ReducedModel runs(model_, basis_);
-    runs.focus(observed_nodes(operators_, question_.frames));
+    const std::vector<int> nodes = observed_nodes(operators_, question_.frames);
+    runs.focus(nodes);
     const FitProblem problem{model_, runs, operators_, question_.frames, rest, question_.checkpoint};
     const AnchoredFilter prior(prior_mean_, prior_covariance_);
     filter_ = fit_filter(problem, prior, at, kSpread * prior.spread());
     at = filter_->anchor();
-    if (growth == kMostGrowths || basis_error(runs, problem, at).sigmas <= kBasisShare) return;
+    if (growth == kMostGrowths || basis_error(runs, problem, at, nodes).sigmas <= kBasisShare) return;
     basis_.size += basis_.size / 2;
     basis_.largest = std::max(basis_.largest, basis_.size);
   }

@@ -50,12 +50,9 @@ const Eigen::Matrix3Xd& Scheme::displacement() const {
 }
 
 void Scheme::focus_on(const Frame& frame) {
-  const TetMesh& mesh = model_->mesh();
-  bool more = seen_nodes_.empty();
-  if (more) {
-    seen_nodes_.assign(static_cast<std::size_t>(mesh.node_count()), 0);
-    for (Eigen::Index i = 0; i < mesh.facets.size(); ++i) seen_nodes_[static_cast<std::size_t>(mesh.facets(i))] = 1;
-  }
+  const int count = model_->mesh().node_count();
+  bool more = false;
+  if (seen_nodes_.empty()) seen_nodes_.assign(static_cast<std::size_t>(count), 0);
   for (const Observation& observation : frame.observations) {
     for (const int node : operators_[static_cast<std::size_t>(observation.source)]->nodes(observation)) {
       char& seen = seen_nodes_[static_cast<std::size_t>(node)];
@@ -65,7 +62,7 @@ void Scheme::focus_on(const Frame& frame) {
   }
   if (!more) return;
   std::vector<int> nodes;
-  for (int node = 0; node < mesh.node_count(); ++node) {
+  for (int node = 0; node < count; ++node) {
     if (seen_nodes_[static_cast<std::size_t>(node)] != 0) nodes.push_back(node);
   }
   stop();

@@ -8,6 +8,7 @@
 #include "tissue_stiffness/estimation/compare.hpp"
 #include "tissue_stiffness/estimation/coordinate_scan.hpp"
 #include "tissue_stiffness/forward/reduced_model.hpp"
+#include "tissue_stiffness/meshing/surface.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
@@ -250,9 +251,10 @@ bool Track::grow_basis(const FitProblem& problem) {
   if (!basis_is_due(problem.frames.size())) return false;
   notes_.basis = problem.frames.size();
   auto reduced = std::dynamic_pointer_cast<ReducedModel>(forward_);
+  const std::vector<int> surface = surface_nodes(model_.mesh());
   for (int k = 0;; ++k) {
     const FitProblem run{model_, *reduced, operators_, problem.frames, start_, problem.checkpoint};
-    const BasisError error = tissue_stiffness::basis_error(*reduced, run, filter_.mean());
+    const BasisError error = tissue_stiffness::basis_error(*reduced, run, filter_.mean(), surface);
     const bool helps = k == 0 || error.rms < kGrowthHelps * *notes_.basis_error;
     notes_.basis_error = error.rms;
     if (notes_.basis_exhausted || error.sigmas <= kBasisShare) break;

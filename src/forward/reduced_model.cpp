@@ -257,12 +257,17 @@ std::unique_ptr<Trajectories> ReducedModel::start_all(const std::vector<Eigen::V
   return std::make_unique<ReducedTrajectories>(*this, start_each(thetas, start));
 }
 
+Eigen::MatrixXd ReducedModel::basis_at(const std::vector<int>& nodes) const {
+  Eigen::MatrixXd rows(3 * static_cast<Eigen::Index>(nodes.size()), basis_.vectors.cols());
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    rows.middleRows<3>(3 * static_cast<Eigen::Index>(i)) = basis_.vectors.middleRows<3>(3 * nodes[i]);
+  }
+  return rows;
+}
+
 void ReducedModel::focus(const std::vector<int>& nodes) {
   focus_ = nodes;
-  in_focus_.resize(3 * static_cast<Eigen::Index>(nodes.size()), basis_.vectors.cols());
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    in_focus_.middleRows<3>(3 * static_cast<Eigen::Index>(i)) = basis_.vectors.middleRows<3>(3 * nodes[i]);
-  }
+  in_focus_ = basis_at(nodes);
 }
 
 Eigen::VectorXd ReducedModel::displacement(const Eigen::VectorXd& coordinates) const {

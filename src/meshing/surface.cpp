@@ -81,6 +81,13 @@ void set_boundary_facets(TetMesh& mesh, const std::string& where) {
   }
 }
 
+std::vector<int> surface_nodes(const TetMesh& mesh) {
+  std::vector<int> nodes(mesh.facets.data(), mesh.facets.data() + mesh.facets.size());
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
 double tet_volume(const TetMesh& mesh, int tet) {
   const Eigen::Vector3d x0 = mesh.nodes.col(mesh.tets(0, tet));
   const Eigen::Vector3d a = mesh.nodes.col(mesh.tets(1, tet)) - x0;

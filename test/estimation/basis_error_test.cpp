@@ -7,6 +7,7 @@
 #include "tissue_stiffness/estimation/batch_fit.hpp"
 #include "tissue_stiffness/forward/full_model.hpp"
 #include "tissue_stiffness/forward/observation_operator.hpp"
+#include "tissue_stiffness/meshing/surface.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -31,7 +32,7 @@ class BasisErrorOfABar : public testing::Test {
   }
 
   BasisError reported(const ReducedModel& model) const {
-    return basis_error(model, {model_, model, operators_, frames_, 0.0}, model_.prior_mean());
+    return basis_error(model, {model_, model, operators_, frames_, 0.0}, model_.prior_mean(), surface_nodes(mesh_));
   }
 
   // Against a basis so large that nothing is missing from it.

@@ -69,9 +69,9 @@ class Scheme {
   mutable Eigen::Matrix3Xd displacement_;
   mutable std::function<void(Eigen::Ref<Eigen::VectorXd>)> recover_;  ///< fills it in when somebody asks; may be empty
   Prediction prediction_;
-  std::vector<char> seen_nodes_;  ///< a flag a node: on the surface, or observed so far
+  std::vector<char> seen_nodes_;  ///< a flag a node: observed so far
 
-  /// Lets the forward model tell where the frame's nodes are, and the surface's; others it may leave out.
+  /// Lets the forward model tell where the nodes are that frames have seen; others it may leave out.
   void focus_on(const Frame& frame);
 
  private:

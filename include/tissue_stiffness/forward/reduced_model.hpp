@@ -45,12 +45,13 @@ class ReducedModel : public ForwardModel {
   /// The same in a basis larger by half; null when that adds nothing.
   std::unique_ptr<ReducedModel> grown() const;
   void focus(const std::vector<int>& nodes) override;
-  int nodes_in_focus() const { return focus_.empty() ? model_.fem().node_count() : static_cast<int>(focus_.size()); }
   std::string description() const override;
 
   const Model& model() const { return model_; }
   /// 3n x basis size.
   const Eigen::MatrixXd& basis() const { return basis_.vectors; }
+  /// Its rows at some nodes, three each.
+  Eigen::MatrixXd basis_at(const std::vector<int>& nodes) const;
   /// Nodal displacement of basis coordinates, 3n; zero away from the focus.
   Eigen::VectorXd displacement(const Eigen::VectorXd& coordinates) const;
   /// The same of several, a column each, into rows of `out` that belong to the focus; others stay as they are.

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <string>
+#include <vector>
 
 #include "tissue_stiffness/types/tet_mesh.hpp"
 
@@ -18,6 +19,9 @@ constexpr std::array<std::array<int, 6>, 4> kTetFaces = {
 /// Sets `facets` and `facet_tet`: the faces that only one tetrahedron has, in the order of their tetrahedra. Throws
 /// InputError, naming `where` and the place, for a face of more than two tetrahedra or of two that overlap.
 void set_boundary_facets(TetMesh& mesh, const std::string& where);
+
+/// Nodes of the boundary facets, ascending.
+std::vector<int> surface_nodes(const TetMesh& mesh);
 
 /// Volume of the straight-edged tetrahedra through the corners, (x1-x0) x (x2-x0) . (x3-x0) / 6 summed [m^3].
 double mesh_volume(const TetMesh& mesh);
