@@ -21,6 +21,7 @@ namespace {
 
 constexpr int kVelocityFrames = 4;          // frames that the initial velocity is read from
 constexpr std::size_t kFirstMeshStudy = 4;  // frames
+constexpr double kReplayGrowth = 1.5;       // of a replay between looks back: nobody reads its estimates on the way
 constexpr double kConverged = 0.05;         // relative standard deviation
 constexpr double kInvalidSigmas = 10.0;     // rms error over noise at which the model says nothing about the body
 
@@ -79,7 +80,7 @@ class UnscentedScheme : public Scheme {
     study_ = {};
     shift_.resize(0);
     failure_.clear();
-    last_study_ = 0;
+    last_study_ = looked_back_ = 0;
     complete_ = true;
     past_ = {};
     validity_.reset();
@@ -156,7 +157,10 @@ class UnscentedScheme : public Scheme {
     }
     std::optional<ChangeQuestion> question = track_->corrected() ? std::nullopt : watch_.due();
     const bool calm = !watch_.suspicious() || watch_.searched();
-    if (!question && !(calm && track_->wants_look(frames_.size()))) return false;
+    const bool too_soon = replaying() && more_follow() &&
+                          static_cast<double>(frames_.size()) < kReplayGrowth * static_cast<double>(looked_back_);
+    if (!question && !(calm && !too_soon && track_->wants_look(frames_.size()))) return false;
+    looked_back_ = frames_.size();
     return look_back(*track_, frames_, {std::move(question)});
   }
 
@@ -273,13 +277,13 @@ class UnscentedScheme : public Scheme {
   bool complete_ = true;              ///< every frame since the track's start is in frames_
   std::unique_ptr<Revisit> revisit_;  ///< under way
 
-  std::string unstudied_;                  ///< why the mesh's error is not assessed; empty: it is
-  std::string failure_;                    ///< of the last study; more frames may settle the next
-  std::unique_ptr<MeshError> mesh_error_;  ///< the study's own; only its thread touches it
-  MeshError::Answer studied_;              ///< the same
-  Eigen::VectorXd shift_;                  ///< estimate less truth because of the mesh; empty: not known yet
-  std::size_t last_study_ = 0;
-  std::future<void> study_;  ///< last: its thread uses the members above
+  std::string unstudied_;                         ///< why the mesh's error is not assessed; empty: it is
+  std::string failure_;                           ///< of the last study; more frames may settle the next
+  std::unique_ptr<MeshError> mesh_error_;         ///< the study's own; only its thread touches it
+  MeshError::Answer studied_;                     ///< the same
+  Eigen::VectorXd shift_;                         ///< estimate less truth because of the mesh; empty: not known yet
+  std::size_t last_study_ = 0, looked_back_ = 0;  ///< frames that there were then
+  std::future<void> study_;                       ///< last: its thread uses the members above
 };
 
 }  // namespace
