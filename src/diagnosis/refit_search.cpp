@@ -11,6 +11,7 @@
 #include <set>
 
 #include "tissue_stiffness/diagnosis/finding.hpp"
+#include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
@@ -124,11 +125,14 @@ void Search::try_each(std::size_t count, const std::function<std::string(std::si
   tbb::parallel_for(std::size_t{0}, count, try_one, tbb::simple_partitioner());
 }
 
-std::size_t quantities_of(const std::vector<Addition>& additions) {
-  std::size_t count = 0;
-  for (const Addition& a : additions) {
-    const std::string& entry = a.way->proposal.refine;
-    for (std::size_t at = entry.find(": {"); at != std::string::npos; at = entry.find(": {", at + 1)) ++count;
+// Parameters that are fitted besides the base's.
+std::ptrdiff_t parameters_of(const std::vector<Addition>& additions) {
+  ModelSettings alone;
+  for (const Addition& a : additions) add_effect(alone, a.way->proposal.refine);
+  std::ptrdiff_t count = 0;
+  for (const EffectSettings& effect : alone.effects) {
+    const std::vector<Quantity> quantities = read_parameters(effect);
+    count += std::count_if(quantities.begin(), quantities.end(), [](const Quantity& q) { return q.estimated(); });
   }
   return count;
 }
@@ -136,7 +140,7 @@ std::size_t quantities_of(const std::vector<Addition>& additions) {
 void Search::refit_all(std::vector<std::vector<Addition>> list) {
   // The longest fits first: the last one to end keeps one core busy only.
   std::stable_sort(list.begin(), list.end(),
-                   [](const auto& a, const auto& b) { return quantities_of(a) > quantities_of(b); });
+                   [](const auto& a, const auto& b) { return parameters_of(a) > parameters_of(b); });
   std::vector<std::optional<Refit>> done(list.size());
   try_each(
       list.size(), [&](std::size_t i) { return "refit with " + names_of(list[i]); },
