@@ -177,7 +177,7 @@ int place_of(int node, const TetMesh& mesh, int tet) {
 
 }  // namespace
 
-Eigen::SparseMatrix<double, Eigen::RowMajor> prolongation(const TetMesh& mesh, const TetMesh& refined) {
+Prolongation prolongation(const TetMesh& mesh, const TetMesh& refined) {
   static const Eigen::Matrix<double, 4, 10> coordinates = node_coordinates();
   std::vector<Eigen::Triplet<double>> shares;
   std::vector<char> done(static_cast<std::size_t>(refined.node_count()), 0);
@@ -201,7 +201,7 @@ Eigen::SparseMatrix<double, Eigen::RowMajor> prolongation(const TetMesh& mesh, c
       add(refined.tets(4 + e, t), t / 8, 0.5 * (at(kTetEdges[e][0]) + at(kTetEdges[e][1])));
     }
   }
-  Eigen::SparseMatrix<double, Eigen::RowMajor> out(refined.node_count(), mesh.node_count());
+  Prolongation out(refined.node_count(), mesh.node_count());
   out.setFromTriplets(shares.begin(), shares.end());
   return out;
 }

@@ -7,11 +7,9 @@
 #include "tissue_stiffness/fem/discretisation.hpp"
 #include "tissue_stiffness/fem/single_matrix.hpp"
 #include "tissue_stiffness/fem/sparse_solver.hpp"
+#include "tissue_stiffness/types/prolongation.hpp"
 
 namespace tissue_stiffness {
-
-/// Values at a mesh's nodes of what is known at a coarser one's, nodes there x nodes here.
-using Prolongation = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 /// Symmetric positive definite systems on a mesh that was refined from another one: conjugate gradients for many right-hand
 /// sides, in single precision, preconditioned by V-cycles between the two (Briggs, Henson & McCormick, A Multigrid

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/SparseCore>
 #include <map>
 #include <string>
 
+#include "tissue_stiffness/types/prolongation.hpp"
 #include "tissue_stiffness/types/tet_mesh.hpp"
 
 namespace tissue_stiffness {
@@ -19,7 +19,7 @@ std::map<std::string, Region> refine(const std::map<std::string, Region>& region
                                      const TetMesh& refined);
 
 /// Values at the nodes of refine(mesh) of what is quadratic in each tetrahedron of `mesh` (linear, when that has no
-/// mid-edge nodes), nodes there x nodes here.
-Eigen::SparseMatrix<double, Eigen::RowMajor> prolongation(const TetMesh& mesh, const TetMesh& refined);
+/// mid-edge nodes).
+Prolongation prolongation(const TetMesh& mesh, const TetMesh& refined);
 
 }  // namespace tissue_stiffness
