@@ -179,7 +179,8 @@ def tables(rows):
     good = [row for row in rows if 'failed' not in row]
     clean = [row for row in good if row['hidden'] == 'none']
     absent = [row for row in good if row['absent']]
-    hidden = [row for row in good if row['hidden'] != 'none' and not row['absent']]
+    slow = [row for row in good if row['number'] >= LONG_STEPS]
+    hidden = [row for row in good if row['hidden'] != 'none' and not row['absent'] and row not in slow]
     # What a clean recording leaves of a scene is its mesh's part.
     plain = {name: sorted(row['given'] for row in clean if row['scene'] == name) or [1.0] for name in HIDDEN}
     floor = {name: values[len(values) // 2] for name, values in plain.items()}
@@ -212,6 +213,9 @@ def tables(rows):
               '  * named all the same: %d; in the set: %s, first: %s' % (
                   len(faint), share([row['hidden'] in row['set'] for row in faint]),
                   share([row['set'][:1] == [row['hidden']] for row in faint])),
+              '* truths in long time steps that leave a misfit: period elongation is first in %s, unexplained: %s' % (
+                  share([row['set'][:1] == ['period_elongation'] for row in slow if row['number'] in leaves]),
+                  share([row['verdict'] == 'unexplained' for row in slow if row['number'] in leaves])),
               '* failed: %d of %d' % (len(rows) - len(good), len(rows))]
     return lines, confusion(seen)
 
