@@ -158,11 +158,12 @@ def tasks(arguments):
         hidden = rng.choice(HIDDEN[scene]) if rng.random() > 0.15 else 'none'
         absent = hidden != 'none' and rng.random() < 0.15
         out.append((arguments, number, scene, hidden, rng.choice(MISFITS), rng.choice((0.0, 0.6)), absent))
-        for first, what, own, missing in ((PUSHES, 'push', rng_of_pushes, True),
-                                          (LONG_STEPS, 'period_elongation', rng_of_steps, False)):
-            if number % EVERY == 0:
-                out.append((arguments, first + number, own.choice(sorted(HIDDEN)), what, own.choice(MISFITS),
-                            own.choice((0.0, 0.6)), missing))
+        if number % EVERY != 0:
+            continue
+        for first, what, own, absent in ((PUSHES, 'push', rng_of_pushes, True),
+                                         (LONG_STEPS, 'period_elongation', rng_of_steps, False)):
+            out.append((arguments, first + number, own.choice(sorted(HIDDEN)), what, own.choice(MISFITS),
+                        own.choice((0.0, 0.6)), absent))
     return out
 
 
@@ -179,8 +180,8 @@ def tables(rows):
     good = [row for row in rows if 'failed' not in row]
     clean = [row for row in good if row['hidden'] == 'none']
     absent = [row for row in good if row['absent']]
-    slow = [row for row in good if row['number'] >= LONG_STEPS]
-    hidden = [row for row in good if row['hidden'] != 'none' and not row['absent'] and row not in slow]
+    slow = [row for row in good if row['hidden'] == 'period_elongation']
+    hidden = [row for row in good if row['hidden'] not in ('none', 'period_elongation') and not row['absent']]
     # What a clean recording leaves of a scene is its mesh's part.
     plain = {name: sorted(row['given'] for row in clean if row['scene'] == name) or [1.0] for name in HIDDEN}
     floor = {name: values[len(values) // 2] for name, values in plain.items()}
