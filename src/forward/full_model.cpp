@@ -74,7 +74,8 @@ class FullTrajectories : public Trajectories {
   // Impacts are filmed so fast that a few explicit steps reach the next frame.
   void choose(const std::vector<double>& spans) {
     chosen_ = true;
-    if (options_.step <= 0.0 && systems_.front()->can_be_lumped()) {
+    const bool lumped = std::all_of(systems_.begin(), systems_.end(), [](const auto& s) { return s->can_be_lumped(); });
+    if (options_.step <= 0.0 && lumped) {
       central_.emplace_back(*systems_.front(), states_.front().time);
       explicit_steps_ = spans.front() < kExplicitSteps * central_.front().largest_step();
     }

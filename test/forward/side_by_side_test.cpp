@@ -118,5 +118,27 @@ TEST(SideBySide, LeavesRunsAsTheyAreAlone) {
   }
 }
 
+// One whose mass no diagonal can stand for keeps all from explicit steps.
+TEST(SideBySide, StepsAsTheMassOfEachAllows) {
+  std::vector<std::string> effects = swinging("neo_hookean");
+  effects[1] = "elasticity: {law: neo_hookean, poisson_ratio: 0.45, young_modulus: 40e3}";
+  effects.push_back("period_elongation: {step_squared: {mean: 0, std: 1.0e-4}}");
+  const Model model(box_settings(effects), bar_mesh(4, 1, 1));
+  const std::vector<Eigen::VectorXd> thetas{model.theta(Eigen::VectorXd::Zero(1)),
+                                            model.theta(Eigen::VectorXd::Constant(1, 1e-4))};
+  FullModel::Options options;
+  options.tolerance = 1e-9;
+  const FullModel full(model, options);
+  const auto together = full.start_all(thetas, 0.0);
+  const auto alone = full.start(thetas[1], 0.0);
+  for (int k = 1; k <= 40; ++k) {
+    together->advance(std::vector<double>(2, 0.001 * k));
+    alone->advance(0.001 * k);
+  }
+  Eigen::MatrixXd u = Eigen::MatrixXd::Zero(model.fem().dof_count(), 2);
+  together->displacements(u);
+  EXPECT_LT((alone->displacement() - u.col(1)).cwiseAbs().maxCoeff(), 1e-6) << "m";
+}
+
 }  // namespace
 }  // namespace tissue_stiffness
