@@ -7,17 +7,16 @@
 namespace tissue_stiffness {
 
 SingleMatrix::SingleMatrix(const SparseMatrix& matrix) : begin_{0} {
-  const Eigen::SparseMatrix<double, Eigen::RowMajor> rows = matrix;
-  const auto count = static_cast<std::size_t>(rows.rows() / 3);
-  std::vector<int> place(count, -1);
+  const auto count = static_cast<std::size_t>(matrix.rows() / 3);
+  std::vector<int> place(count);  // of this node's block with each other
   begin_.reserve(count + 1);
-  others_.reserve(static_cast<std::size_t>(rows.nonZeros() / 9));
-  blocks_.reserve(static_cast<std::size_t>(rows.nonZeros()));
+  others_.reserve(static_cast<std::size_t>(matrix.nonZeros() / 9));
+  blocks_.reserve(static_cast<std::size_t>(matrix.nonZeros()));
   for (int node = 0; node < static_cast<int>(count); ++node) {
     const auto first = static_cast<std::ptrdiff_t>(others_.size());
     for (int i = 0; i < 3; ++i) {
-      for (decltype(rows)::InnerIterator entry(rows, 3 * node + i); entry; ++entry) {
-        others_.push_back(static_cast<int>(entry.col() / 3));
+      for (SparseMatrix::InnerIterator entry(matrix, 3 * node + i); entry; ++entry) {
+        others_.push_back(static_cast<int>(entry.row() / 3));
       }
     }
     std::sort(others_.begin() + first, others_.end());
@@ -27,9 +26,9 @@ SingleMatrix::SingleMatrix(const SparseMatrix& matrix) : begin_{0} {
     }
     blocks_.resize(9 * others_.size(), 0.0F);
     for (int i = 0; i < 3; ++i) {
-      for (decltype(rows)::InnerIterator entry(rows, 3 * node + i); entry; ++entry) {
-        const auto block = static_cast<std::size_t>(place[static_cast<std::size_t>(entry.col() / 3)]);
-        blocks_[9 * block + static_cast<std::size_t>(3 * i + entry.col() % 3)] = static_cast<float>(entry.value());
+      for (SparseMatrix::InnerIterator entry(matrix, 3 * node + i); entry; ++entry) {
+        const auto block = static_cast<std::size_t>(place[static_cast<std::size_t>(entry.row() / 3)]);
+        blocks_[9 * block + static_cast<std::size_t>(3 * i + entry.row() % 3)] = static_cast<float>(entry.value());
       }
     }
     begin_.push_back(static_cast<int>(others_.size()));

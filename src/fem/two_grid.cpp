@@ -202,7 +202,9 @@ class TwoGrid::Iteration {
 };
 
 TwoGrid::TwoGrid(SparseMatrix matrix, const std::vector<char>& fixed, const Prolongation& nodes)
-    : matrix_(std::move(matrix)), single_(matrix_), inverse_diagonal_(matrix_.diagonal().cwiseInverse().cast<float>()) {
+    : matrix_(std::move(matrix)), single_(matrix_) {
+  const Eigen::VectorXd diagonal = matrix_.diagonal();
+  inverse_diagonal_ = diagonal.cwiseInverse().cast<float>();
   const auto couple = [&](Coarse coarse) {
     prolongation_ = of_degrees_of_freedom(nodes, fixed, coarse);
     restriction_ = prolongation_.transpose();
@@ -219,7 +221,7 @@ TwoGrid::TwoGrid(SparseMatrix matrix, const std::vector<char>& fixed, const Prol
   Eigen::VectorXd x(matrix_.rows());
   for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = wave(i);
   for (int k = 0; k < kPowers; ++k) {
-    const Eigen::VectorXd y = symmetric_product(matrix_, x).col(0).cwiseQuotient(matrix_.diagonal());
+    const Eigen::VectorXd y = symmetric_product(matrix_, x).col(0).cwiseQuotient(diagonal);
     largest_ = kSafety * y.norm() / x.norm();
     x = y.normalized();
   }

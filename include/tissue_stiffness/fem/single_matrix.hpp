@@ -6,8 +6,8 @@
 
 namespace tissue_stiffness {
 
-/// A matrix of three rows and columns a node in single precision, a 3 x 3 block for each pair of nodes that it couples:
-/// read once for many columns, each row of which serves three sums.
+/// A symmetric matrix of three rows and columns a node in single precision, a 3 x 3 block for each pair of nodes that it
+/// couples: read once for many columns, each row of which serves three sums.
 class SingleMatrix {
  public:
   explicit SingleMatrix(const SparseMatrix& matrix);
