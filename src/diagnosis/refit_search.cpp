@@ -9,6 +9,7 @@
 #include <mutex>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "tissue_stiffness/diagnosis/finding.hpp"
 #include "tissue_stiffness/effects/registry.hpp"
@@ -139,12 +140,13 @@ std::ptrdiff_t parameters_of(const std::vector<Addition>& additions) {
 
 void Search::refit_all(std::vector<std::vector<Addition>> list) {
   // The longest fits first: the last one to end keeps one core busy only.
-  std::stable_sort(list.begin(), list.end(),
-                   [](const auto& a, const auto& b) { return parameters_of(a) > parameters_of(b); });
-  std::vector<std::optional<Refit>> done(list.size());
+  std::vector<std::pair<std::ptrdiff_t, std::vector<Addition>>> trials;
+  for (std::vector<Addition>& additions : list) trials.emplace_back(parameters_of(additions), std::move(additions));
+  std::stable_sort(trials.begin(), trials.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<std::optional<Refit>> done(trials.size());
   try_each(
-      list.size(), [&](std::size_t i) { return "refit with " + names_of(list[i]); },
-      [&](std::size_t i) { done[i] = refit(look_.base, list[i], look_.mesh_change); });
+      trials.size(), [&](std::size_t i) { return "refit with " + names_of(trials[i].second); },
+      [&](std::size_t i) { done[i] = refit(look_.base, trials[i].second, look_.mesh_change); });
   for (std::optional<Refit>& refit : done) {
     if (refit) refits_.push_back(std::move(*refit));
   }
