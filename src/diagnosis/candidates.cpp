@@ -20,7 +20,7 @@ constexpr double kFar = 0.05;    // of the motion: a larger change is no tangent
 constexpr double kNear = 0.01;   // and the one that is tried instead
 constexpr int kMostProbes = 4;
 
-ProposalContext context_of(const Study& base, const Eigen::VectorXd& w, double misfit) {
+ProposalContext context_of(const Study& base, const Eigen::VectorXd& w, bool within_noise) {
   const Model& model = base.model();
   double modulus = 0.0, ratio = 0.0, density = 0.0;
   const Eigen::VectorXd theta = model.theta(w);
@@ -39,7 +39,7 @@ ProposalContext context_of(const Study& base, const Eigen::VectorXd& w, double m
           density,
           duration / static_cast<double>(frames.size()),
           duration,
-          misfit};
+          within_noise};
 }
 
 Eigen::VectorXd difference(const Study::Rows& changed, const Study::Rows& base, double amplitude) {
@@ -146,9 +146,9 @@ double Candidate::p_value(const Score& score) const {
   return possible ? 0.5 * score.p_value : 1.0 - 0.5 * score.p_value;
 }
 
-std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd& w, double misfit,
+std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd& w, bool within_noise,
                                        const std::vector<std::string>& ignore, const CountProgress& progress) {
-  const ProposalContext context = context_of(base, w, misfit);
+  const ProposalContext context = context_of(base, w, within_noise);
   std::vector<Candidate> all;
   for (const EffectSpec& spec : effect_specs()) {
     if (!spec.proposals || std::find(ignore.begin(), ignore.end(), spec.name) != ignore.end()) continue;

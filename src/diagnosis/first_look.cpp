@@ -3,8 +3,6 @@
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "tissue_stiffness/diagnosis/finding.hpp"
 
@@ -34,11 +32,10 @@ FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Eige
   options.progress(step, 0, 0);
   const Study::Rows& r = base.rows;
   const auto worsens = [&](const Eigen::VectorXd& by) { return (r.error - by).squaredNorm() > (1.0 + kElsewhere) * cost; };
-  // What only a visible error asks for is proposed to whom asks for effects by name.
-  const double misfit = options.add.empty() ? std::sqrt(cost / rows) : std::numeric_limits<double>::infinity();
+  const bool within_noise = noise() && options.add.empty();  // who asks for effects by name may have any
   tbb::parallel_invoke(
       [&] {
-        candidates = find_candidates(*base.study, base.fit.w, misfit, options.ignore,
+        candidates = find_candidates(*base.study, base.fit.w, within_noise, options.ignore,
                                      [&](std::size_t done, std::size_t total) { options.progress(step, done, total); });
         known = base_tangents(*base.study, base.fit.w, base.fit.covariance.diagonal().cwiseSqrt(), r);
       },

@@ -28,11 +28,11 @@ struct Candidate {
 
 using CountProgress = std::function<void(std::size_t done, std::size_t total)>;
 
-/// Everything that the library proposes for the fitted base model, whose error is `misfit` [sigma] rms, but for effects to
-/// `ignore`. The tangents of all linear
-/// ones come from one reduced model that holds them all at their absent values, those of the others from one at first
-/// order. What is not linear in the base is left out of it. `progress` hears how many of them are done, from any thread.
-std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd& w, double misfit,
+/// Everything that the library proposes for the fitted base model, but for effects to `ignore` and, `within_noise`, for
+/// those that only a visible error asks for. The tangents of all linear ones come from one reduced model that holds them
+/// all at their absent values, those of the others from one at first order. What is not linear in the base is left out of
+/// it. `progress` hears how many of them are done, from any thread.
+std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd& w, bool within_noise,
                                        const std::vector<std::string>& ignore, const CountProgress& progress);
 
 /// d rows / d w of the fitted base model, in sigmas: N x free parameters.
