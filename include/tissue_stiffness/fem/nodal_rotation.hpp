@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "tissue_stiffness/fem/discretisation.hpp"
 
@@ -16,7 +17,10 @@ class NodalRotations {
 
  private:
   const Discretisation& fem_;
-  Eigen::VectorXd volume_;  ///< of the elements around each node [m^3]
+  // The mean deformation gradient of a node is linear in its neighbours' displacements: of each node in turn, those
+  // neighbours' places in the list, which nodes they are, and their mean gradients [1/m].
+  std::vector<int> first_, neighbours_;
+  Eigen::Matrix3Xd gradients_;
 };
 
 }  // namespace tissue_stiffness
