@@ -8,6 +8,16 @@
 #include "tissue_stiffness/filter/consistency.hpp"
 
 namespace tissue_stiffness {
+namespace {
+
+// Of the root mean square of `group` standard normal numbers. Rows on their own are asked for in each frame.
+double normal_median(int group) {
+  const auto find = [](int count) { return std::sqrt(chi_squared_quantile(0.5, count) / count); };
+  static const double of_one = find(1);
+  return group == 1 ? of_one : find(group);
+}
+
+}  // namespace
 
 Eigen::VectorXd robust_weights(const Eigen::VectorXd& standardised, int group) {
   if (group < 1 || standardised.size() % group != 0) throw std::invalid_argument("rows do not make whole groups");
@@ -24,8 +34,7 @@ Eigen::VectorXd robust_weights(const Eigen::VectorXd& standardised, int group) {
   if (finite.empty()) return weights;
   const auto middle = finite.begin() + static_cast<std::ptrdiff_t>(finite.size() / 2);
   std::nth_element(finite.begin(), middle, finite.end());
-  const double normal_median = std::sqrt(chi_squared_quantile(0.5, group) / group);
-  const double reach = robust_core * std::max(1.0, *middle / normal_median);
+  const double reach = robust_core * std::max(1.0, *middle / normal_median(group));
   for (Eigen::Index i = 0; i < groups; ++i) {
     if (size[i] > reach) weights.segment(i * group, group).setConstant(std::pow(reach / size[i], 2));
   }
