@@ -28,28 +28,38 @@ class OrthonormalBasis {
   }
 
   /// What is left of the columns of x beside the basis.
-  Eigen::MatrixXd beside(Eigen::MatrixXd x) const {
-    for (int pass = 0; pass < 2; ++pass) {
-      const Eigen::MatrixXd share = weighted_.leftCols(size_).transpose() * x;
-      x.noalias() -= vectors() * share;
-    }
-    return x;
-  }
+  Eigen::MatrixXd beside(Eigen::MatrixXd x) const { return off(0, std::move(x)); }
 
   /// Adds the columns' new directions, at most until `size` vectors are there.
   void add(Eigen::MatrixXd x, Eigen::Index size) {
-    const Eigen::Index before = size_;
+    const Eigen::Index before = size_, most = std::min(size, vectors_.cols());
     const Eigen::RowVectorXd norms = (x.array() * symmetric_product(mass_, x).array()).colwise().sum().sqrt();
     for (Eigen::Index i = 0; i < x.cols(); ++i) {
       if (norms[i] > 0.0) x.col(i) /= norms[i];
     }
     x = beside(std::move(x));
-    for (Eigen::Index i = 0; i < x.cols() && size_ < std::min(size, vectors_.cols()); ++i) {
-      if (norms[i] > 0.0) add_one(x.col(i), before);
+    for (Eigen::Index at = 0; at < x.cols() && size_ < most; at += kBlock) {
+      const Eigen::Index count = std::min(kBlock, x.cols() - at), first = size_;
+      const Eigen::MatrixXd block = off(before, x.middleCols(at, count));
+      for (Eigen::Index i = 0; i < count && size_ < most; ++i) {
+        if (norms[at + i] > 0.0) add_one(block.col(i), first);
+      }
     }
   }
 
  private:
+  static constexpr Eigen::Index kBlock = 12;  // columns that are taken off earlier ones together
+
+  // What is left of the columns of x beside the vectors from `first` on.
+  Eigen::MatrixXd off(Eigen::Index first, Eigen::MatrixXd x) const {
+    if (first == size_) return x;
+    for (int pass = 0; pass < 2; ++pass) {
+      x.noalias() -=
+          vectors_.middleCols(first, size_ - first) * inner_products(weighted_.middleCols(first, size_ - first), x);
+    }
+    return x;
+  }
+
   // x stands off the first `before` vectors already.
   void add_one(Eigen::VectorXd x, Eigen::Index before) {
     constexpr double dependent = 1e-7;  // of its norm: what a new direction keeps at least
