@@ -192,6 +192,7 @@ BatchFit Study::fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd spread) 
       const double now = free_fit(problem(*there, training_), at + move).cost;
       gain = cost - now;
       if (!(gain > 0.0)) continue;
+      there->follow(*anchored_, (model_.theta(at + model_.prior_std()) - model_.theta(at)).cwiseAbs());
       at += move;
       cost = now;
       anchored_ = std::move(there);

@@ -8,6 +8,8 @@
 namespace tissue_stiffness {
 namespace {
 
+constexpr double kFarthest = 1.0;  // lengths of the last move: farther off nothing is known
+
 Eigen::MatrixXd displacements(const ForwardModel& model, const Eigen::VectorXd& theta, double start,
                               const std::vector<double>& times) {
   const auto run = model.start(theta, start);
@@ -21,8 +23,9 @@ Eigen::MatrixXd displacements(const ForwardModel& model, const Eigen::VectorXd& 
 
 class AnchoredTrajectory : public Trajectory {
  public:
-  AnchoredTrajectory(std::unique_ptr<Trajectory> run, const std::vector<double>& times, const Eigen::MatrixXd& difference)
-      : run_(std::move(run)), times_(times), difference_(difference) {}
+  AnchoredTrajectory(std::unique_ptr<Trajectory> run, const std::vector<double>& times, const Eigen::MatrixXd& difference,
+                     const Eigen::MatrixXd& change, double share)
+      : run_(std::move(run)), times_(times), difference_(difference), change_(change), share_(share) {}
 
   void advance(double time) override { run_->advance(time); }
   double time() const override { return run_->time(); }
@@ -32,16 +35,22 @@ class AnchoredTrajectory : public Trajectory {
  private:
   Eigen::VectorXd at(double time) const {
     const auto next = std::lower_bound(times_.begin(), times_.end(), time);
-    if (next == times_.end()) return difference_.rightCols<1>();
+    const auto last = static_cast<Eigen::Index>(times_.size()) - 1;
+    if (next == times_.end()) return at(last);
     const auto k = static_cast<Eigen::Index>(next - times_.begin());
-    if (k == 0 || *next == time) return difference_.col(k);
-    const double share = (time - *(next - 1)) / (*next - *(next - 1));
-    return (1.0 - share) * difference_.col(k - 1) + share * difference_.col(k);
+    if (k == 0 || *next == time) return at(k);
+    const double part = (time - *(next - 1)) / (*next - *(next - 1));
+    return (1.0 - part) * at(k - 1) + part * at(k);
+  }
+  Eigen::VectorXd at(Eigen::Index k) const {
+    if (share_ == 0.0) return difference_.col(k);
+    return difference_.col(k) + share_ * change_.col(k);
   }
 
   std::unique_ptr<Trajectory> run_;
   const std::vector<double>& times_;
-  const Eigen::MatrixXd& difference_;
+  const Eigen::MatrixXd &difference_, &change_;
+  double share_;
 };
 
 }  // namespace
@@ -51,11 +60,20 @@ void AnchoredModel::anchor(const Eigen::VectorXd& theta, double start, const std
   tbb::parallel_invoke([&] { accurate = displacements(*accurate_, theta, start, times); },
                        [&] { cheap = displacements(*cheap_, theta, start, times); });
   times_ = times;
+  anchor_ = theta;
   difference_ = accurate - cheap;
 }
 
+void AnchoredModel::follow(const AnchoredModel& before, const Eigen::VectorXd& scale) {
+  const Eigen::VectorXd move = (scale.array() > 0.0).select((anchor_ - before.anchor_).cwiseQuotient(scale), 0.0);
+  if (!(move.squaredNorm() > 0.0)) return;
+  change_ = difference_ - before.difference_;
+  along_ = (scale.array() > 0.0).select(move.cwiseQuotient(scale), 0.0) / move.squaredNorm();
+}
+
 std::unique_ptr<Trajectory> AnchoredModel::start(const Eigen::VectorXd& theta, double start) const {
-  return std::make_unique<AnchoredTrajectory>(cheap_->start(theta, start), times_, difference_);
+  const double share = along_.size() > 0 ? std::clamp(along_.dot(theta - anchor_), -kFarthest, kFarthest) : 0.0;
+  return std::make_unique<AnchoredTrajectory>(cheap_->start(theta, start), times_, difference_, change_, share);
 }
 
 std::string AnchoredModel::description() const {
