@@ -32,6 +32,8 @@ constexpr double kClean = 1.1;         // rms in sigmas that a refit with no riv
 constexpr double kMeshCounts = 0.2;    // rms of its error [sigma] from which leaders are compared on a finer one
 constexpr std::size_t kLeaders = 4;    // that are
 constexpr double kSeen = 0.5;          // of what a refit explains: a tangent that sees less is none
+constexpr double kFaithful = 0.9;      // and one that sees as much tells what others would explain
+constexpr double kRival = 0.5;         // of a leader's evidence by tangents: less is no rival
 
 /// The search, stage by stage.
 class Search {
@@ -84,18 +86,46 @@ class Search {
   /// All the more, where the mesh's error is much beside it.
   bool quiet() const { return !refits_.empty() && mesh_counts() && faint(); }
   bool explained() const { return !refits_.empty() && look_.explained_by(refits_.front()); }
+  /// Share of what the best refit explains that its tangent saw, too.
+  double seen_of_best() const;
+  /// Not where the best refit explains the error, as its tangent said, and the tangents of all that this effect would be
+  /// fitted by see far less of it.
+  bool may_win(const Ranked& r) const;
+  const Ranked& ranked(const std::string& effect) const {
+    return *std::find_if(look_.ranked.begin(), look_.ranked.end(), [&](const Ranked& r) { return r.effect == effect; });
+  }
 
   const FirstLook& look_;
   const DiagnosisOptions& options_;
   std::vector<Refit> refits_;
 };
 
+// Parameters that are fitted besides the base's.
+std::ptrdiff_t parameters_of(const std::vector<Addition>& additions) {
+  ModelSettings alone;
+  for (const Addition& a : additions) add_effect(alone, a.way->proposal.refine);
+  std::ptrdiff_t count = 0;
+  for (const EffectSettings& effect : alone.effects) {
+    const std::vector<Quantity> quantities = read_parameters(effect);
+    count += std::count_if(quantities.begin(), quantities.end(), [](const Quantity& q) { return q.estimated(); });
+  }
+  return count;
+}
+
 bool Search::tangents_mislead() const {
   if (refits_.empty() || refits_.front().cost < kClean * kClean * look_.rows) return false;
+  return seen_of_best() < kSeen;
+}
+
+double Search::seen_of_best() const {
   const Refit& best = refits_.front();
-  return std::any_of(look_.ranked.begin(), look_.ranked.end(), [&](const Ranked& r) {
-    return r.effect == best.effects.front() && r.score.explained * look_.cost < kSeen * (look_.cost - best.cost);
-  });
+  return ranked(best.effects.front()).score.explained * look_.cost / (look_.cost - best.cost);
+}
+
+bool Search::may_win(const Ranked& r) const {
+  const bool scanned = parameters_of({{r.best, {}}}) > r.score.amplitude.size();  // a better place may be in between
+  if (!explained() || faint() || seen_of_best() < kFaithful || scanned) return true;
+  return r.evidence > kRival * ranked(refits_.front().effects.front()).evidence;
 }
 
 std::string names_of(const std::vector<Addition>& additions) {
@@ -126,18 +156,6 @@ void Search::try_each(std::size_t count, const std::function<std::string(std::si
   tbb::parallel_for(std::size_t{0}, count, try_one, tbb::simple_partitioner());
 }
 
-// Parameters that are fitted besides the base's.
-std::ptrdiff_t parameters_of(const std::vector<Addition>& additions) {
-  ModelSettings alone;
-  for (const Addition& a : additions) add_effect(alone, a.way->proposal.refine);
-  std::ptrdiff_t count = 0;
-  for (const EffectSettings& effect : alone.effects) {
-    const std::vector<Quantity> quantities = read_parameters(effect);
-    count += std::count_if(quantities.begin(), quantities.end(), [](const Quantity& q) { return q.estimated(); });
-  }
-  return count;
-}
-
 void Search::refit_all(std::vector<std::vector<Addition>> list) {
   // The longest fits first: the last one to end keeps one core busy only.
   std::vector<std::pair<std::ptrdiff_t, std::vector<Addition>>> trials;
@@ -155,13 +173,17 @@ void Search::refit_all(std::vector<std::vector<Addition>> list) {
 }
 
 void Search::refit_singles(const std::vector<std::string>& wanted) {
-  std::vector<std::vector<Addition>> list;
+  std::vector<std::vector<Addition>> leaders, others;
   for (const Ranked& r : look_.ranked) {
     const bool asked = std::find(wanted.begin(), wanted.end(), r.effect) != wanted.end();
-    if (!asked && (!r.declared || !worth_full_runs(r) || list.size() >= kRefits || !wanted.empty())) continue;
-    list.push_back({{r.best, r.score.amplitude}});
+    if (!asked && (!r.declared || !worth_full_runs(r) || leaders.size() + others.size() >= kRefits || !wanted.empty()))
+      continue;
+    // Once the set is told, what leaves only noise need not be compared with what sees far less.
+    const bool leads = look_.first || asked || r.evidence > kRival * look_.ranked.front().evidence;
+    (leads ? leaders : others).push_back({{r.best, r.score.amplitude}});
   }
-  refit_all(list);
+  refit_all(leaders);
+  if (leaves_more_than_noise()) refit_all(others);
 }
 
 // What correlated errors, too, could have made; and other ways of the leading effects.
@@ -170,7 +192,7 @@ void Search::refit_others() {
   std::size_t others = 0;
   for (const Ranked& r : look_.ranked) {
     if (&r - look_.ranked.data() < kWaysOf && r.promising) add_other_way(r, list);
-    if (r.promising && !r.declared && worth_full_runs(r) && others++ < kOthers)
+    if (r.promising && !r.declared && worth_full_runs(r) && others++ < kOthers && may_win(r))
       list.push_back({{r.best, r.score.amplitude}});
   }
   refit_all(list);
@@ -218,7 +240,8 @@ void Search::drop_worse_ways() {
 void Search::refit_rest() {
   std::vector<std::vector<Addition>> list;
   for (const Ranked& r : look_.ranked) {
-    if (r.best->linear && r.evidence > kSameEvidence && !refitted(r.effect)) list.push_back({{r.best, r.score.amplitude}});
+    if (r.best->linear && r.evidence > kSameEvidence && !refitted(r.effect) && may_win(r))
+      list.push_back({{r.best, r.score.amplitude}});
   }
   refit_all(list);
 }
