@@ -11,9 +11,10 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr Eigen::Index kBlock = 512;   // rows that are packed at once
-constexpr Eigen::Index kShare = 8192;  // rows of one summand
-constexpr Eigen::Index kGrain = 512;   // rows of a sparse product that are worth a task
+constexpr Eigen::Index kBlock = 512;     // rows that are packed at once
+constexpr Eigen::Index kShare = 8192;    // rows of one summand
+constexpr Eigen::Index kGrain = 512;     // rows of a sparse product that are worth a task
+constexpr Eigen::Index kTask = 1 << 18;  // values of a packed matrix that are
 
 Eigen::Index panels(Eigen::Index columns, int width) {
   return (columns + width - 1) / width;
@@ -115,6 +116,36 @@ void GramSum::add(const Rows& a, Eigen::Index count) {
     add_tiles(packed, rows, true, sum_);
   }
   sum_.triangularView<Eigen::StrictlyUpper>() = sum_.transpose();
+}
+
+PackedMatrix::PackedMatrix(const Eigen::Ref<const Eigen::MatrixXd>& a) : rows_(a.rows()), columns_(a.cols()) {
+  pack(a.transpose(), kTileHeight, panels_);
+}
+
+void PackedMatrix::multiply(const Eigen::MatrixXd& x, Eigen::Ref<Eigen::MatrixXd> out) const {
+  std::vector<double> right;
+  pack(x, kRowWidth, right);
+  const Eigen::Index panel = kTileHeight * columns_;
+  const Eigen::Index grain = std::max<Eigen::Index>(1, kTask / std::max<Eigen::Index>(1, panel));
+  tbb::parallel_for(tbb::blocked_range<Eigen::Index>(0, panels(rows_, kTileHeight), grain), [&](const auto& part) {
+    double tile[kTileHeight * kRowWidth];
+    for (Eigen::Index i = part.begin(); i < part.end(); ++i) {
+      const Eigen::Index top = i * kTileHeight, height = std::min<Eigen::Index>(kTileHeight, rows_ - top);
+      for (Eigen::Index left = 0; left < x.cols(); left += kRowWidth) {
+        const Eigen::Index width = std::min<Eigen::Index>(kRowWidth, x.cols() - left);
+        tile_product(columns_, panels_.data() + i * panel, right.data() + left * columns_, tile);
+        for (Eigen::Index c = 0; c < width; ++c) {
+          for (Eigen::Index r = 0; r < height; ++r) out(top + r, left + c) = tile[kRowWidth * r + c];
+        }
+      }
+    }
+  });
+}
+
+Eigen::MatrixXd PackedMatrix::operator*(const Eigen::MatrixXd& x) const {
+  Eigen::MatrixXd out(rows_, x.cols());
+  multiply(x, out);
+  return out;
 }
 
 }  // namespace tissue_stiffness

@@ -16,8 +16,11 @@ constexpr double kLeastShare = 0.5;   // of the span that advance() is asked for
 
 class FirstOrderTrajectory : public Trajectory {
  public:
-  FirstOrderTrajectory(const ReducedModel& reduced, const Eigen::VectorXd& theta, double start)
+  FirstOrderTrajectory(const ReducedModel& reduced, const PackedMatrix& basis, const PackedMatrix& transposed,
+                       const Eigen::VectorXd& theta, double start)
       : reduced_(reduced),
+        basis_(basis),
+        transposed_(transposed),
         extra_(reduced.model(), theta),
         linear_(reduced, theta, start),
         modes_(reduced.modes(theta)),
@@ -34,20 +37,21 @@ class FirstOrderTrajectory : public Trajectory {
     const double start = linear_.time(), longest = std::min(kForceStep, kLeastShare * span);
     const int steps = static_cast<int>(std::ceil(span / longest * (1.0 - 1e-9)));
     std::vector<double> times;
-    Eigen::MatrixXd coordinates(reduced_.basis().cols(), steps), modal_velocities(force_.size(), steps);
+    Eigen::MatrixXd coordinates(reduced_.basis().cols(), 2 * steps), modal_velocities(force_.size(), steps);
     for (int k = 0; k < steps; ++k) {
       times.push_back(k + 1 == steps ? time : start + span * (k + 1) / steps);
       linear_.advance(times.back());
       coordinates.col(k) = linear_.coordinates();
       modal_velocities.col(k) = linear_.modal_velocity();
     }
-    // All instants at once, so that the basis is read from memory but three times.
-    const Eigen::MatrixXd velocities = reduced_.basis() * (modes_->shapes * modal_velocities);
-    Eigen::MatrixXd forces = reduced_.basis() * coordinates;  // the displacements, to begin with
+    // All instants at once, so that the basis is read from memory but twice.
+    coordinates.rightCols(steps) = modes_->shapes * modal_velocities;
+    const Eigen::MatrixXd motion = basis_ * coordinates;
+    Eigen::MatrixXd forces(motion.rows(), steps);
     tbb::parallel_for(0, steps, [&](int k) {
-      forces.col(k) = extra_(times[static_cast<std::size_t>(k)], Eigen::VectorXd(forces.col(k)), velocities.col(k));
+      forces.col(k) = extra_(times[static_cast<std::size_t>(k)], motion.col(k), motion.col(steps + k));
     });
-    const Eigen::MatrixXd modal = modes_->shapes.transpose() * (reduced_.basis().transpose() * forces);
+    const Eigen::MatrixXd modal = modes_->shapes.transpose() * (transposed_ * forces);
     for (int k = 0; k < steps; ++k) {
       step_.advance(span / steps, force_, modal.col(k), state_);
       force_ = modal.col(k);
@@ -63,6 +67,7 @@ class FirstOrderTrajectory : public Trajectory {
 
  private:
   const ReducedModel& reduced_;
+  const PackedMatrix &basis_, &transposed_;
   ExtraForce extra_;
   ReducedTrajectory linear_;
   std::shared_ptr<const ReducedModes> modes_;
@@ -79,10 +84,12 @@ BasisOptions at_first_order(BasisOptions options) {
 }  // namespace
 
 FirstOrderModel::FirstOrderModel(const Model& model, const BasisOptions& options, const ReducedModel* relative)
-    : reduced_(model, at_first_order(options), relative) {}
+    : reduced_(model, at_first_order(options), relative),
+      basis_(reduced_.basis()),
+      transposed_(reduced_.basis().transpose()) {}
 
 std::unique_ptr<Trajectory> FirstOrderModel::start(const Eigen::VectorXd& theta, double start) const {
-  return std::make_unique<FirstOrderTrajectory>(reduced_, theta, start);
+  return std::make_unique<FirstOrderTrajectory>(reduced_, basis_, transposed_, theta, start);
 }
 
 std::string FirstOrderModel::description() const {

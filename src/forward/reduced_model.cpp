@@ -6,7 +6,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
-#include "tissue_stiffness/fem/products.hpp"
 #include "tissue_stiffness/forward/reduced_trajectory.hpp"
 
 namespace tissue_stiffness {
@@ -267,7 +266,7 @@ Eigen::MatrixXd ReducedModel::basis_at(const std::vector<int>& nodes) const {
 
 void ReducedModel::focus(const std::vector<int>& nodes) {
   focus_ = nodes;
-  in_focus_ = basis_at(nodes);
+  in_focus_ = PackedMatrix(basis_at(nodes));
 }
 
 Eigen::VectorXd ReducedModel::displacement(const Eigen::VectorXd& coordinates) const {
@@ -283,7 +282,7 @@ void ReducedModel::displacements(const Eigen::MatrixXd& coordinates, Eigen::Matr
   }
   VectorPool::Loan scratch(scratch_, in_focus_.rows() * coordinates.cols());
   Eigen::Map<Eigen::MatrixXd> seen(scratch->data(), in_focus_.rows(), coordinates.cols());
-  multiply(in_focus_, coordinates, seen);
+  in_focus_.multiply(coordinates, seen);
   for (Eigen::Index k = 0; k < seen.cols(); ++k) {
     for (std::size_t i = 0; i < focus_.size(); ++i) {
       out.block<3, 1>(3 * focus_[i], k) = seen.block<3, 1>(3 * static_cast<Eigen::Index>(i), k);

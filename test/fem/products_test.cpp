@@ -34,6 +34,19 @@ TEST(Products, InnerProducts) {
   }
 }
 
+TEST(Products, OfAPackedMatrix) {
+  for (const Eigen::Index rows : {1, 7, 1500}) {
+    for (const Eigen::Index columns : {1, 8, 13}) {
+      const Eigen::MatrixXd a = random_matrix(rows, 40, 1), x = random_matrix(40, columns, 2);
+      const PackedMatrix packed(a), transposed(a.transpose());
+      EXPECT_EQ(packed.rows(), rows);
+      EXPECT_LT((packed * x - a * x).norm(), 1e-13 * a.norm() * x.norm()) << rows << " x " << columns;
+      const Eigen::MatrixXd b = random_matrix(rows, columns, 3);
+      EXPECT_LT((transposed * b - a.transpose() * b).norm(), 1e-13 * a.norm() * b.norm()) << rows << " x " << columns;
+    }
+  }
+}
+
 TEST(Products, SumOfGramMatrices) {
   for (const Eigen::Index columns : {1, 6, 8, 19}) {
     const GramSum::Rows a = random_matrix(1100, columns, 4), b = random_matrix(40, columns, 5);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "tissue_stiffness/fem/discretisation.hpp"
 
@@ -29,6 +30,23 @@ class GramSum {
 
  private:
   Eigen::MatrixXd sum_;
+};
+
+/// A (n x p) kept in the order in which its products read it, in the widest instructions of the machine: for a matrix that
+/// is multiplied by few columns, again and again.
+class PackedMatrix {
+ public:
+  PackedMatrix() = default;
+  explicit PackedMatrix(const Eigen::Ref<const Eigen::MatrixXd>& a);
+
+  Eigen::Index rows() const { return rows_; }
+  /// out = A x. Rows of the result are independent of each other: in parallel, and the same whatever the number of cores.
+  void multiply(const Eigen::MatrixXd& x, Eigen::Ref<Eigen::MatrixXd> out) const;
+  Eigen::MatrixXd operator*(const Eigen::MatrixXd& x) const;
+
+ private:
+  Eigen::Index rows_ = 0, columns_ = 0;
+  std::vector<double> panels_;
 };
 
 }  // namespace tissue_stiffness

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tissue_stiffness/fem/products.hpp"
 #include "tissue_stiffness/forward/reduced_model.hpp"
 
 namespace tissue_stiffness {
@@ -25,6 +26,7 @@ class FirstOrderModel : public ForwardModel {
 
  private:
   ReducedModel reduced_;
+  PackedMatrix basis_, transposed_;
 };
 
 }  // namespace tissue_stiffness

@@ -5,6 +5,7 @@
 #include <mutex>
 #include <vector>
 
+#include "tissue_stiffness/fem/products.hpp"
 #include "tissue_stiffness/forward/forward_model.hpp"
 #include "tissue_stiffness/forward/reduced_basis.hpp"
 
@@ -89,7 +90,7 @@ class ReducedModel : public ForwardModel {
   BasisOptions options_;
   ReducedBasis basis_;
   std::vector<int> focus_;            ///< nodes; empty: all
-  Eigen::MatrixXd in_focus_;          ///< their rows of the basis
+  PackedMatrix in_focus_;             ///< their rows of the basis
   std::vector<Projected> projected_;  ///< a part each
   StrainRows strains_;                ///< of the basis, where a term needs them for each theta
   mutable std::mutex mutex_;
