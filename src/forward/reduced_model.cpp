@@ -5,13 +5,15 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 
 #include "tissue_stiffness/forward/reduced_trajectory.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
-constexpr std::size_t kKept = 16;  // modes of the last theta: what damping, loads and sensors vary leaves them alone
+constexpr std::size_t kKept = 16;  // modes of the last theta
+constexpr int kBits = 44;          // of proportions
 
 Eigen::MatrixX3d unit_motion(Eigen::Index dofs) {
   return Eigen::Matrix3d::Identity().replicate(dofs / 3, 1);
@@ -34,6 +36,34 @@ Eigen::MatrixXd chosen(const Eigen::MatrixXd& m, const std::vector<int>& rows, c
     }
   }
   return part;
+}
+
+// Coefficients over the size of the first that is not zero, which is returned; 1 where there is none. Rounded, because
+// proportions that are the same come out with other last bits.
+double divide_by_first(std::vector<double>& coefficients) {
+  const auto first = std::find_if(coefficients.begin(), coefficients.end(), [](double c) { return c != 0.0; });
+  if (first == coefficients.end()) return 1.0;
+  const double scale = std::abs(*first);
+  for (double& c : coefficients) {
+    int exponent = 0;
+    const double digits = std::frexp(c / scale, &exponent);
+    c = std::ldexp(std::nearbyint(std::ldexp(digits, kBits)), exponent - kBits);
+  }
+  return scale;
+}
+
+// Modes of mass * M + inertia * (stiffness * K) and stiffness * K, from those of M and K: the shapes stay.
+ReducedModes scaled(const ReducedModes& of, double mass, double stiffness, double inertia) {
+  ReducedModes out;
+  out.stiffness_inertia = inertia;
+  const Eigen::VectorXd modal_mass = mass + inertia * stiffness * of.square.array();
+  const Eigen::VectorXd root = modal_mass.cwiseSqrt();
+  out.square = stiffness * of.square.cwiseQuotient(modal_mass);
+  out.shapes = of.shapes * root.cwiseInverse().asDiagonal();
+  out.to_modal = root.asDiagonal() * of.to_modal;
+  out.weight = mass * root.cwiseInverse().asDiagonal() * of.weight;
+  out.momentum = mass * root.cwiseInverse().asDiagonal() * of.momentum;
+  return out;
 }
 
 // basis^T K basis, at the cost of K's own rows.
@@ -135,36 +165,46 @@ std::vector<int> ReducedModel::active(const Eigen::VectorXd& theta, bool half) c
   return columns;
 }
 
-// Everything that the modes depend on.
-Eigen::VectorXd ReducedModel::key(const Eigen::VectorXd& theta, bool half) const {
-  std::vector<double> values{half ? 1.0 : 0.0, model_.mass_factor(theta), model_.stiffness_inertia(theta)};
+ReducedModel::Proportions ReducedModel::proportions(const Eigen::VectorXd& theta, bool half) const {
+  Proportions out;
+  out.others.push_back(half ? 1.0 : 0.0);
   for (const auto& part : model_.parts()) {
     const LinearTerms& terms = part.terms;
     if (terms.mass.empty() && terms.stiffness.empty() && terms.strain_stiffness.empty()) continue;
     const Eigen::VectorXd p = part.parameters(theta);
-    for (const auto& term : terms.mass) values.push_back(term.coefficient(p));
-    for (const auto& term : terms.stiffness) values.push_back(term.coefficient(p));
+    for (const auto& term : terms.mass) out.masses.push_back(term.coefficient(p));
+    for (const auto& term : terms.stiffness) out.stiffnesses.push_back(term.coefficient(p));
     for (const auto& term : terms.strain_stiffness) {
       const double c = term.coefficient(p);
-      values.push_back(c);
-      for (const int i : term.shape) values.push_back(c == 0.0 ? 0.0 : p[i]);
+      out.stiffnesses.push_back(c);
+      for (const int i : term.shape) out.others.push_back(c == 0.0 ? 0.0 : p[i]);
     }
+    out.others.push_back(part.effect->releases(p) ? 1.0 : 0.0);
   }
-  return Eigen::Map<Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  out.mass = divide_by_first(out.masses);
+  out.stiffness = divide_by_first(out.stiffnesses);
+  return out;
 }
 
 std::shared_ptr<const ReducedModes> ReducedModel::modes(const Eigen::VectorXd& theta, bool half) const {
-  Eigen::VectorXd wanted = key(theta, half);
+  const Proportions wanted = proportions(theta, half);
+  const std::shared_ptr<const ReducedModes> unit = unit_modes(wanted, theta, half);
+  return std::make_shared<ReducedModes>(
+      scaled(*unit, model_.mass_factor(theta) * wanted.mass, wanted.stiffness, model_.stiffness_inertia(theta)));
+}
+
+std::shared_ptr<const ReducedModes> ReducedModel::unit_modes(const Proportions& proportions, const Eigen::VectorXd& theta,
+                                                             bool half) const {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     for (const Known& known : known_) {
-      if (known.key == wanted) return known.modes;
+      if (known.proportions.same_shapes(proportions)) return known.modes;
     }
   }
-  auto modes = std::make_shared<const ReducedModes>(solve(theta, half));
+  auto modes = std::make_shared<const ReducedModes>(solve(proportions, theta, half));
   const std::lock_guard<std::mutex> lock(mutex_);
   if (known_.size() == kKept) known_.erase(known_.begin());
-  known_.push_back({std::move(wanted), modes});
+  known_.push_back({proportions, modes});
   return modes;
 }
 
@@ -185,37 +225,34 @@ std::shared_ptr<const Eigen::MatrixXd> ReducedModel::shaped(const StrainTerm& te
   return shaped_.back().projected;
 }
 
-ReducedModes ReducedModel::solve(const Eigen::VectorXd& theta, bool half) const {
+ReducedModes ReducedModel::solve(const Proportions& proportions, const Eigen::VectorXd& theta, bool half) const {
   const Eigen::Index m = basis_.vectors.cols();
   Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(m, m), stiffness = mass;
   ReducedModes modes;
   modes.weight = modes.momentum = Eigen::MatrixX3d::Zero(m, 3);
-  const double factor = model_.mass_factor(theta);
+  auto next_mass = proportions.masses.begin(), next_stiffness = proportions.stiffnesses.begin();
   for (std::size_t i = 0; i < projected_.size(); ++i) {
     const LinearTerms& terms = model_.parts()[i].terms;
     const Projected& part = projected_[i];
     const Eigen::VectorXd p = model_.parts()[i].parameters(theta);
     for (std::size_t k = 0; k < part.mass.size(); ++k) {
-      const double c = factor * terms.mass[k].coefficient(p);
+      const double c = *next_mass++;
       if (c == 0.0) continue;
       mass += c * part.mass[k];
       modes.weight += c * part.weight[k];
       modes.momentum += c * part.momentum[k];
     }
     for (std::size_t k = 0; k < part.stiffness.size(); ++k) {
-      const double c = terms.stiffness[k].coefficient(p);
+      const double c = *next_stiffness++;
       if (c != 0.0) stiffness += c * part.stiffness[k];
     }
     for (std::size_t k = 0; k < part.strain_stiffness.size(); ++k) {
-      const StrainTerm& term = terms.strain_stiffness[k];
-      const double c = term.coefficient(p);
+      const double c = *next_stiffness++;
       if (c == 0.0) continue;
       const bool constant = part.strain_stiffness[k].size() > 0;
-      stiffness += c * (constant ? part.strain_stiffness[k] : *shaped(term, p));
+      stiffness += c * (constant ? part.strain_stiffness[k] : *shaped(terms.strain_stiffness[k], p));
     }
   }
-  modes.stiffness_inertia = model_.stiffness_inertia(theta);
-  if (modes.stiffness_inertia > 0.0) mass += modes.stiffness_inertia * stiffness;
   const std::vector<int> columns = active(theta, half);
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(chosen(stiffness, columns, columns),
                                                                         chosen(mass, columns, columns));

@@ -201,6 +201,39 @@ TEST(ReducedModel, RefusesWhatItCannotDo) {
   EXPECT_NE(refusal([&] { const ReducedModel reduced(still); }).find("nothing that moves"), std::string::npos);
 }
 
+// Whether they are solved for anew or scaled from those of another theta.
+TEST(ReducedModel, ModesAreOrthonormalInMassAndDiagonalInStiffness) {
+  const TetMesh mesh = bar_mesh(4);
+  const Model model(box_settings({kInertia, elastic("{prior: 3.0e4, factor: 2}"), kFixed, kGravity,
+                                  "density_error: {relative: {mean: 0, std: 0.2}}",
+                                  "period_elongation: {step_squared: {prior: 1.0e-5, factor: 3}}",
+                                  "foundation: {region: top, stiffness: {prior: 1.0e5, factor: 3}}"}),
+                    mesh);
+  const ReducedModel reduced(model);
+  const Eigen::MatrixXd& b = reduced.basis();
+  Eigen::VectorXd all = model.prior_mean(), last = all;
+  for (Eigen::Index i = 0; i < all.size(); ++i) {
+    Eigen::VectorXd one = model.prior_mean();
+    one[i] += model.prior_std()[i];  // scaled, but for the foundation's and the modulus'
+    all += 0.5 * model.prior_std()[i] * Eigen::VectorXd::Unit(all.size(), i);
+    for (const Eigen::VectorXd& w : {one, all, last}) {
+      const Eigen::VectorXd theta = model.theta(w);
+      const auto modes = reduced.modes(theta);
+      const Eigen::MatrixXd body = model.mass(theta) * b, stiffness = b.transpose() * (model.stiffness(theta) * b),
+                            inertia = model.stiffness_inertia(theta) * (model.reference_stiffness(theta) * b),
+                            mass = b.transpose() * (body + inertia);
+      const Eigen::MatrixXd& shapes = modes->shapes;
+      const Eigen::MatrixXd one_mass = shapes.transpose() * mass * shapes,
+                            squares = shapes.transpose() * stiffness * shapes;
+      EXPECT_LT((one_mass - Eigen::MatrixXd::Identity(b.cols(), b.cols())).norm(), 1e-8);
+      EXPECT_LT((squares - Eigen::MatrixXd(modes->square.asDiagonal())).norm(), 1e-8 * modes->square.norm());
+      EXPECT_LT((modes->to_modal - shapes.transpose() * mass).norm(), 1e-8 * modes->to_modal.norm());
+      const Eigen::MatrixX3d unit = Eigen::Matrix3d::Identity().replicate(b.rows() / 3, 1);
+      EXPECT_LT((modes->weight - shapes.transpose() * (body.transpose() * unit)).norm(), 1e-8 * modes->weight.norm());
+    }
+  }
+}
+
 // What the mesh does to a body's frequencies is found without a factor.
 TEST(ReducedModel, NeedsNoFactorBesideTheMeshThatItsOwnWasRefinedFrom) {
   const TetMesh coarse = bar_mesh(8, 2, 2), fine = refine(coarse);

@@ -59,7 +59,8 @@ class ReducedModel : public ForwardModel {
   void displacements(const Eigen::MatrixXd& coordinates, Eigen::MatrixXd& out) const;
   /// Of every node, whatever the focus.
   void recover(const Eigen::VectorXd& coordinates, Eigen::Ref<Eigen::VectorXd> displacement) const;
-  /// Kept for the last few theta that differ in mass or stiffness. `half`: in the earlier half of the basis.
+  /// Solved anew for theta that differ in more than the scale of the mass, that of the stiffness, or the latter's inertia:
+  /// the last few are kept. `half`: in the earlier half of the basis.
   std::shared_ptr<const ReducedModes> modes(const Eigen::VectorXd& theta, bool half = false) const;
   /// Basis coordinates of a load term's pattern.
   Eigen::VectorXd load(std::size_t part, std::size_t term, const Eigen::VectorXd& parameters) const;
@@ -70,8 +71,18 @@ class ReducedModel : public ForwardModel {
     std::vector<Eigen::VectorXd> loads;
     std::vector<Eigen::MatrixX3d> weight, momentum;  ///< each mass term times a unit motion along each axis
   };
+  /// Mass and stiffness as multiples of the sizes of their terms' first coefficients.
+  struct Proportions {
+    double mass = 1.0, stiffness = 1.0;       ///< these sizes
+    std::vector<double> masses, stiffnesses;  ///< every term's coefficient over them
+    std::vector<double> others;               ///< all else that shapes of modes depend on
+
+    bool same_shapes(const Proportions& other) const {
+      return masses == other.masses && stiffnesses == other.stiffnesses && others == other.others;
+    }
+  };
   struct Known {
-    Eigen::VectorXd key;
+    Proportions proportions;
     std::shared_ptr<const ReducedModes> modes;
   };
   struct Shaped {
@@ -82,9 +93,12 @@ class ReducedModel : public ForwardModel {
   std::shared_ptr<const Eigen::MatrixXd> shaped(const StrainTerm& term, const Eigen::VectorXd& parameters) const;
   void project();
   void project_part(std::size_t part);
-  Eigen::VectorXd key(const Eigen::VectorXd& theta, bool half) const;
+  Proportions proportions(const Eigen::VectorXd& theta, bool half) const;
   std::vector<int> active(const Eigen::VectorXd& theta, bool half) const;
-  ReducedModes solve(const Eigen::VectorXd& theta, bool half) const;
+  /// Of masses and stiffnesses in these proportions, with no inertia of the stiffness.
+  std::shared_ptr<const ReducedModes> unit_modes(const Proportions& proportions, const Eigen::VectorXd& theta,
+                                                 bool half) const;
+  ReducedModes solve(const Proportions& proportions, const Eigen::VectorXd& theta, bool half) const;
 
   const Model& model_;
   BasisOptions options_;
