@@ -123,9 +123,9 @@ double Search::seen_of_best() const {
 }
 
 bool Search::may_win(const Ranked& r) const {
+  if (!explained() || faint() || seen_of_best() < kFaithful) return true;
   const bool scanned = parameters_of({{r.best, {}}}) > r.score.amplitude.size();  // a better place may be in between
-  if (!explained() || faint() || seen_of_best() < kFaithful || scanned) return true;
-  return r.evidence > kRival * ranked(refits_.front().effects.front()).evidence;
+  return scanned || r.evidence > kRival * ranked(refits_.front().effects.front()).evidence;
 }
 
 std::string names_of(const std::vector<Addition>& additions) {

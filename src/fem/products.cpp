@@ -43,19 +43,27 @@ struct Packed {
   std::vector<double> left, right;
 };
 
-// sum += left^T right; `lower`: the tiles that touch the lower triangle only.
-void add_tiles(const Packed& packed, Eigen::Index rows, bool lower, Eigen::MatrixXd& sum) {
+// Products of one panel, `depth` x kTileHeight, with the columns before `end` of what is packed in `right`:
+// take(row, column, value) for its first `height` rows.
+template <typename Take>
+void multiply_panel(const double* panel, const std::vector<double>& right, Eigen::Index depth, Eigen::Index height,
+                    Eigen::Index end, const Take& take) {
   double tile[kTileHeight * kRowWidth];
-  for (Eigen::Index i = 0; i < panels(sum.rows(), kTileHeight); ++i) {
-    const Eigen::Index top = i * kTileHeight, height = std::min<Eigen::Index>(kTileHeight, sum.rows() - top);
-    for (Eigen::Index j = 0; j < panels(sum.cols(), kRowWidth); ++j) {
-      const Eigen::Index left = j * kRowWidth, width = std::min<Eigen::Index>(kRowWidth, sum.cols() - left);
-      if (lower && left > top + height - 1) break;
-      tile_product(rows, packed.left.data() + top * rows, packed.right.data() + left * rows, tile);
-      for (Eigen::Index c = 0; c < width; ++c) {
-        for (Eigen::Index r = 0; r < height; ++r) sum(top + r, left + c) += tile[kRowWidth * r + c];
-      }
+  for (Eigen::Index left = 0; left < end; left += kRowWidth) {
+    const Eigen::Index width = std::min<Eigen::Index>(kRowWidth, end - left);
+    tile_product(depth, panel, right.data() + left * depth, tile);
+    for (Eigen::Index c = 0; c < width; ++c) {
+      for (Eigen::Index r = 0; r < height; ++r) take(r, left + c, tile[kRowWidth * r + c]);
     }
+  }
+}
+
+// sum += left^T right; `lower`: of the panels' rows only the columns up to their diagonal.
+void add_tiles(const Packed& packed, Eigen::Index rows, bool lower, Eigen::MatrixXd& sum) {
+  for (Eigen::Index top = 0; top < sum.rows(); top += kTileHeight) {
+    const Eigen::Index height = std::min<Eigen::Index>(kTileHeight, sum.rows() - top);
+    multiply_panel(packed.left.data() + top * rows, packed.right, rows, height, lower ? top + height : sum.cols(),
+                   [&](Eigen::Index r, Eigen::Index c, double value) { sum(top + r, c) += value; });
   }
 }
 
@@ -128,16 +136,10 @@ void PackedMatrix::multiply(const Eigen::MatrixXd& x, Eigen::Ref<Eigen::MatrixXd
   const Eigen::Index panel = kTileHeight * columns_;
   const Eigen::Index grain = std::max<Eigen::Index>(1, kTask / std::max<Eigen::Index>(1, panel));
   tbb::parallel_for(tbb::blocked_range<Eigen::Index>(0, panels(rows_, kTileHeight), grain), [&](const auto& part) {
-    double tile[kTileHeight * kRowWidth];
     for (Eigen::Index i = part.begin(); i < part.end(); ++i) {
       const Eigen::Index top = i * kTileHeight, height = std::min<Eigen::Index>(kTileHeight, rows_ - top);
-      for (Eigen::Index left = 0; left < x.cols(); left += kRowWidth) {
-        const Eigen::Index width = std::min<Eigen::Index>(kRowWidth, x.cols() - left);
-        tile_product(columns_, panels_.data() + i * panel, right.data() + left * columns_, tile);
-        for (Eigen::Index c = 0; c < width; ++c) {
-          for (Eigen::Index r = 0; r < height; ++r) out(top + r, left + c) = tile[kRowWidth * r + c];
-        }
-      }
+      multiply_panel(panels_.data() + i * panel, right, columns_, height, x.cols(),
+                     [&](Eigen::Index r, Eigen::Index c, double value) { out(top + r, c) = value; });
     }
   });
 }

@@ -23,7 +23,7 @@ class FirstOrderTrajectory : public Trajectory {
         transposed_(transposed),
         extra_(reduced.model(), theta),
         linear_(reduced, theta, start),
-        modes_(reduced.modes(theta)),
+        modes_(linear_.modes()),
         step_(linear_.step()),
         state_(Eigen::MatrixXd::Zero(modes_->square.size(), step_.states())),
         force_(Eigen::VectorXd::Zero(modes_->square.size())) {}

@@ -23,6 +23,7 @@ class ReducedTrajectory : public Trajectory {
   Eigen::VectorXd velocity() const override { return reduced_.basis() * (modes_->shapes * state_.col(1)); }
   /// Displacement as coordinates of the reduced basis.
   Eigen::VectorXd coordinates() const { return modes_->shapes * state_.col(0); }
+  const std::shared_ptr<const ReducedModes>& modes() const { return modes_; }
   /// The step of its modes, for the response to further forces.
   ModalStep step() const { return step_; }
   /// Natural frequencies [rad/s], ascending.
