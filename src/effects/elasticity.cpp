@@ -22,13 +22,21 @@ class Elasticity : public Effect {
       return shared(std::move(part));
     };
     SparseMatrix volumetric = context.fem.volumetric_stiffness(inside);
-    shear_ = kept(context.fem.shear_stiffness(volumetric));
-    volumetric_ = kept(std::move(volumetric));
+    SparseMatrix shear = context.fem.shear_stiffness(volumetric);
+    const Quantity ratio = read_parameters({"elasticity", "elasticity", arguments})[1];
+    if (ratio.estimated()) {
+      linear_.push_back({kept(std::move(volumetric)), [](const Parameters& p) { return lame(p[0], p[1]).lambda; }});
+      linear_.push_back({kept(std::move(shear)), [](const Parameters& p) { return lame(p[0], p[1]).mu; }});
+      return;
+    }
+    const Lame unit = lame(1.0, ratio.value);
+    volumetric *= unit.lambda;
+    add_scaled(volumetric, unit.mu, shear);
+    linear_.push_back({kept(std::move(volumetric)), [](const Parameters& p) { return p[0]; }});
   }
 
   void linear_terms(LinearTerms& out) const override {
-    out.stiffness.push_back({volumetric_, [](const Parameters& p) { return lame(p[0], p[1]).lambda; }});
-    out.stiffness.push_back({shear_, [](const Parameters& p) { return lame(p[0], p[1]).mu; }});
+    out.stiffness.insert(out.stiffness.end(), linear_.begin(), linear_.end());
   }
   bool has_finite_form() const override { return true; }
   bool always_finite() const override { return finite_strain_; }
@@ -39,12 +47,12 @@ class Elasticity : public Effect {
     solid_.add_stiffness(lame(p[0], p[1]), motion.displacement, stiffness);
   }
   double energy(const Motion& motion, const Parameters& p) const override {
-    const Lame c = lame(p[0], p[1]);
     const Eigen::VectorXd& u = motion.displacement;
     double sum = 0.0;
-    if (motion.finite_share > 0.0) sum += motion.finite_share * solid_.energy(c, u);
-    if (motion.finite_share < 1.0) {
-      sum += (1.0 - motion.finite_share) * 0.5 * (c.lambda * u.dot(*volumetric_ * u) + c.mu * u.dot(*shear_ * u));
+    if (motion.finite_share > 0.0) sum += motion.finite_share * solid_.energy(lame(p[0], p[1]), u);
+    for (const MatrixTerm& term : linear_) {
+      if (motion.finite_share < 1.0)
+        sum += (1.0 - motion.finite_share) * 0.5 * term.coefficient(p) * u.dot(*term.matrix * u);
     }
     return sum;
   }
@@ -53,7 +61,7 @@ class Elasticity : public Effect {
   std::vector<int> elements_;
   NeoHookean solid_;
   bool finite_strain_ = false;
-  std::shared_ptr<const SparseMatrix> volumetric_, shear_;
+  std::vector<MatrixTerm> linear_;  ///< one alone where Poisson's ratio is known
 };
 
 }  // namespace
