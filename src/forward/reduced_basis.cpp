@@ -123,19 +123,43 @@ class Builder {
   template <typename Response>
   static void extend(OrthonormalBasis& basis, const Response& respond, const Eigen::MatrixXd& loads,
                      const std::vector<SparseMatrix>& groups, Eigen::Index size) {
-    Eigen::MatrixXd x = respond(loads);
-    for (;;) {
-      const Eigen::Index before = basis.size();
-      basis.add(std::move(x), size);
-      const Eigen::MatrixXd block = basis.vectors().rightCols(basis.size() - before);
-      if (block.cols() == 0 || basis.size() >= size) return;
-      Eigen::MatrixXd next = basis.weighted().rightCols(block.cols());
-      for (const SparseMatrix& k : groups) {
-        next.conservativeResize(Eigen::NoChange, next.cols() + block.cols());
-        next.rightCols(block.cols()) = symmetric_product(k, block);
-      }
-      x = respond.roughly(std::move(next));
+    Eigen::Index before = basis.size();
+    // No more at once than there is room for.
+    for (Eigen::Index at = 0; at < loads.cols() && basis.size() < size;) {
+      const Eigen::Index count = std::min(loads.cols() - at, size - basis.size());
+      basis.add(respond(loads.middleCols(at, count)), size);
+      at += count;
     }
+    while (basis.size() > before && basis.size() < size) {
+      const Eigen::MatrixXd block = basis.vectors().rightCols(basis.size() - before);
+      const Eigen::MatrixXd inertia = basis.weighted().rightCols(block.cols());
+      before = basis.size();
+      const Eigen::Index all = block.cols() * static_cast<Eigen::Index>(1 + groups.size());
+      for (Eigen::Index at = 0; at < all && basis.size() < size;) {
+        const Eigen::Index count = std::min(all - at, size - basis.size());
+        basis.add(respond.roughly(forces(block, inertia, groups, at, count)), size);
+        at += count;
+      }
+    }
+  }
+
+  // Some columns of [M block, K block...].
+  static Eigen::MatrixXd forces(const Eigen::MatrixXd& block, const Eigen::MatrixXd& inertia,
+                                const std::vector<SparseMatrix>& groups, Eigen::Index first, Eigen::Index count) {
+    const Eigen::Index width = block.cols();
+    Eigen::MatrixXd out(block.rows(), count);
+    for (Eigen::Index done = 0; done < count;) {
+      const Eigen::Index source = (first + done) / width, at = (first + done) % width;
+      const Eigen::Index part = std::min(count - done, width - at);
+      if (source == 0) {
+        out.middleCols(done, part) = inertia.middleCols(at, part);
+      } else {
+        out.middleCols(done, part) =
+            symmetric_product(groups[static_cast<std::size_t>(source - 1)], block.middleCols(at, part));
+      }
+      done += part;
+    }
+    return out;
   }
 
   // The same from the vectors of the coarser mesh: static responses to the loads and to the inertia of each, all at once.
