@@ -156,6 +156,7 @@ std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd&
       all.push_back({spec.name, std::move(proposal), {}});
       for (const ParameterSpec& parameter : spec.parameters) {
         if (parameter.name != all.back().proposal.amplitude) continue;
+        all.back().absent = parameter.absent;
         all.back().lower = parameter.lower - parameter.absent;
         all.back().upper = 2.0 * (parameter.upper - parameter.absent);  // a tangent may overshoot
       }

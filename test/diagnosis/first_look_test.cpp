@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
+#include <string>
 #include <utility>
 
 #include "../box_model.hpp"
@@ -52,6 +54,15 @@ TEST_F(BarWithADamping, DropsAMeshsChangeThatMakesTheErrorMuchLarger) {
   EXPECT_EQ(look.by_mesh, 0.0);
   EXPECT_EQ(look.floor, 0.0);
   EXPECT_EQ(look.unavoidable(), look.rows);
+}
+
+// Amplitudes of tangents are counted from where the effect is absent: a scale is 1 there.
+TEST_F(BarWithADamping, CountsAmplitudesFromWhereAnEffectIsAbsent) {
+  const FirstLook look(base_, {}, Eigen::VectorXd::Zero(base_.rows.error.size()));
+  std::map<std::string, double> absent;
+  for (const Candidate& candidate : look.candidates) absent[candidate.effect] = candidate.absent;
+  EXPECT_EQ(absent.at("image_scale"), 1.0);
+  EXPECT_EQ(absent.at("viscous_damping"), 0.0);
 }
 
 // Most of it, and more where much is left beside the noise; of two effects, nearly all.

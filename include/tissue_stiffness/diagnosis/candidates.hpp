@@ -16,6 +16,7 @@ struct Candidate {
   std::string effect;
   Proposal proposal;
   Tangent tangent;
+  double absent = 0.0;                                      ///< parameter value that its amplitude is counted from
   double lower = -std::numeric_limits<double>::infinity();  ///< bounds of the amplitude
   double upper = std::numeric_limits<double>::infinity();
   bool linear = true;  ///< quick to refit
