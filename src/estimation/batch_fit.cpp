@@ -16,6 +16,10 @@ constexpr double kLongestStep = 1.0;    // prior standard deviations at once
 constexpr double kSmallStep = 0.02;     // posterior standard deviations: converged
 constexpr double kFloor = 1e-4;         // of the prior's standard deviation: smallest span of the sigma points
 constexpr double kGain = 1e-5;          // relative fall of the cost below which it is over
+constexpr double kEasier = 3.0;         // less damping after a step that needed no cut
+constexpr double kHope = 20.0;          // times the last fall: what a fit may still fall by
+constexpr int kTried = 2;               // moves before that is asked
+constexpr std::size_t kRemembered = 3;  // steps that the next one is extrapolated from
 constexpr double kNarrower = 0.7;       // of the sigma points' span: with more than that a step comes out as it did
 
 void run(const FitProblem& problem, AnchoredFilter& filter, const Eigen::VectorXd& anchor, const Eigen::VectorXd& spread) {
@@ -37,47 +41,110 @@ Eigen::VectorXd std_of_each(const AnchoredFilter& filter) {
   return filter.covariance().ldlt().solve(Eigen::MatrixXd::Identity(p, p)).diagonal().cwiseSqrt().cwiseInverse();
 }
 
-// Shortened as a whole where it is too long: parameters that make up for one another have to move together.
-Eigen::VectorXd step(const AnchoredFilter& filter, double damping, const Eigen::VectorXd& prior) {
-  const Eigen::VectorXd move = filter.mean(damping) - filter.anchor();
+// As a whole where it is too long: parameters that make up for one another have to move together.
+Eigen::VectorXd shortened(const Eigen::VectorXd& move, const Eigen::VectorXd& prior) {
   return move / std::max(1.0, (move.array() / prior.array()).abs().maxCoeff() / kLongestStep);
 }
+
+double cost_at(const FitProblem& problem, const AnchoredFilter& filter, const Eigen::VectorXd& w) {
+  const FreeFit there = free_fit(problem, w);
+  return filter.cost_at(w, there.cost, there.rows);
+}
+
+// By how much a whole step would lower the cost, were the model linear.
+double promise(const AnchoredFilter& filter) {
+  const Eigen::VectorXd move = filter.mean() - filter.anchor();
+  return filter.misfit_scale() * move.dot(filter.covariance().ldlt().solve(move));
+}
+
+// Where errors stay large, Gauss-Newton's steps shrink slowly, each of them nearly a linear map of the last: how the last
+// ones did tells where they end (Anderson 1965).
+class Extrapolation {
+ public:
+  // The step from `at` where Gauss-Newton has `step`; `scale`: of each parameter.
+  Eigen::VectorXd operator()(const Eigen::VectorXd& at, const Eigen::VectorXd& step, const Eigen::VectorXd& scale) {
+    Eigen::VectorXd out = step;
+    if (const auto count = static_cast<Eigen::Index>(past_.size()); count > 0) {
+      Eigen::MatrixXd moves(step.size(), count), changes(step.size(), count);
+      for (Eigen::Index i = 0; i < count; ++i) {
+        moves.col(i) = at - past_[static_cast<std::size_t>(i)].at;
+        changes.col(i) = step - past_[static_cast<std::size_t>(i)].step;
+      }
+      const Eigen::VectorXd inverse = scale.cwiseInverse();
+      const Eigen::VectorXd share =
+          (inverse.asDiagonal() * changes).colPivHouseholderQr().solve(inverse.cwiseProduct(step));
+      out -= (moves + changes) * share;
+    }
+    past_.push_back({at, step});
+    if (past_.size() > std::min(kRemembered, static_cast<std::size_t>(step.size()))) past_.erase(past_.begin());
+    return out;
+  }
+  void forget() { past_.clear(); }
+
+ private:
+  struct Step {
+    Eigen::VectorXd at, step;
+  };
+  std::vector<Step> past_;
+};
 
 }  // namespace
 
 AnchoredFilter fit_filter(const FitProblem& problem, AnchoredFilter filter, const Eigen::VectorXd& start,
-                          const Eigen::VectorXd& spread) {
+                          const Eigen::VectorXd& spread, double rival) {
   const Eigen::VectorXd prior = filter.spread();
   double damping = 0.0;
+  bool careful = false;
+  Extrapolation extrapolate;
   run(problem, filter, start, spread);
   for (int k = 0; k < kMostIterations; ++k) {
     const AnchoredFilter before = filter;
     const Eigen::VectorXd std = before.covariance().diagonal().cwiseSqrt();
     if (((before.mean() - before.anchor()).array().abs() < kSmallStep * std.array()).all()) break;
-    const Eigen::VectorXd next = (2.0 * std_of_each(before)).cwiseMin(before.spread()).cwiseMax(kFloor * prior);
-    bool better = false;
-    int tried = 0;
-    for (double cut = 1.0; tried < kMostCuts && !better; ++tried, cut *= kCut) {
-      if (tried > 0) damping = std::max(kLeastDamping, kHarder * damping);
-      run(problem, filter, before.anchor() + cut * step(before, damping, prior), next);
-      better = filter.cost() < before.cost();
+    const Eigen::VectorXd each = std_of_each(before);
+    const Eigen::VectorXd next = (2.0 * each).cwiseMin(before.spread()).cwiseMax(kFloor * prior);
+    const auto lowers = [&](const Eigen::VectorXd& to, bool look_first) {
+      if (look_first && !(cost_at(problem, before, to) < before.cost())) return false;
+      run(problem, filter, to, next);
+      return filter.cost() < before.cost();
+    };
+    const double promised = promise(before);
+    bool further = false;
+    if (damping > 0.0) {
+      extrapolate.forget();
+    } else if (const Eigen::VectorXd step = before.mean() - before.anchor(), to = extrapolate(before.anchor(), step, each);
+               to != step) {
+      further = lowers(before.anchor() + shortened(to, prior), careful);
+      careful = !further;
+      if (!further) extrapolate.forget();
     }
+    bool better = further;
+    int tried = 0;
+    const int most = promised < kGain * before.cost() ? 1 : kMostCuts;
+    for (double cut = 1.0; tried < most && !better; ++tried, cut *= kCut) {
+      if (tried > 0) damping = std::max(kLeastDamping, kHarder * damping);
+      const Eigen::VectorXd step = shortened(before.mean(damping) - before.anchor(), prior);
+      better = lowers(before.anchor() + cut * step, careful || tried > 0);
+    }
+    careful = tried > 1;
     if (!better) {
       filter = before;
       if ((next.array() > kNarrower * before.spread().array()).all()) break;
       run(problem, filter, before.anchor(), next);
       continue;
     }
-    if (before.cost() - filter.cost() < kGain * before.cost()) break;
-    if (tried == 1) damping = damping > kLeastDamping ? damping / kHarder : 0.0;
+    const double gain = before.cost() - filter.cost();
+    if ((further ? std::max(gain, promised) : gain) < kGain * before.cost()) break;  // one that overshot gains little, too
+    if (k >= kTried && filter.cost() - kHope * gain > rival) break;
+    if (tried == 1) damping = damping > kLeastDamping ? damping / kEasier : 0.0;
   }
   return filter;
 }
 
-BatchFit fit_batch(const FitProblem& problem, const Eigen::VectorXd& start, const Eigen::VectorXd& spread) {
+BatchFit fit_batch(const FitProblem& problem, const Eigen::VectorXd& start, const Eigen::VectorXd& spread, double rival) {
   const Eigen::VectorXd prior = problem.model.prior_std();
   const AnchoredFilter filter =
-      fit_filter(problem, AnchoredFilter(problem.model.prior_mean(), prior.cwiseAbs2().asDiagonal()), start, spread);
+      fit_filter(problem, AnchoredFilter(problem.model.prior_mean(), prior.cwiseAbs2().asDiagonal()), start, spread, rival);
   return {filter.anchor(), filter.covariance(), filter.cost()};
 }
 

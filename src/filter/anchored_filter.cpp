@@ -108,9 +108,10 @@ Eigen::MatrixXd AnchoredFilter::robust_covariance() const {
   return scores_.widened(covariance(), scores_.variance(mean() - anchor_) / (scale * scale));
 }
 
-double AnchoredFilter::cost() const {
-  const Eigen::VectorXd step = anchor_ - prior_mean_;
-  return data_cost_ + misfit_scale() * step.dot(prior_information_ * step);
+double AnchoredFilter::cost_at(const Eigen::VectorXd& w, double data_cost, double rows) const {
+  const Eigen::VectorXd step = w - prior_mean_;
+  const double scale = rows > 0.0 ? std::max(1.0, data_cost / rows) : 1.0;
+  return data_cost + scale * step.dot(prior_information_ * step);
 }
 
 bool AnchoredFilter::stale(double far, double wide, const Eigen::VectorXd& floor) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 
 #include "tissue_stiffness/estimation/choose_correction.hpp"
 #include "tissue_stiffness/filter/anchored_filter.hpp"
@@ -17,10 +18,12 @@ struct BatchFit {
 /// Gauss-Newton on the free run's posterior from `start`, linearised over `spread` (filter coordinates) at first and later
 /// over what the data leave of each parameter beside the others. Steps that do not lower the cost are cut and damped
 /// (Marquardt 1963, eq. 28). Throws NumericalError when the run at `start` diverges.
-BatchFit fit_batch(const FitProblem& problem, const Eigen::VectorXd& start, const Eigen::VectorXd& spread);
+/// `rival`: a cost that is to be beaten; ends where the last fall is small beside what is missing.
+BatchFit fit_batch(const FitProblem& problem, const Eigen::VectorXd& start, const Eigen::VectorXd& spread,
+                   double rival = std::numeric_limits<double>::infinity());
 
 /// The same with any prior: that of `filter`, which has seen no frame. Ends anchored at the most probable parameters.
 AnchoredFilter fit_filter(const FitProblem& problem, AnchoredFilter filter, const Eigen::VectorXd& start,
-                          const Eigen::VectorXd& spread);
+                          const Eigen::VectorXd& spread, double rival = std::numeric_limits<double>::infinity());
 
 }  // namespace tissue_stiffness

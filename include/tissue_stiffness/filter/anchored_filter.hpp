@@ -55,7 +55,9 @@ class AnchoredFilter {
   /// The same without the bound.
   double mean_square() const { return rows_ > 0 ? data_cost_ / rows_ : 0.0; }
   /// Log-posterior's quadratic part at the anchor so far: data cost plus the prior's.
-  double cost() const;
+  double cost() const { return cost_at(anchor_, data_cost_, rows_); }
+  /// The same at w, where the data of so many rows cost so much.
+  double cost_at(const Eigen::VectorXd& w, double data_cost, double rows) const;
 
   /// Prediction at `w` from the sigma points' predictions.
   Eigen::VectorXd predict(const Eigen::MatrixXd& predictions, const Eigen::VectorXd& w) const;
