@@ -16,17 +16,19 @@ constexpr double kReplaced = 4.0;  // times the free run's misfit, beyond which 
 constexpr double kLevels[] = {0.3, 0.1, 0.03, 0.01};  // of the modal forces at work
 constexpr double kSearchLevel = 0.1;
 
-using Visit = std::function<void(const Frame&, const Eigen::VectorXd& theta, const Eigen::VectorXd& displacement)>;
+using Field = Eigen::Ref<const Eigen::VectorXd>;
+using Visit = std::function<void(const Frame&, const Eigen::VectorXd& theta, const Field& displacement)>;
 
 void run_freely(const FitProblem& problem, const Eigen::VectorXd& w, const Visit& visit) {
   const Eigen::VectorXd theta = problem.model.theta(w);
   const double delay = problem.model.delay(theta);
   const auto run = problem.forward.begin(theta, problem.start);
-  for (const Frame& frame : problem.frames) {
+  std::vector<double> times;
+  for (const Frame& frame : problem.frames) times.push_back(frame.time - delay);
+  problem.forward.advance_through(*run, times, [&](std::size_t k, const Field& displacement) {
     problem.checkpoint();
-    run->advance(frame.time - delay);
-    visit(frame, theta, run->displacement());
-  }
+    visit(problem.frames[k], theta, displacement);
+  });
 }
 
 Eigen::ArrayXd errors(const Prediction& p) {
@@ -36,7 +38,7 @@ Eigen::ArrayXd errors(const Prediction& p) {
 }  // namespace
 
 FreeFit fit_frame(const FitProblem& problem, const Frame& frame, const Eigen::VectorXd& theta,
-                  const Eigen::VectorXd& displacement) {
+                  const Eigen::Ref<const Eigen::VectorXd>& displacement) {
   const Prediction p = predict_frame(problem.model, problem.operators, frame, theta, displacement);
   const Eigen::ArrayXd weights = row_weights(p).array();
   return {(weights > 0.0).select(weights * errors(p).square(), 0.0).sum(), static_cast<double>((weights > 0.0).count())};
@@ -44,7 +46,7 @@ FreeFit fit_frame(const FitProblem& problem, const Frame& frame, const Eigen::Ve
 
 FreeFit free_fit(const FitProblem& problem, const Eigen::VectorXd& w) {
   FreeFit fit;
-  run_freely(problem, w, [&](const Frame& frame, const Eigen::VectorXd& theta, const Eigen::VectorXd& displacement) {
+  run_freely(problem, w, [&](const Frame& frame, const Eigen::VectorXd& theta, const Field& displacement) {
     const FreeFit now = fit_frame(problem, frame, theta, displacement);
     fit.cost += now.cost;
     fit.rows += now.rows;
@@ -55,10 +57,8 @@ FreeFit free_fit(const FitProblem& problem, const Eigen::VectorXd& w) {
 double motion_cost(const FitProblem& problem, const Eigen::VectorXd& w) {
   const Eigen::VectorXd rest = Eigen::VectorXd::Zero(problem.model.fem().dof_count());
   double cost = 0.0;
-  run_freely(problem, w, [&](const Frame& frame, const Eigen::VectorXd& theta, const Eigen::VectorXd& displacement) {
-    const auto predict = [&](const Eigen::VectorXd& u) {
-      return predict_frame(problem.model, problem.operators, frame, theta, u);
-    };
+  run_freely(problem, w, [&](const Frame& frame, const Eigen::VectorXd& theta, const Field& displacement) {
+    const auto predict = [&](const Field& u) { return predict_frame(problem.model, problem.operators, frame, theta, u); };
     const Eigen::ArrayXd weights = row_weights(predict(displacement)).array(), motion = errors(predict(rest));
     cost += (weights > 0.0 && motion.isFinite()).select(weights * motion.square(), 0.0).sum();
   });

@@ -11,7 +11,7 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kForceStep = 0.005;  // [s] at most between two looks at the force
+constexpr double kForceStep = 0.010;  // [s] at most between two looks at the force
 constexpr double kLeastShare = 0.5;   // of the span that advance() is asked for, likewise
 
 class FirstOrderTrajectory : public Trajectory {
@@ -58,9 +58,8 @@ class FirstOrderTrajectory : public Trajectory {
     }
   }
   double time() const override { return linear_.time(); }
-  Eigen::VectorXd displacement() const override {
-    return reduced_.displacement(linear_.coordinates() + modes_->shapes * state_.col(0));
-  }
+  Eigen::VectorXd displacement() const override { return reduced_.displacement(coordinates()); }
+  Eigen::VectorXd coordinates() const { return linear_.coordinates() + modes_->shapes * state_.col(0); }
   Eigen::VectorXd velocity() const override {
     return linear_.velocity() + reduced_.basis() * (modes_->shapes * state_.col(1));
   }
@@ -90,6 +89,10 @@ FirstOrderModel::FirstOrderModel(const Model& model, const BasisOptions& options
 
 std::unique_ptr<Trajectory> FirstOrderModel::start(const Eigen::VectorXd& theta, double start) const {
   return std::make_unique<FirstOrderTrajectory>(reduced_, basis_, transposed_, theta, start);
+}
+
+void FirstOrderModel::advance_through(Trajectory& run, const std::vector<double>& times, const Show& show) const {
+  reduced_.show_together(dynamic_cast<FirstOrderTrajectory&>(run), times, show);
 }
 
 std::string FirstOrderModel::description() const {

@@ -115,6 +115,32 @@ std::vector<Relaxation> Model::relaxations(const Eigen::VectorXd& theta) const {
   return branches;
 }
 
+bool Model::same_answer(const Eigen::VectorXd& theta, const Eigen::VectorXd& other) const {
+  const auto same = [&](auto value) { return value(theta) == value(other); };
+  for (const Part& part : parts_) {
+    const Eigen::VectorXd p = part.parameters(theta), q = part.parameters(other);
+    if (part.effect->nonlinear() && p != q) return false;
+    if (part.effect->releases(p) != part.effect->releases(q)) return false;
+    for (const auto* terms : {&part.terms.mass, &part.terms.stiffness}) {
+      for (const MatrixTerm& term : *terms) {
+        if (term.coefficient(p) != term.coefficient(q)) return false;
+      }
+    }
+    for (const StrainTerm& term : part.terms.strain_stiffness) {
+      if (term.coefficient(p) != term.coefficient(q)) return false;
+      for (const int i : term.shape) {
+        if (p[i] != q[i]) return false;
+      }
+    }
+    for (const RelaxationTerm& term : part.terms.relaxation) {
+      if (term.modulus(p) != term.modulus(q) || term.time_constant(p) != term.time_constant(q)) return false;
+    }
+  }
+  return same([&](const auto& t) { return mass_factor(t); }) && same([&](const auto& t) { return mass_damping(t); }) &&
+         same([&](const auto& t) { return stiffness_damping(t); }) &&
+         same([&](const auto& t) { return stiffness_inertia(t); }) && same([&](const auto& t) { return delay(t); });
+}
+
 Eigen::Vector3d Model::body_acceleration(const Eigen::VectorXd& theta) const {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Part& part : parts_) {

@@ -293,6 +293,10 @@ std::unique_ptr<Trajectories> ReducedModel::start_all(const std::vector<Eigen::V
   return std::make_unique<ReducedTrajectories>(*this, start_each(thetas, start));
 }
 
+void ReducedModel::advance_through(Trajectory& run, const std::vector<double>& times, const Show& show) const {
+  show_together(dynamic_cast<ReducedTrajectory&>(run), times, show);
+}
+
 Eigen::MatrixXd ReducedModel::basis_at(const std::vector<int>& nodes) const {
   Eigen::MatrixXd rows(3 * static_cast<Eigen::Index>(nodes.size()), basis_.vectors.cols());
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -314,7 +318,7 @@ Eigen::VectorXd ReducedModel::displacement(const Eigen::VectorXd& coordinates) c
 
 void ReducedModel::displacements(const Eigen::MatrixXd& coordinates, Eigen::MatrixXd& out) const {
   if (focus_.empty()) {
-    multiply(basis_.vectors, coordinates, out);
+    multiply(basis_.vectors, coordinates, out.leftCols(coordinates.cols()));
     return;
   }
   VectorPool::Loan scratch(scratch_, in_focus_.rows() * coordinates.cols());

@@ -34,6 +34,13 @@ std::unique_ptr<Trajectory> ForwardModel::begin(const Eigen::VectorXd& theta, co
   return from.motion ? resume(theta, *from.motion) : start(theta, from.time);
 }
 
+void ForwardModel::advance_through(Trajectory& run, const std::vector<double>& times, const Show& show) const {
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    run.advance(times[k]);
+    show(k, run.displacement());
+  }
+}
+
 std::unique_ptr<Trajectories> ForwardModel::begin_all(const std::vector<Eigen::VectorXd>& thetas,
                                                       const RunStart& from) const {
   return from.motion ? resume_all(thetas, *from.motion) : start_all(thetas, from.time);

@@ -4,10 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <initializer_list>
+#include <set>
 
 #include "../box_model.hpp"
 #include "full_against_reduced.hpp"
 #include "tissue_stiffness/fem/sparse_solver.hpp"
+#include "tissue_stiffness/forward/first_order_model.hpp"
 #include "tissue_stiffness/forward/full_model.hpp"
 #include "tissue_stiffness/forward/reduced_trajectory.hpp"
 #include "tissue_stiffness/meshing/refine.hpp"
@@ -165,6 +168,56 @@ TEST(ReducedModel, OneModeUnderARampIsTheClosedForm) {
     const double q = b.dot(load) / square * (t - std::sin(w * t) / w);
     EXPECT_LT((run->displacement() - q * b).norm(), 1e-9 * std::abs(b.dot(load)) / square * b.norm()) << t;
   }
+}
+
+// Many instants at once, and one after the other.
+TEST(ReducedModel, ShowsManyInstantsAsItShowsEach) {
+  const TetMesh mesh = bar_mesh(4);
+  const Model model(box_settings({kInertia, elastic("{prior: 3.0e4, factor: 2}"), kFixed, kGravity,
+                                  "strain_stiffening: {exponent: {mean: 0.5, std: 0.1}}"}),
+                    mesh);
+  std::vector<double> times;
+  for (int k = 1; k <= 37; ++k) times.push_back(0.013 * k);
+  const Eigen::VectorXd theta = prior(model);
+  BasisOptions linear;
+  linear.nonlinear = BasisOptions::Nonlinear::left_out;
+  ReducedModel reduced(model, linear);
+  FirstOrderModel first_order(model);
+  for (ForwardModel* forward : std::initializer_list<ForwardModel*>{&reduced, &first_order}) {
+    for (const std::vector<int>& nodes : {std::vector<int>{}, std::vector<int>{3, 7, mesh.node_count() - 1}}) {
+      forward->focus(nodes);
+      const auto run = forward->start(theta, 0.0), step = forward->start(theta, 0.0);
+      std::size_t shown = 0;
+      forward->advance_through(*run, times, [&](std::size_t k, const Eigen::Ref<const Eigen::VectorXd>& u) {
+        ASSERT_EQ(k, shown++);
+        step->advance(times[k]);
+        const Eigen::VectorXd expected = step->displacement();
+        EXPECT_LT((u - expected).norm(), 1e-12 * expected.norm()) << forward->description() << ", instant " << k;
+      });
+      EXPECT_EQ(shown, times.size());
+    }
+  }
+}
+
+// What tunes a body, and what only acts on it or is only seen.
+TEST(Model, KnowsWhatChangesTheAnswerToALoad) {
+  const Model model(
+      box_settings({kInertia, elastic("{prior: 3.0e4, factor: 2}"), kFixed,
+                    "gravity: {acceleration: {mean: [0, 0, -2], std: 1}}", "viscous_damping: {beta: {mean: 0.1, std: 0.1}}",
+                    "time_offset: {offset: {mean: 0, std: 0.01}}", "image_scale: {ratio: {mean: 1, std: 0.1}}",
+                    "viscoelasticity: {gamma: {mean: 0.2, std: 0.1}, tau: 0.3}"}),
+      bar_mesh(2));
+  const Eigen::VectorXd w = model.prior_mean(), std = model.prior_std();
+  const std::set<std::string> tuning{"elasticity.young_modulus", "viscous_damping.beta", "time_offset.offset",
+                                     "viscoelasticity.gamma"};
+  std::size_t found = 0;
+  for (Eigen::Index i = 0; i < w.size(); ++i) {
+    const std::string& name = model.free_parameters()[static_cast<std::size_t>(i)].name;
+    const Eigen::VectorXd moved = w + std[i] * Eigen::VectorXd::Unit(w.size(), i);
+    EXPECT_EQ(model.same_answer(model.theta(w), model.theta(moved)), tuning.count(name) == 0) << name;
+    found += tuning.count(name);
+  }
+  EXPECT_EQ(found, tuning.size());
 }
 
 TEST(ReducedModel, DoesNotDependOnTheFrames) {

@@ -29,7 +29,7 @@ FreeFit free_fit(const FitProblem& problem, const Eigen::VectorXd& w);
 double motion_cost(const FitProblem& problem, const Eigen::VectorXd& w);
 /// The same of one frame, the body displaced as given (3n).
 FreeFit fit_frame(const FitProblem& problem, const Frame& frame, const Eigen::VectorXd& theta,
-                  const Eigen::VectorXd& displacement);
+                  const Eigen::Ref<const Eigen::VectorXd>& displacement);
 
 /// Where corrected runs explain the recording best, and by how much they are to be corrected.
 struct Correction {

@@ -21,6 +21,7 @@ class FirstOrderModel : public ForwardModel {
   explicit FirstOrderModel(const Model& model, const BasisOptions& options = {}, const ReducedModel* relative = nullptr);
 
   std::unique_ptr<Trajectory> start(const Eigen::VectorXd& theta, double start) const override;
+  void advance_through(Trajectory& run, const std::vector<double>& times, const Show& show) const override;
   void focus(const std::vector<int>& nodes) override { reduced_.focus(nodes); }
   std::string description() const override;
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -81,6 +82,9 @@ class ForwardModel {
   /// From rest or from a motion, as `from` says.
   std::unique_ptr<Trajectory> begin(const Eigen::VectorXd& theta, const RunStart& from) const;
   std::unique_ptr<Trajectories> begin_all(const std::vector<Eigen::VectorXd>& thetas, const RunStart& from) const;
+  /// Shows where the nodes are at each of `times` [s], ascending, by the index of the time and their displacement (3n).
+  using Show = std::function<void(std::size_t, const Eigen::Ref<const Eigen::VectorXd>&)>;
+  virtual void advance_through(Trajectory& run, const std::vector<double>& times, const Show& show) const;
   /// Runs that start from now on need to tell where these nodes are, no others: what is cheaper may leave those at rest.
   virtual void focus(const std::vector<int>&) {}
   /// What it is, in one line.

@@ -98,6 +98,9 @@ class Model {
   double mass_factor(const Eigen::VectorXd& theta) const;
   double load_factor(const Eigen::VectorXd& theta) const;
 
+  /// A load moves the body alike at both, and it is seen as soon: they differ in what acts on it, or in a sensor, at most.
+  bool same_answer(const Eigen::VectorXd& theta, const Eigen::VectorXd& other) const;
+
   /// What the forces at theta need of it at every instant.
   struct Point {
     struct Part {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -45,6 +46,7 @@ class ReducedModel : public ForwardModel {
   std::unique_ptr<Trajectory> start_in_half(const Eigen::VectorXd& theta, double start) const;
   /// The same in a basis larger by half; null when that adds nothing.
   std::unique_ptr<ReducedModel> grown() const;
+  void advance_through(Trajectory& run, const std::vector<double>& times, const Show& show) const override;
   void focus(const std::vector<int>& nodes) override;
   std::string description() const override;
 
@@ -57,6 +59,9 @@ class ReducedModel : public ForwardModel {
   Eigen::VectorXd displacement(const Eigen::VectorXd& coordinates) const;
   /// The same of several, a column each, into rows of `out` that belong to the focus; others stay as they are.
   void displacements(const Eigen::MatrixXd& coordinates, Eigen::MatrixXd& out) const;
+  /// Of a run that has coordinates(), many instants at once, so that the basis is read from memory but a few times.
+  template <typename Run>
+  void show_together(Run& run, const std::vector<double>& times, const Show& show) const;
   /// Of every node, whatever the focus.
   void recover(const Eigen::VectorXd& coordinates, Eigen::Ref<Eigen::VectorXd> displacement) const;
   /// Solved anew for theta that differ in more than the scale of the mass, that of the stiffness, or the latter's inertia:
@@ -112,5 +117,21 @@ class ReducedModel : public ForwardModel {
   mutable std::vector<Shaped> shaped_;  ///< the last few projections of terms whose place or angle is estimated
   mutable VectorPool scratch_;          ///< for displacements in the focus
 };
+
+template <typename Run>
+void ReducedModel::show_together(Run& run, const std::vector<double>& times, const Show& show) const {
+  constexpr std::size_t at_once = 16;
+  Eigen::MatrixXd coordinates(basis_.vectors.cols(), at_once);
+  Eigen::MatrixXd u = Eigen::MatrixXd::Zero(basis_.vectors.rows(), at_once);
+  for (std::size_t first = 0; first < times.size(); first += at_once) {
+    const std::size_t count = std::min(at_once, times.size() - first);
+    for (std::size_t i = 0; i < count; ++i) {
+      run.advance(times[first + i]);
+      coordinates.col(static_cast<Eigen::Index>(i)) = run.coordinates();
+    }
+    displacements(coordinates.leftCols(static_cast<Eigen::Index>(count)), u);
+    for (std::size_t i = 0; i < count; ++i) show(first + i, u.col(static_cast<Eigen::Index>(i)));
+  }
+}
 
 }  // namespace tissue_stiffness
