@@ -33,7 +33,8 @@ Eigen::VectorXd finer_mesh(const Fitted& base) {
 double cost_on_finer_mesh(const Fitted& base, const Refit& refit) {
   const Study fine = on_finer_mesh(*base.study, extend_model(base.study->model().settings(), refit.entries));
   const Eigen::VectorXd start = fine.model().coordinates(refit.parameters, fine.model().prior_mean());
-  const BatchFit fit = fine.fit(fine.scan_near(start, fine.shared_with(*base.study)).w, fine.spread_beyond(*base.study));
+  const BatchFit fit =
+      fine.fit(fine.scan_near(start, fine.tuning_shared_with(*base.study)).w, fine.spread_beyond(*base.study));
   return fine.rows(fit.w).error.squaredNorm();
 }
 

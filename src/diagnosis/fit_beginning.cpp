@@ -43,11 +43,11 @@ BeginningFit fit_beginning(const Fitted& base, const Candidate& way) {
   const Study study(settings, known);
   const Model& model = study.model();
   const Eigen::VectorXd w = study.extend(known, base.fit.w);
-  const std::vector<Eigen::Index> shared = study.shared_with(known);
+  const std::vector<Eigen::Index> tuning = study.tuning_shared_with(known);
   const Eigen::VectorXd spread = study.spread_beyond(known);
   std::vector<Study::Place> places;
   for (const Eigen::VectorXd& start : strengths(study, w, way))
-    places.push_back(study.scan_near(start, shared, kBeginning));
+    places.push_back(study.scan_near(start, tuning, kBeginning));
   std::stable_sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
   places.resize(std::min(places.size(), kMostStarts));
   BatchFit fit;

@@ -16,7 +16,8 @@ constexpr double kPriorWidth = 5.0;        // posterior standard deviations, of 
 constexpr double kRoom = 0.5;              // of the distance to a parameter's bound: the most that they have
 constexpr double kLeastShare = 1e-3;       // of the proposal's prior: the least
 constexpr double kMostOfMesh = 4.0 / 3.0;  // what ever finer meshes change: Richardson's, at second order
-constexpr double kShares[] = {0.6, 1.0};   // of the training frames, fitted one after the other from a fit of the beginning
+constexpr double kNone = std::numeric_limits<double>::infinity();
+constexpr double kShares[] = {0.6, 1.0};  // of the training frames, fitted one after the other from a fit of the beginning
 
 struct Start {
   Eigen::VectorXd w, spread;
@@ -30,7 +31,7 @@ double tangent_value(const FreeParameter& parameter, const std::vector<Addition>
     const Candidate& way = *additions[k].way;
     if (parameter.name.rfind(way.effect, 0) != 0) continue;
     if (parameter.name.find("." + way.proposal.amplitude) == std::string::npos) continue;
-    if (taken[k] < additions[k].amplitude.size()) return additions[k].amplitude[taken[k]++];
+    if (taken[k] < additions[k].amplitude.size()) return way.absent + additions[k].amplitude[taken[k]++];
   }
   return std::numeric_limits<double>::quiet_NaN();
 }
@@ -115,14 +116,14 @@ std::string fitted_entry(const Study& study, const Study& base, const BatchFit& 
 }
 
 // The start whose fit without full runs is best. A run that rings may need the base's parameters in another minimum.
-std::optional<Start> quick_start(const Study& study, const Study& base, const std::vector<Start>& starts,
+std::optional<Start> quick_start(const Study& study, const Study& base, const std::vector<Start>& starts, double rival,
                                  std::string& reason) {
-  const std::vector<Eigen::Index> shared = study.shared_with(base);
+  const std::vector<Eigen::Index> tuning = study.tuning_shared_with(base);
   std::optional<Start> best;
   for (Start start : starts) {
     try {
-      start.w = study.scan_near(start.w, shared).w;
-      start.fit = study.quick_fit(start.w, start.spread);
+      start.w = study.scan_near(start.w, tuning).w;
+      start.fit = study.quick_fit(start.w, start.spread, 1.0, best ? std::min(rival, best->fit.cost) : rival);
       if (!best || start.fit.cost < best->fit.cost) best = std::move(start);
     } catch (const NumericalError& error) {
       reason = error.what();
@@ -132,9 +133,9 @@ std::optional<Start> quick_start(const Study& study, const Study& base, const st
 }
 
 // From a fit of the beginning to one of everything.
-Start grown(const Study& study, Start start) {
+Start grown(const Study& study, Start start, double rival) {
   for (const double share : kShares) {
-    start.fit = study.quick_fit(start.w, start.spread, share);
+    start.fit = study.quick_fit(start.w, start.spread, share, share < 1.0 ? kNone : rival);
     start.w = start.fit.w;
   }
   return start;
@@ -152,7 +153,7 @@ double cost_beside(const Eigen::VectorXd& error, const Eigen::VectorXd& mesh_cha
 
 }  // namespace
 
-Refit refit(const Fitted& base, const std::vector<Addition>& additions, const Eigen::VectorXd& mesh_change) {
+Refit refit(const Fitted& base, const std::vector<Addition>& additions, const Eigen::VectorXd& mesh_change, double rival) {
   const Study& known = *base.study;
   auto model = std::make_shared<Fitted>();
   ModelSettings settings = known.model().settings();
@@ -160,10 +161,11 @@ Refit refit(const Fitted& base, const std::vector<Addition>& additions, const Ei
   model->study = std::make_unique<Study>(settings, known);
   const Study& study = *model->study;
   model->study->borrow(known);
+  if (study.model().nonlinear()) rival = kNone;  // quick runs are off
   std::string reason;
   std::optional<Start> start = additions.front().begun
-                                   ? grown(study, start_of(study, additions.front().scanned))
-                                   : quick_start(study, known, starts(study, known, base.fit.w, additions), reason);
+                                   ? grown(study, start_of(study, additions.front().scanned), rival)
+                                   : quick_start(study, known, starts(study, known, base.fit.w, additions), rival, reason);
   if (!start) throw NumericalError(additions.front().way->effect + " cannot be refitted: " + reason);
   Study::Rows& rows = model->rows = study.rows(start->fit.w);
   const double gain = base.rows.error.squaredNorm() - rows.error.squaredNorm();
@@ -186,6 +188,7 @@ Refit refit(const Fitted& base, const std::vector<Addition>& additions, const Ei
   out.held_out_sigmas = rms_sigmas(rows, known.recording(), true);
   out.p_value =
       prediction_p_value(held_out_squares(base.rows, known.recording()) - held_out_squares(rows, known.recording()));
+  out.fitted = start->fit.cost;
   out.cost = rows.error.squaredNorm();
   out.cost_beside_mesh = cost_beside(rows.error, mesh_change);
   out.added_parameters = static_cast<int>(study.model().free_parameters().size() - known.model().free_parameters().size());

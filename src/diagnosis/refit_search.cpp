@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -157,6 +158,10 @@ void Search::try_each(std::size_t count, const std::function<std::string(std::si
 }
 
 void Search::refit_all(std::vector<std::vector<Addition>> list) {
+  double rival = std::numeric_limits<double>::infinity();
+  for (const Refit& r : refits_) {
+    if (r.way->linear) rival = std::min(rival, r.fitted);
+  }
   // The longest fits first: the last one to end keeps one core busy only.
   std::vector<std::pair<std::ptrdiff_t, std::vector<Addition>>> trials;
   for (std::vector<Addition>& additions : list) trials.emplace_back(parameters_of(additions), std::move(additions));
@@ -164,7 +169,7 @@ void Search::refit_all(std::vector<std::vector<Addition>> list) {
   std::vector<std::optional<Refit>> done(trials.size());
   try_each(
       trials.size(), [&](std::size_t i) { return "refit with " + names_of(trials[i].second); },
-      [&](std::size_t i) { done[i] = refit(look_.base, trials[i].second, look_.mesh_change); });
+      [&](std::size_t i) { done[i] = refit(look_.base, trials[i].second, look_.mesh_change, rival); });
   for (std::optional<Refit>& refit : done) {
     if (refit) refits_.push_back(std::move(*refit));
   }
@@ -182,7 +187,17 @@ void Search::refit_singles(const std::vector<std::string>& wanted) {
     const bool leads = look_.first || asked || r.evidence > kRival * look_.ranked.front().evidence;
     (leads ? leaders : others).push_back({{r.best, r.score.amplitude}});
   }
-  refit_all(leaders);
+  const bool told = !look_.first && wanted.empty();
+  auto next = leaders.begin();
+  if (told) {  // the simplest first: where they leave only noise, nothing else is needed
+    const auto simpler = [](const auto& a, const auto& b) { return parameters_of(a) < parameters_of(b); };
+    std::stable_sort(leaders.begin(), leaders.end(), simpler);
+    while (next != leaders.end() && !simpler(leaders.front(), *next)) ++next;
+  } else if (!leaders.empty()) {  // the first alone: what falls behind it need not be fitted to the end
+    ++next;
+  }
+  refit_all({leaders.begin(), next});
+  if (!told || leaves_more_than_noise()) refit_all({next, leaders.end()});
   if (leaves_more_than_noise()) refit_all(others);
 }
 

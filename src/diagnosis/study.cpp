@@ -90,17 +90,18 @@ FitProblem Study::problem(const ForwardModel& forward, const std::vector<Frame>&
 
 Study::Rows Study::rows(const Eigen::VectorXd& w) const {
   const FitProblem all = problem(quick(), recording_.frames);
-  Ensemble run(model_, quick(), operators_);
-  run.restart(w, all.start);
+  const Eigen::VectorXd theta = model_.theta(w);
+  const auto run = quick().begin(theta, all.start);
+  std::vector<double> times;
+  for (const Frame& frame : recording_.frames) times.push_back(frame.time - model_.delay(theta));
   std::vector<Prediction> predictions;
   Rows out;
   out.offsets.push_back(0);
-  for (const Frame& frame : recording_.frames) {
+  quick().advance_through(*run, times, [&](std::size_t k, const Eigen::Ref<const Eigen::VectorXd>& u) {
     recording_.checkpoint();
-    run.advance(frame.time);
-    predictions.push_back(run.predict(frame).central);
+    predictions.push_back(predict_frame(model_, operators_, recording_.frames[k], theta, u));
     out.offsets.push_back(out.offsets.back() + predictions.back().measured.size());
-  }
+  });
   for (Eigen::VectorXd* v : {&out.error, &out.predicted, &out.used, &out.sigma})
     *v = Eigen::VectorXd::Zero(out.offsets.back());
   out.nodes = Eigen::VectorXi::Zero(out.offsets.back());
@@ -161,10 +162,10 @@ const std::vector<Frame>& Study::first_of_training(double share, std::vector<Fra
   return room;
 }
 
-BatchFit Study::quick_fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread, double share) const {
+BatchFit Study::quick_fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread, double share, double rival) const {
   std::vector<Frame> room;
   const std::vector<Frame>& frames = first_of_training(share, room);
-  return fit_batch(problem(quick(), frames), start, spread);
+  return fit_batch(problem(quick(), frames), start, spread, rival);
 }
 
 // Every full run says by how much quick ones are off there; a fit that allows for it says where the next one has to be.
@@ -217,7 +218,7 @@ Study::Place Study::scan_near(const Eigen::VectorXd& start, const std::vector<Ei
   const std::vector<Frame>& frames = first_of_training(share, room);
   const FitProblem train = problem(quick(), frames);
   const Eigen::VectorXd std = model_.prior_std();
-  Place best{start, std::numeric_limits<double>::infinity()};
+  Place best{start, coordinates.empty() ? free_fit(train, start).cost : std::numeric_limits<double>::infinity()};
   for (const Eigen::Index i : coordinates) {
     const Eigen::VectorXd from = best.w;
     const auto place = [&](int k) {
@@ -239,6 +240,16 @@ std::vector<Eigen::Index> Study::shared_with(const Study& base) const {
     if (base.index(model_.free_parameters()[i].name) >= 0) shared.push_back(static_cast<Eigen::Index>(i));
   }
   return shared;
+}
+
+std::vector<Eigen::Index> Study::tuning_shared_with(const Study& base) const {
+  const Eigen::VectorXd w = model_.prior_mean(), std = model_.prior_std();
+  std::vector<Eigen::Index> tuning;
+  for (const Eigen::Index i : shared_with(base)) {
+    if (!model_.same_answer(model_.theta(w), model_.theta(w + std[i] * Eigen::VectorXd::Unit(w.size(), i))))
+      tuning.push_back(i);
+  }
+  return tuning;
 }
 
 Eigen::VectorXd Study::extend(const Study& base, const Eigen::VectorXd& w) const {

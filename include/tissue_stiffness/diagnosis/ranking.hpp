@@ -61,6 +61,7 @@ struct Refit {
   double train_rms = 0.0, held_out_rms = 0.0;        ///< [m]
   double train_sigmas = 0.0, held_out_sigmas = 0.0;  ///< the same over sigma
   double p_value = 1.0;                              ///< of predicting the held-out frames no better
+  double fitted = 0.0;                               ///< cost of the training frames and the prior
   double cost = 0.0;                                 ///< sum of squared errors over sigma, all frames
   double cost_beside_mesh = 0.0;                     ///< of what no share of the mesh's change explains
   int added_parameters = 0;
@@ -70,7 +71,7 @@ struct Refit {
 /// Fits the training frames by simulation, from the base's fit and the proposals' own starts: in full, but where
 /// quick runs of a model that is not linear explain next to nothing. Throws NumericalError when
 /// no start can be run. `mesh_change`: of the base's rows by a finer mesh [sigma]; an effect that imitates it has no
-/// advantage.
-Refit refit(const Fitted& base, const std::vector<Addition>& additions, const Eigen::VectorXd& mesh_change);
+/// advantage. `rival`: what another refit was `fitted` with; where this one is no better it need not be the best.
+Refit refit(const Fitted& base, const std::vector<Addition>& additions, const Eigen::VectorXd& mesh_change, double rival);
 
 }  // namespace tissue_stiffness

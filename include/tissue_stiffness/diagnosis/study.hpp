@@ -52,8 +52,9 @@ class Study {
   Eigen::MatrixXd rows_along(const Eigen::VectorXd& w, const Eigen::MatrixXd& shapes, const Rows& rows) const;
   /// Fits the training frames.
   BatchFit fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread) const;
-  /// The same without full runs, of the first `share` of them.
-  BatchFit quick_fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread, double share = 1.0) const;
+  /// The same without full runs, of the first `share` of them. `rival`: see fit_batch.
+  BatchFit quick_fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread, double share = 1.0,
+                     double rival = std::numeric_limits<double>::infinity()) const;
   /// Lets quick runs be off by as much as those of a fitted model with fewer effects.
   void borrow(const Study& base);
   /// Where a coarse look along each coordinate of the prior finds the training frames explained best.
@@ -74,6 +75,8 @@ class Study {
   Eigen::Index index(const std::string& parameter) const;
   /// Indices of the free parameters that a model with fewer effects has, too.
   std::vector<Eigen::Index> shared_with(const Study& base) const;
+  /// Those of them that change how the body answers a load, or when that is seen: not what acts on it.
+  std::vector<Eigen::Index> tuning_shared_with(const Study& base) const;
   /// `w` of that model in the coordinates of this one; what is more stays at its prior.
   Eigen::VectorXd extend(const Study& base, const Eigen::VectorXd& w) const;
   /// Of the sigma points of a first fit from there: close around what that model has found, wide along what is more.
