@@ -34,6 +34,7 @@ constexpr double kMeshCounts = 0.2;    // rms of its error [sigma] from which le
 constexpr std::size_t kLeaders = 4;    // that are
 constexpr double kSeen = 0.5;          // of what a refit explains: a tangent that sees less is none
 constexpr double kFaithful = 0.9;      // and one that sees as much tells what others would explain
+constexpr double kReach = 1.05;        // times the best cost so far: fewer parameters may make up for less than that
 constexpr double kRival = 0.5;         // of a leader's evidence by tangents: less is no rival
 
 /// The search, stage by stage.
@@ -160,7 +161,7 @@ void Search::try_each(std::size_t count, const std::function<std::string(std::si
 void Search::refit_all(std::vector<std::vector<Addition>> list) {
   double rival = std::numeric_limits<double>::infinity();
   for (const Refit& r : refits_) {
-    if (r.way->linear) rival = std::min(rival, r.fitted);
+    if (r.way->linear) rival = std::min(rival, kReach * r.fitted);
   }
   // The longest fits first: the last one to end keeps one core busy only.
   std::vector<std::pair<std::ptrdiff_t, std::vector<Addition>>> trials;
