@@ -16,8 +16,7 @@ constexpr double kPriorWidth = 5.0;        // posterior standard deviations, of 
 constexpr double kRoom = 0.5;              // of the distance to a parameter's bound: the most that they have
 constexpr double kLeastShare = 1e-3;       // of the proposal's prior: the least
 constexpr double kMostOfMesh = 4.0 / 3.0;  // what ever finer meshes change: Richardson's, at second order
-constexpr double kNone = std::numeric_limits<double>::infinity();
-constexpr double kShares[] = {0.6, 1.0};  // of the training frames, fitted one after the other from a fit of the beginning
+constexpr double kShares[] = {0.6, 1.0};   // of the training frames, fitted one after the other from a fit of the beginning
 
 struct Start {
   Eigen::VectorXd w, spread;
@@ -135,7 +134,7 @@ std::optional<Start> quick_start(const Study& study, const Study& base, const st
 // From a fit of the beginning to one of everything.
 Start grown(const Study& study, Start start, double rival) {
   for (const double share : kShares) {
-    start.fit = study.quick_fit(start.w, start.spread, share, share < 1.0 ? kNone : rival);
+    start.fit = study.quick_fit(start.w, start.spread, share, share < 1.0 ? no_rival : rival);
     start.w = start.fit.w;
   }
   return start;
@@ -161,7 +160,7 @@ Refit refit(const Fitted& base, const std::vector<Addition>& additions, const Ei
   model->study = std::make_unique<Study>(settings, known);
   const Study& study = *model->study;
   model->study->borrow(known);
-  if (study.model().nonlinear()) rival = kNone;  // quick runs are off
+  if (study.model().nonlinear()) rival = no_rival;  // quick runs are off
   std::string reason;
   std::optional<Start> start = additions.front().begun
                                    ? grown(study, start_of(study, additions.front().scanned), rival)

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -159,7 +158,7 @@ void Search::try_each(std::size_t count, const std::function<std::string(std::si
 }
 
 void Search::refit_all(std::vector<std::vector<Addition>> list) {
-  double rival = std::numeric_limits<double>::infinity();
+  double rival = no_rival;
   for (const Refit& r : refits_) {
     if (r.way->linear) rival = std::min(rival, kReach * r.fitted);
   }

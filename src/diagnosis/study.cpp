@@ -90,16 +90,11 @@ FitProblem Study::problem(const ForwardModel& forward, const std::vector<Frame>&
 
 Study::Rows Study::rows(const Eigen::VectorXd& w) const {
   const FitProblem all = problem(quick(), recording_.frames);
-  const Eigen::VectorXd theta = model_.theta(w);
-  const auto run = quick().begin(theta, all.start);
-  std::vector<double> times;
-  for (const Frame& frame : recording_.frames) times.push_back(frame.time - model_.delay(theta));
   std::vector<Prediction> predictions;
   Rows out;
   out.offsets.push_back(0);
-  quick().advance_through(*run, times, [&](std::size_t k, const Eigen::Ref<const Eigen::VectorXd>& u) {
-    recording_.checkpoint();
-    predictions.push_back(predict_frame(model_, operators_, recording_.frames[k], theta, u));
+  run_freely(all, w, [&](const Frame& frame, const Eigen::VectorXd& theta, const Eigen::Ref<const Eigen::VectorXd>& u) {
+    predictions.push_back(predict_frame(model_, operators_, frame, theta, u));
     out.offsets.push_back(out.offsets.back() + predictions.back().measured.size());
   });
   for (Eigen::VectorXd* v : {&out.error, &out.predicted, &out.used, &out.sigma})

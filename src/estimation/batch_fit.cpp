@@ -114,7 +114,7 @@ AnchoredFilter fit_filter(const FitProblem& problem, AnchoredFilter filter, cons
       extrapolate.forget();
     } else if (const Eigen::VectorXd step = before.mean() - before.anchor(), to = extrapolate(before.anchor(), step, each);
                to != step) {
-      further = lowers(before.anchor() + shortened(to, prior), careful);
+      further = lowers(before.anchor() + shortened(to, prior), false);
       careful = !further;
       if (!further) extrapolate.forget();
     }

@@ -17,9 +17,14 @@ constexpr double kLevels[] = {0.3, 0.1, 0.03, 0.01};  // of the modal forces at 
 constexpr double kSearchLevel = 0.1;
 
 using Field = Eigen::Ref<const Eigen::VectorXd>;
-using Visit = std::function<void(const Frame&, const Eigen::VectorXd& theta, const Field& displacement)>;
 
-void run_freely(const FitProblem& problem, const Eigen::VectorXd& w, const Visit& visit) {
+Eigen::ArrayXd errors(const Prediction& p) {
+  return ((p.measured - p.predicted).cwiseQuotient(p.sigma)).array();
+}
+
+}  // namespace
+
+void run_freely(const FitProblem& problem, const Eigen::VectorXd& w, const ShowFrame& show) {
   const Eigen::VectorXd theta = problem.model.theta(w);
   const double delay = problem.model.delay(theta);
   const auto run = problem.forward.begin(theta, problem.start);
@@ -27,15 +32,9 @@ void run_freely(const FitProblem& problem, const Eigen::VectorXd& w, const Visit
   for (const Frame& frame : problem.frames) times.push_back(frame.time - delay);
   problem.forward.advance_through(*run, times, [&](std::size_t k, const Field& displacement) {
     problem.checkpoint();
-    visit(problem.frames[k], theta, displacement);
+    show(problem.frames[k], theta, displacement);
   });
 }
-
-Eigen::ArrayXd errors(const Prediction& p) {
-  return ((p.measured - p.predicted).cwiseQuotient(p.sigma)).array();
-}
-
-}  // namespace
 
 FreeFit fit_frame(const FitProblem& problem, const Frame& frame, const Eigen::VectorXd& theta,
                   const Eigen::Ref<const Eigen::VectorXd>& displacement) {

@@ -5,6 +5,13 @@
 #include <cmath>
 
 namespace tissue_stiffness {
+namespace {
+
+double scale_of(double data_cost, double rows) {
+  return rows > 0.0 ? std::max(1.0, data_cost / rows) : 1.0;
+}
+
+}  // namespace
 
 AnchoredFilter::AnchoredFilter(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance)
     : prior_mean_(mean), prior_information_(covariance.ldlt().solve(Eigen::MatrixXd::Identity(mean.size(), mean.size()))) {
@@ -81,7 +88,7 @@ AnchoredFilter::Innovation AnchoredFilter::update(const Eigen::VectorXd& y, cons
 }
 
 double AnchoredFilter::misfit_scale() const {
-  return std::max(1.0, mean_square());
+  return scale_of(data_cost_, rows_);
 }
 
 Eigen::MatrixXd AnchoredFilter::total_information() const {
@@ -110,8 +117,7 @@ Eigen::MatrixXd AnchoredFilter::robust_covariance() const {
 
 double AnchoredFilter::cost_at(const Eigen::VectorXd& w, double data_cost, double rows) const {
   const Eigen::VectorXd step = w - prior_mean_;
-  const double scale = rows > 0.0 ? std::max(1.0, data_cost / rows) : 1.0;
-  return data_cost + scale * step.dot(prior_information_ * step);
+  return data_cost + scale_of(data_cost, rows) * step.dot(prior_information_ * step);
 }
 
 bool AnchoredFilter::stale(double far, double wide, const Eigen::VectorXd& floor) const {

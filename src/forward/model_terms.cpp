@@ -116,7 +116,6 @@ std::vector<Relaxation> Model::relaxations(const Eigen::VectorXd& theta) const {
 }
 
 bool Model::same_answer(const Eigen::VectorXd& theta, const Eigen::VectorXd& other) const {
-  const auto same = [&](auto value) { return value(theta) == value(other); };
   for (const Part& part : parts_) {
     const Eigen::VectorXd p = part.parameters(theta), q = part.parameters(other);
     if (part.effect->nonlinear() && p != q) return false;
@@ -136,9 +135,11 @@ bool Model::same_answer(const Eigen::VectorXd& theta, const Eigen::VectorXd& oth
       if (term.modulus(p) != term.modulus(q) || term.time_constant(p) != term.time_constant(q)) return false;
     }
   }
-  return same([&](const auto& t) { return mass_factor(t); }) && same([&](const auto& t) { return mass_damping(t); }) &&
-         same([&](const auto& t) { return stiffness_damping(t); }) &&
-         same([&](const auto& t) { return stiffness_inertia(t); }) && same([&](const auto& t) { return delay(t); });
+  for (const auto value :
+       {&Model::mass_factor, &Model::mass_damping, &Model::stiffness_damping, &Model::stiffness_inertia, &Model::delay}) {
+    if ((this->*value)(theta) != (this->*value)(other)) return false;
+  }
+  return true;
 }
 
 Eigen::Vector3d Model::body_acceleration(const Eigen::VectorXd& theta) const {

@@ -123,23 +123,22 @@ class Builder {
   template <typename Response>
   static void extend(OrthonormalBasis& basis, const Response& respond, const Eigen::MatrixXd& loads,
                      const std::vector<SparseMatrix>& groups, Eigen::Index size) {
-    Eigen::Index before = basis.size();
     // No more at once than there is room for.
-    for (Eigen::Index at = 0; at < loads.cols() && basis.size() < size;) {
-      const Eigen::Index count = std::min(loads.cols() - at, size - basis.size());
-      basis.add(respond(loads.middleCols(at, count)), size);
-      at += count;
-    }
+    const auto add = [&](Eigen::Index columns, const auto& responses) {
+      for (Eigen::Index at = 0; at < columns && basis.size() < size;) {
+        const Eigen::Index count = std::min(columns - at, size - basis.size());
+        basis.add(responses(at, count), size);
+        at += count;
+      }
+    };
+    Eigen::Index before = basis.size();
+    add(loads.cols(), [&](auto at, auto count) { return respond(loads.middleCols(at, count)); });
     while (basis.size() > before && basis.size() < size) {
       const Eigen::MatrixXd block = basis.vectors().rightCols(basis.size() - before);
       const Eigen::MatrixXd inertia = basis.weighted().rightCols(block.cols());
       before = basis.size();
-      const Eigen::Index all = block.cols() * static_cast<Eigen::Index>(1 + groups.size());
-      for (Eigen::Index at = 0; at < all && basis.size() < size;) {
-        const Eigen::Index count = std::min(all - at, size - basis.size());
-        basis.add(respond.roughly(forces(block, inertia, groups, at, count)), size);
-        at += count;
-      }
+      add(block.cols() * static_cast<Eigen::Index>(1 + groups.size()),
+          [&](auto at, auto count) { return respond.roughly(forces(block, inertia, groups, at, count)); });
     }
   }
 

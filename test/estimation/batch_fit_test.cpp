@@ -111,14 +111,14 @@ class WithoutItsFoundation : public ::testing::Test {
 // Plain Gauss-Newton steps shrink before they are there: 25 of them leave a cost of 4.0 to 4.6 million.
 TEST_F(WithoutItsFoundation, ExtrapolatesStepsThatShrinkSlowly) {
   for (const double off : {-0.3, -0.1, 0.03, 0.1, 0.3}) {
-    const Fit found = fit(off, std::numeric_limits<double>::infinity());
+    const Fit found = fit(off, no_rival);
     std::printf("from %+.2f: %d runs, cost %.0f\n", off, found.runs, found.fit.cost);
     EXPECT_LT(found.fit.cost, 1e6);
   }
 }
 
 TEST_F(WithoutItsFoundation, EndsEarlyBesideARivalOutOfReach) {
-  const Fit alone = fit(0.1, std::numeric_limits<double>::infinity());
+  const Fit alone = fit(0.1, no_rival);
   const Fit near = fit(0.1, alone.fit.cost), hopeless = fit(0.1, -100.0 * alone.fit.cost);
   EXPECT_EQ(near.fit.w, alone.fit.w);
   EXPECT_EQ(near.runs, alone.runs);

@@ -54,7 +54,7 @@ class Study {
   BatchFit fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread) const;
   /// The same without full runs, of the first `share` of them. `rival`: see fit_batch.
   BatchFit quick_fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread, double share = 1.0,
-                     double rival = std::numeric_limits<double>::infinity()) const;
+                     double rival = no_rival) const;
   /// Lets quick runs be off by as much as those of a fitted model with fewer effects.
   void borrow(const Study& base);
   /// Where a coarse look along each coordinate of the prior finds the training frames explained best.

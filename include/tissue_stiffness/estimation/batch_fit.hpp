@@ -15,15 +15,18 @@ struct BatchFit {
   double cost = 0.0;           ///< sum of squared errors over sigma at w, the prior's included
 };
 
+constexpr double no_rival = std::numeric_limits<double>::infinity();
+
 /// Gauss-Newton on the free run's posterior from `start`, linearised over `spread` (filter coordinates) at first and later
 /// over what the data leave of each parameter beside the others. Steps that do not lower the cost are cut and damped
-/// (Marquardt 1963, eq. 28). Throws NumericalError when the run at `start` diverges.
-/// `rival`: a cost that is to be beaten; ends where the last fall is small beside what is missing.
+/// (Marquardt 1963, eq. 28), steps that shrink slowly extrapolated (Anderson 1965, J. ACM 12, p. 547). Throws
+/// NumericalError when the run at `start` diverges. `rival`: a cost that is to be beaten; ends where the last fall is small
+/// beside what is missing.
 BatchFit fit_batch(const FitProblem& problem, const Eigen::VectorXd& start, const Eigen::VectorXd& spread,
-                   double rival = std::numeric_limits<double>::infinity());
+                   double rival = no_rival);
 
 /// The same with any prior: that of `filter`, which has seen no frame. Ends anchored at the most probable parameters.
 AnchoredFilter fit_filter(const FitProblem& problem, AnchoredFilter filter, const Eigen::VectorXd& start,
-                          const Eigen::VectorXd& spread, double rival = std::numeric_limits<double>::infinity());
+                          const Eigen::VectorXd& spread, double rival = no_rival);
 
 }  // namespace tissue_stiffness

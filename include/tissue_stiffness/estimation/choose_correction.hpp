@@ -20,6 +20,11 @@ struct FitProblem {
   std::function<void()> checkpoint = [] {};
 };
 
+/// Shows every frame with the free run at w, ascending: theta, and the body's displacement (3n) when the frame was taken.
+using ShowFrame = std::function<void(const Frame& frame, const Eigen::VectorXd& theta,
+                                     const Eigen::Ref<const Eigen::VectorXd>& displacement)>;
+void run_freely(const FitProblem& problem, const Eigen::VectorXd& w, const ShowFrame& show);
+
 /// Sum over rows of the square error of the free run, in sigmas, each row's growing slower beyond the robust limit.
 struct FreeFit {
   double cost = 0.0, rows = 0.0;
