@@ -19,6 +19,7 @@
 namespace tissue_stiffness {
 namespace {
 
+constexpr int kVectors = 24;  // of the finer mesh: with half and with twice as many E moves by less than 1e-4
 constexpr int kMostIterations = 12;
 constexpr int kMostCuts = 4;
 constexpr double kSettled = 0.1;           // of the shift
@@ -83,6 +84,7 @@ TetMesh finer(const TetMesh& mesh, const MeshSettings& settings) {
 
 BasisOptions basis_beside(const TetMesh& mesh, const TetMesh& finer) {
   BasisOptions basis;
+  basis.size = kVectors;
   basis.coarser = std::make_shared<const Prolongation>(prolongation(mesh, finer));
   return basis;
 }

@@ -6,7 +6,7 @@
 
 namespace tissue_stiffness {
 
-SingleMatrix::SingleMatrix(const SparseMatrix& matrix) : begin_{0} {
+SingleMatrix::SingleMatrix(const SparseMatrix& matrix) {
   const auto count = static_cast<std::size_t>(matrix.rows() / 3);
   std::vector<int> place(count);  // of this node's block with each other
   begin_.reserve(count + 1);

@@ -2,6 +2,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,8 +24,8 @@ constexpr float kSmoothed = 8.0F;          // of the spectrum: the upper part th
 constexpr double kSafety = 1.1;            // of the largest eigenvalue that was found
 constexpr int kPowers = 12;                // iterations that find it
 constexpr double kTolerance = 3e-2;        // of a residual in the preconditioner's norm, before a last V-cycle
-constexpr int kTrials = 7;                 // V-cycles that tell how fast errors fall
-constexpr double kSlow = 0.82;             // what one may leave: where Poisson's ratio is 0.48, about
+constexpr int kTrials = 3;                 // V-cycles that tell how fast errors fall
+constexpr double kSlow = 0.71;             // what the last may leave: where Poisson's ratio is 0.48, about
 constexpr int kMostIterations = 12;        // more are no faster than a factor
 constexpr Eigen::Index kMostColumns = 32;  // at once
 constexpr Eigen::Index kGrain = 512, kShare = 4096;  // rows of a task, and of a summand
@@ -106,11 +107,13 @@ class TwoGrid::Iteration {
   double slowest() {
     for (Eigen::Index i = 0; i < x_.rows(); ++i) x_(i, 0) = static_cast<float>(wave(i));
     double before = 0.0, energy = 0.0;
-    for (int k = 0; k < kTrials; ++k) {
+    for (int k = 0; k <= kTrials; ++k) {
+      if (k > 0) {
+        v_cycle();
+        x_ -= z_;
+      }
       multiply(x_, [&](Eigen::Index j, const auto& product) { r_.row(j) = product; });
       before = std::exchange(energy, dot(x_, r_)[0]);
-      v_cycle();
-      x_ -= z_;
     }
     return std::sqrt(energy / before);
   }
@@ -201,23 +204,32 @@ class TwoGrid::Iteration {
   Rows x_, r_, z_, p_, rest_, d_, next_, coarse_;
 };
 
-TwoGrid::TwoGrid(SparseMatrix matrix, const std::vector<char>& fixed, const Prolongation& nodes)
-    : matrix_(std::move(matrix)), single_(matrix_) {
-  const Eigen::VectorXd diagonal = matrix_.diagonal();
-  inverse_diagonal_ = diagonal.cwiseInverse().cast<float>();
-  const auto couple = [&](Coarse coarse) {
+TwoGrid::TwoGrid(SparseMatrix&& matrix, const std::vector<char>& fixed, const Prolongation& nodes) {
+  take(matrix_, std::move(matrix));
+  tbb::parallel_invoke([&] { single_ = SingleMatrix(matrix_); }, [&] { find_spectrum(); }, [&] { couple(fixed, nodes); });
+  slow_ = !(Iteration(*this, 1).slowest() < kSlow);
+}
+
+// Functions of held nodes help beside a face; where few free nodes share many of them they depend on one another.
+void TwoGrid::couple(const std::vector<char>& fixed, const Prolongation& nodes) {
+  const auto to = [&](Coarse coarse) {
     prolongation_ = of_degrees_of_freedom(nodes, fixed, coarse);
     restriction_ = prolongation_.transpose();
     SparseMatrix below = to_coarse(matrix_);
     hold_idle(below);
     coarse_.factorize(below);
   };
-  // Functions of held nodes help beside a face; where few free nodes share many of them they depend on one another.
   try {
-    couple(Coarse::all);
+    to(Coarse::all);
   } catch (const NumericalError&) {
-    couple(Coarse::free);
+    to(Coarse::free);
   }
+}
+
+// By power iteration.
+void TwoGrid::find_spectrum() {
+  const Eigen::VectorXd diagonal = matrix_.diagonal();
+  inverse_diagonal_ = diagonal.cwiseInverse().cast<float>();
   Eigen::VectorXd x(matrix_.rows());
   for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = wave(i);
   for (int k = 0; k < kPowers; ++k) {
@@ -225,7 +237,6 @@ TwoGrid::TwoGrid(SparseMatrix matrix, const std::vector<char>& fixed, const Prol
     largest_ = kSafety * y.norm() / x.norm();
     x = y.normalized();
   }
-  slow_ = !(Iteration(*this, 1).slowest() < kSlow);
 }
 
 Eigen::MatrixXd TwoGrid::to_fine(const Eigen::MatrixXd& x) const {

@@ -18,7 +18,7 @@ StaticResponse::StaticResponse(SparseMatrix stiffness, const SparseMatrix& mass,
   if (!held) stiffness += kShift * stiffness.diagonal().sum() / mass.diagonal().sum() * mass;
   fix_dofs(stiffness, fixed_, stiffness.diagonal().mean());
   if (coarser != nullptr && stiffness.rows() > kLarge) {
-    grids_ = std::make_unique<TwoGrid>(std::move(stiffness), fixed_, *coarser);
+    grids_ = std::make_unique<const TwoGrid>(std::move(stiffness), fixed_, *coarser);
   } else {
     solver_.factorize(stiffness);
     factorised_ = true;

@@ -29,7 +29,7 @@ struct Body {
     fix_dofs(stiffness, fixed, stiffness.diagonal().mean());
   }
 
-  TwoGrid between() const { return {stiffness, fixed, prolongation(coarse, fine)}; }
+  TwoGrid between() const { return {SparseMatrix(stiffness), fixed, prolongation(coarse, fine)}; }
 
   // Smooth, rough, and none at all.
   Eigen::MatrixXd loads() const {

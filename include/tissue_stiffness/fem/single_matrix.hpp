@@ -10,6 +10,7 @@ namespace tissue_stiffness {
 /// couples: read once for many columns, each row of which serves three sums.
 class SingleMatrix {
  public:
+  SingleMatrix() = default;
   explicit SingleMatrix(const SparseMatrix& matrix);
 
   int nodes() const { return static_cast<int>(begin_.size()) - 1; }
@@ -17,8 +18,8 @@ class SingleMatrix {
   void multiply(int node, const float* x, long columns, float* y) const;
 
  private:
-  std::vector<int> begin_, others_;  ///< of each node's blocks; which node each couples to
-  std::vector<float> blocks_;        ///< nine a block, row by row
+  std::vector<int> begin_{0}, others_;  ///< of each node's blocks; which node each couples to
+  std::vector<float> blocks_;           ///< nine a block, row by row
 };
 
 }  // namespace tissue_stiffness

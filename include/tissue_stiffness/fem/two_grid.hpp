@@ -21,7 +21,7 @@ class TwoGrid {
   /// `matrix`: three rows a node, both triangles; rows and columns of `fixed` degrees of freedom zero but for their
   /// diagonal. `nodes`: P; the coarser mesh's nodes are the first of the finer one. Throws NumericalError when the matrix
   /// is not positive definite.
-  TwoGrid(SparseMatrix matrix, const std::vector<char>& fixed, const Prolongation& nodes);
+  TwoGrid(SparseMatrix&& matrix, const std::vector<char>& fixed, const Prolongation& nodes);
 
   /// Columns of about A^-1 b, where nothing is fixed, within a few percent of their energy norm; empty when a factor is
   /// faster (for a nearly incompressible body it is).
@@ -37,6 +37,8 @@ class TwoGrid {
 
  private:
   class Iteration;
+  void couple(const std::vector<char>& fixed, const Prolongation& nodes);
+  void find_spectrum();
 
   SparseMatrix matrix_;
   SingleMatrix single_;                      ///< the same
