@@ -40,9 +40,9 @@ class OrthonormalBasis {
     x = beside(std::move(x));
     for (Eigen::Index at = 0; at < x.cols() && size_ < most; at += kBlock) {
       const Eigen::Index count = std::min(kBlock, x.cols() - at), first = size_;
-      const Eigen::MatrixXd block = off(before, x.middleCols(at, count));
+      const Eigen::MatrixXd block = off(before, x.middleCols(at, count)), weighted = symmetric_product(mass_, block);
       for (Eigen::Index i = 0; i < count && size_ < most; ++i) {
-        if (norms[at + i] > 0.0) add_one(block.col(i), first);
+        if (norms[at + i] > 0.0) add_one(block.col(i), weighted.col(i), first);
       }
     }
   }
@@ -60,14 +60,17 @@ class OrthonormalBasis {
     return x;
   }
 
-  // x stands off the first `before` vectors already.
-  void add_one(Eigen::VectorXd x, Eigen::Index before) {
+  // x stands off the first `before` vectors already; weighted: M x.
+  void add_one(Eigen::VectorXd x, Eigen::VectorXd weighted, Eigen::Index before) {
     constexpr double dependent = 1e-7;  // of its norm: what a new direction keeps at least
+    constexpr double cancelled = 1e-3;  // of it: below, M x has lost digits
+    const double whole = std::sqrt(x.dot(weighted));
     for (int pass = 0; pass < 2; ++pass) {
       const Eigen::VectorXd share = weighted_.middleCols(before, size_ - before).transpose() * x;
       x.noalias() -= vectors_.middleCols(before, size_ - before) * share;
+      weighted.noalias() -= weighted_.middleCols(before, size_ - before) * share;
     }
-    const Eigen::VectorXd weighted = symmetric_product(mass_, x);
+    if (!(x.dot(weighted) > cancelled * cancelled * whole * whole)) weighted = symmetric_product(mass_, x);
     const double norm = std::sqrt(x.dot(weighted));
     if (!(norm > dependent)) return;
     vectors_.col(size_) = x / norm;
