@@ -42,8 +42,8 @@ ProposalContext context_of(const Study& base, const Eigen::VectorXd& w, bool wit
           within_noise};
 }
 
-Eigen::VectorXd difference(const Study::Rows& changed, const Study::Rows& base, double amplitude) {
-  return base.used.cwiseProduct(changed.predicted - base.predicted) / amplitude;
+Eigen::VectorXd difference(const Eigen::VectorXd& changed, const Study::Rows& base, double amplitude) {
+  return base.used.cwiseProduct(changed - base.predicted) / amplitude;
 }
 
 // How far the rows go from where the first frame has them, rms over all [sigma].
@@ -66,7 +66,7 @@ Eigen::VectorXd tangent(const Study& study, const Study::Rows& rest, double move
   for (int probe = 1;; ++probe) {
     Eigen::VectorXd moved = start;
     moved[j] += amplitude;
-    Eigen::VectorXd column = difference(study.rows(moved), rest, amplitude);
+    Eigen::VectorXd column = difference(study.predicted(moved), rest, amplitude);
     const double change = amplitude * column.norm() / std::sqrt(static_cast<double>(column.size()));
     if (!(change > kFar * moves) || moves == 0.0 || probe == kMostProbes) return column;
     amplitude *= kNear * moves / change;
@@ -147,7 +147,8 @@ double Candidate::p_value(const Score& score) const {
 }
 
 std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd& w, bool within_noise,
-                                       const std::vector<std::string>& ignore, const CountProgress& progress) {
+                                       const std::vector<std::string>& ignore, const CountProgress& progress,
+                                       Library& library) {
   const ProposalContext context = context_of(base, w, within_noise);
   std::vector<Candidate> all;
   for (const EffectSpec& spec : effect_specs()) {
@@ -175,7 +176,9 @@ std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd&
     done += candidates;
     progress(static_cast<std::size_t>(done + 1e-6), all.size());
   };
-  const auto study_of = [&](const std::vector<std::size_t>& members, int per_part, BasisOptions::Nonlinear nonlinear) {
+  const auto read = [&](const std::vector<std::size_t>& members, int per_part, BasisOptions::Nonlinear nonlinear,
+                        std::shared_ptr<const Study>& study) {
+    if (members.empty()) return;
     ModelSettings settings = base.model().settings();
     std::vector<Candidate*> candidates;
     for (const std::size_t c : members) {
@@ -185,16 +188,12 @@ std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd&
     BasisOptions options;
     options.per_part = per_part;
     options.nonlinear = nonlinear;
-    const Study study(settings, base, options);
-    read_tangents(study, base, w, candidates, over);
+    options.adopt = study != nullptr;
+    study = std::make_shared<const Study>(settings, study ? *study : base, options);
+    read_tangents(*study, base, w, candidates, over);
   };
-  tbb::parallel_invoke(
-      [&] {
-        if (!linear_ones.empty()) study_of(linear_ones, 4, BasisOptions::Nonlinear::left_out);
-      },
-      [&] {
-        if (!others.empty()) study_of(others, 16, BasisOptions::Nonlinear::first_order);
-      });
+  tbb::parallel_invoke([&] { read(linear_ones, 4, BasisOptions::Nonlinear::left_out, library.linear); },
+                       [&] { read(others, 16, BasisOptions::Nonlinear::first_order, library.others); });
   return all;
 }
 
@@ -206,7 +205,7 @@ Eigen::MatrixXd base_tangents(const Study& base, const Eigen::VectorXd& w, const
     Eigen::VectorXd up = w, down = w;
     up[i] += step;
     down[i] -= step;
-    out.col(i) = rows.used.cwiseProduct(base.rows(up).predicted - base.rows(down).predicted) / (2.0 * step);
+    out.col(i) = rows.used.cwiseProduct(base.predicted(up) - base.predicted(down)) / (2.0 * step);
   });
   return out;
 }

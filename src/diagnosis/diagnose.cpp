@@ -1,5 +1,6 @@
 #include "tissue_stiffness/diagnosis/diagnose.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -9,6 +10,7 @@
 #include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/estimation/mesh_error.hpp"
 #include "tissue_stiffness/estimation/posterior.hpp"
+#include "tissue_stiffness/forward/extra_force.hpp"
 #include "tissue_stiffness/settings/extend_model.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
@@ -49,6 +51,16 @@ DiagnosisStep step_of(const Fitted& model, const Recording& recording, const std
   step.held_out_rms = rms_error(model.rows, recording, true);
   step.noise_floor = noise_floor(model.rows);
   return step;
+}
+
+// What `next` has beyond the model acts on the body, or in a sensor, and leaves the body's own mass and stiffness alone.
+bool same_body(const Model& model, const Model& next) {
+  return std::all_of(next.parts().begin(), next.parts().end(), [&model](const Model::Part& part) {
+    const auto same = [&part](const Model::Part& known) { return known.label == part.label; };
+    const LinearTerms& terms = part.terms;
+    return std::any_of(model.parts().begin(), model.parts().end(), same) ||
+           (terms.mass.empty() && terms.stiffness.empty() && terms.strain_stiffness.empty() && !adds_extra_force(part));
+  });
 }
 
 // The noise that the model file states, and what the mesh adds to it: there is nothing left to look for.
@@ -133,12 +145,13 @@ Diagnosis diagnose(const ModelSettings& settings, const TetMesh& mesh, const Rec
   for (std::size_t k = 0; k < most; ++k) {
     if (k >= asked && finding.verdict != "missing" && finding.verdict != "unexplained") break;
     const std::vector<Refit> refits =
-        k < asked ? look(model, {options.add[k]}, options, finding.by_mesh).refits : finding.refits;
+        k < asked ? look(model, {options.add[k]}, options, finding.by_mesh, finding.library).refits : finding.refits;
     if (refits.empty() || (k >= asked && !proven(model, refits.front()))) break;
     if (k >= asked && finding.verdict == "unexplained" && !takes_a_part(model, refits.front(), recording)) break;
     const Refit& best = refits.front();
     for (const std::string& effect : best.effects) options.progress("add " + effect, 0, 0);
     Fitted next = extended(model, best);
+    const Library library = same_body(model.study->model(), next.study->model()) ? std::move(finding.library) : Library();
     out.final_effects.insert(out.final_effects.end(), best.effects.begin(), best.effects.end());
     out.entries.insert(out.entries.end(), best.entries.begin(), best.entries.end());
     model = std::move(next);
@@ -147,7 +160,7 @@ Diagnosis diagnose(const ModelSettings& settings, const TetMesh& mesh, const Rec
       out.final_verdict = "adequate";
       break;
     }
-    finding = look(model, {}, options, finding.by_mesh);
+    finding = look(model, {}, options, finding.by_mesh, library);
     out.final_verdict = finding.verdict;
   }
   out.estimate = summarise(model.study->model().free_parameters(), model.fit.w,

@@ -22,11 +22,12 @@ constexpr double kElsewhere = 0.2;
 
 }  // namespace
 
-FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Eigen::VectorXd change)
+FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Eigen::VectorXd change, Library earlier)
     : base(fitted),
       rows(fitted.rows.count()),
       cost(fitted.rows.error.squaredNorm()),
       first(change.size() == 0),
+      library(std::move(earlier)),
       mesh_change(std::move(change)) {
   const std::string step = "tangents of the library, and what a finer mesh would change";
   options.progress(step, 0, 0);
@@ -35,8 +36,9 @@ FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Eige
   const bool within_noise = noise() && options.add.empty();  // who asks for effects by name may have any
   tbb::parallel_invoke(
       [&] {
-        candidates = find_candidates(*base.study, base.fit.w, within_noise, options.ignore,
-                                     [&](std::size_t done, std::size_t total) { options.progress(step, done, total); });
+        candidates = find_candidates(
+            *base.study, base.fit.w, within_noise, options.ignore,
+            [&](std::size_t done, std::size_t total) { options.progress(step, done, total); }, library);
         known = base_tangents(*base.study, base.fit.w, base.fit.covariance.diagonal().cwiseSqrt(), r);
       },
       [&] {

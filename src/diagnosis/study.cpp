@@ -116,6 +116,19 @@ Study::Rows Study::rows(const Eigen::VectorXd& w) const {
   return out;
 }
 
+Eigen::VectorXd Study::predicted(const Eigen::VectorXd& w) const {
+  std::vector<double> out;
+  run_freely(problem(quick(), recording_.frames), w,
+             [&](const Frame& frame, const Eigen::VectorXd& theta, const Eigen::Ref<const Eigen::VectorXd>& u) {
+               const Prediction p = predict_frame(model_, operators_, frame, theta, u);
+               for (Eigen::Index i = 0; i < p.predicted.size(); ++i) {
+                 const double row = p.predicted[i] / p.sigma[i];
+                 out.push_back(std::isfinite(row) ? row : 0.0);
+               }
+             });
+  return Eigen::Map<const Eigen::VectorXd>(out.data(), static_cast<Eigen::Index>(out.size()));
+}
+
 Eigen::MatrixXd Study::rows_along(const Eigen::VectorXd& w, const Eigen::MatrixXd& shapes, const Rows& rows) const {
   const FitProblem all = problem(quick(), recording_.frames);
   const Eigen::VectorXd theta = model_.theta(w);

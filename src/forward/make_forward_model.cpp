@@ -10,7 +10,8 @@ std::unique_ptr<ForwardModel> make_forward_model(const Model& model) {
 
 std::unique_ptr<ForwardModel> make_forward_model(const Model& model, const BasisOptions& basis,
                                                  const ForwardModel* relative) {
-  const auto* reduced = dynamic_cast<const ReducedModel*>(relative);
+  const auto* first_order = dynamic_cast<const FirstOrderModel*>(relative);
+  const auto* reduced = first_order != nullptr ? &first_order->reduced() : dynamic_cast<const ReducedModel*>(relative);
   const bool left_out = basis.nonlinear == BasisOptions::Nonlinear::left_out;
   if (!model.nonlinear() || left_out) return std::make_unique<ReducedModel>(model, basis, reduced);
   if (basis.nonlinear == BasisOptions::Nonlinear::first_order) {

@@ -95,9 +95,33 @@ ReducedModel::ReducedModel(const Model& model, const BasisOptions& options, cons
   if (model.nonlinear() && options.nonlinear == BasisOptions::Nonlinear::in_full) {
     throw InputError("model", "a nonlinear effect", "linear effects only, in a reduced basis");
   }
-  basis_ = build_reduced_basis(model, options, relative != nullptr ? relative->basis_.root : nullptr);
+  basis_ = options.adopt && relative != nullptr
+               ? adopted(*relative)
+               : build_reduced_basis(model, options, relative != nullptr ? relative->basis_.root : nullptr);
   if (!options.keep_root) basis_.root = nullptr;
   project();
+}
+
+// Its vectors, but for those of supports that this model has not.
+ReducedBasis ReducedModel::adopted(const ReducedModel& relative) const {
+  const ReducedBasis& of = relative.basis_;
+  ReducedBasis out{Eigen::MatrixXd(of.vectors.rows(), of.vectors.cols()), {}, {}, of.root};
+  Eigen::Index count = 0;
+  for (std::size_t i = 0; i < of.support.size(); ++i) {
+    int support = -1;
+    if (of.support[i] >= 0) {
+      const std::string& label = relative.model_.parts()[static_cast<std::size_t>(of.support[i])].label;
+      const auto part = std::find_if(model_.parts().begin(), model_.parts().end(),
+                                     [&label](const Model::Part& p) { return p.label == label; });
+      if (part == model_.parts().end()) continue;
+      support = static_cast<int>(part - model_.parts().begin());
+    }
+    out.vectors.col(count++) = of.vectors.col(static_cast<Eigen::Index>(i));
+    out.support.push_back(support);
+    out.late.push_back(of.late[i]);
+  }
+  out.vectors.conservativeResize(Eigen::NoChange, count);
+  return out;
 }
 
 void ReducedModel::project() {

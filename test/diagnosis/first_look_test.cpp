@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "../box_model.hpp"
+#include "tissue_stiffness/settings/extend_model.hpp"
 #include "verification/experiment.hpp"
 
 namespace tissue_stiffness {
@@ -63,6 +64,29 @@ TEST_F(BarWithADamping, CountsAmplitudesFromWhereAnEffectIsAbsent) {
   for (const Candidate& candidate : look.candidates) absent[candidate.effect] = candidate.absent;
   EXPECT_EQ(absent.at("image_scale"), 1.0);
   EXPECT_EQ(absent.at("viscous_damping"), 0.0);
+}
+
+// What an earlier look's models hold, they hold once one of its effects has been added, too.
+TEST_F(BarWithADamping, ReadsTangentsInTheVectorsOfAnEarlierLook) {
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(base_.rows.error.size());
+  const FirstLook first(base_, {}, none);
+  ModelSettings damped = given_;
+  add_effect(damped, "viscous_damping: {beta: {prior: 5.0e-3, factor: 2}}");
+  Fitted next;
+  next.study = std::make_unique<Study>(damped, *base_.study);
+  const Model& model = next.study->model();
+  next.fit = next.study->fit(model.prior_mean(), 0.1 * model.prior_std());
+  next.rows = next.study->rows(next.fit.w);
+  const FirstLook alone(next, {}, none), after(next, {}, none, first.library);
+  ASSERT_EQ(alone.candidates.size(), after.candidates.size());
+  double worst = 0.0;
+  for (std::size_t c = 0; c < alone.candidates.size(); ++c) {
+    const Eigen::MatrixXd &a = alone.candidates[c].tangent.columns, &b = after.candidates[c].tangent.columns;
+    EXPECT_NE(a, b) << alone.candidates[c].effect;
+    worst = std::max(worst, (a - b).norm() / a.norm());
+  }
+  std::printf("tangents in an earlier look's vectors: off by %.1e at most\n", worst);
+  EXPECT_LT(worst, 0.02);
 }
 
 // Most of it, and more where much is left beside the noise; of two effects, nearly all.

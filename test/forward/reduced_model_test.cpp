@@ -42,6 +42,7 @@ void push(Model& model) {
     Eigen::VectorXd wrench = Eigen::VectorXd::Zero(6);
     wrench.head<3>() << 2e-3 * std::sin(20.0 * t), 0.0, 4e-3 * std::cos(9.0 * t);
     model.courses().at("/wrench")->add(t, wrench);
+    if (model.courses().count("/pressure") == 0) continue;
     model.courses().at("/pressure")->add(t, Eigen::VectorXd::Constant(1, 5.0 * std::sin(14.0 * t)));
   }
 }
@@ -81,6 +82,31 @@ TEST(ReducedModel, TakesOverARelativesRootOnlyWhereItIsItsOwn) {
   const auto root = build_reduced_basis(base, options).root;
   EXPECT_EQ(build_reduced_basis(more, options, root).root, root);
   EXPECT_NE(build_reduced_basis(other, options, root).root, root);
+}
+
+// What was absent there acts here, in another place of the list; of a support that is missing here nothing is left.
+TEST(ReducedModel, AdoptsTheVectorsOfARelativeThatHeldItsEffects) {
+  const TetMesh mesh = bar_mesh(5);
+  const std::string modulus = elastic("{prior: 3.0e4, factor: 2}"), wrench = "traction: {region: tip, topic: /wrench}";
+  const Model wide(box_settings({kInertia, modulus, kFixed, wrench, "mass_damping: {alpha: {mean: 0, std: 1}}",
+                                 "elastic_support: {region: clamp, compliance: {mean: 0, std: 1.0e-7}}",
+                                 "gravity: {acceleration: {mean: [0, 0, 0], std: 3}}"}),
+                   mesh);
+  Model narrow(box_settings({kInertia, modulus, "gravity: {acceleration: [0.5, 1, -2]}", kFixed, wrench,
+                             "mass_damping: {alpha: 1}", "pressure: {region: top, topic: /pressure}"}),
+               mesh);
+  push(narrow);
+  const ReducedModel relative(wide);
+  BasisOptions options;
+  options.adopt = true;
+  const ReducedModel reduced(narrow, options, &relative);
+  const Eigen::Index kept = reduced.basis().cols();
+  EXPECT_EQ(relative.basis().cols() - kept, options.released);
+  EXPECT_EQ(reduced.basis(), relative.basis().leftCols(kept));
+  const double off = full_against_reduced(narrow, reduced, prior(narrow), 2e-4);
+  std::printf("in a relative's vectors: %.1e of the motion\n", off);
+  EXPECT_LT(off, 1e-3);
+  EXPECT_EQ(ReducedModel(wide, options, &relative).basis(), relative.basis());
 }
 
 TEST(ReducedModel, FollowsTheFullOneWithSeveralModuli) {

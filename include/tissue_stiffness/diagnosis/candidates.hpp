@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -27,14 +28,21 @@ struct Candidate {
   double p_value(const Score& score) const;
 };
 
+/// The models that the tangents were read from: of what is linear, and of the others.
+struct Library {
+  std::shared_ptr<const Study> linear, others;
+};
+
 using CountProgress = std::function<void(std::size_t done, std::size_t total)>;
 
 /// Everything that the library proposes for the fitted base model, but for effects to `ignore` and, `within_noise`, for
 /// those that only a visible error asks for. The tangents of all linear ones come from one reduced model that holds them
 /// all at their absent values, those of the others from one at first order. What is not linear in the base is left out of
-/// it. `progress` hears how many of them are done, from any thread.
+/// it. `library`: that of an earlier look, from before the base had an effect that does not change how its body answers
+/// loads: its vectors are taken over; replaced by this look's. `progress` hears how many of them are done, from any thread.
 std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd& w, bool within_noise,
-                                       const std::vector<std::string>& ignore, const CountProgress& progress);
+                                       const std::vector<std::string>& ignore, const CountProgress& progress,
+                                       Library& library);
 
 /// d rows / d w of the fitted base model, in sigmas: N x free parameters.
 Eigen::MatrixXd base_tangents(const Study& base, const Eigen::VectorXd& w, const Eigen::VectorXd& std,

@@ -16,13 +16,14 @@ struct Finding {
   std::vector<Refit> refits;           ///< best first
   double floor = 0.0;                  ///< rms of what a finer mesh would change [sigma]
   Eigen::VectorXd by_mesh;             ///< what a finer mesh would change of each row [sigma]
+  Library library;                     ///< that the tangents were read from
 };
 
 /// Ranks the library by tangents, refits the best (or `wanted` ones, if any), and the best pairs where no single effect
-/// explains the error. `by_mesh`: as an earlier look at the same recording found it; empty: found out now. Throws
-/// InputError for a wanted effect that nothing proposes.
+/// explains the error. `by_mesh`: as an earlier look at the same recording found it; empty: found out now.
+/// `library`: see find_candidates. Throws InputError for a wanted effect that nothing proposes.
 Finding look(const Fitted& base, const std::vector<std::string>& wanted, const DiagnosisOptions& options,
-             const Eigen::VectorXd& by_mesh = {});
+             const Eigen::VectorXd& by_mesh = {}, const Library& library = {});
 
 /// rms over what has to be left, of a fit that need not be bettered.
 constexpr double kExplained = 1.02;

@@ -12,13 +12,14 @@ namespace tissue_stiffness {
 /// What a fitted model's error shows before anything is refitted: the library, ranked by its tangents, and the mesh's part.
 struct FirstLook {
   /// `by_mesh`: what a finer mesh changes, as an earlier look at the same recording found it; found out now where it is
-  /// empty or zero, or makes the error much larger.
-  FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Eigen::VectorXd by_mesh);
+  /// empty or zero, or makes the error much larger. `library`: see find_candidates.
+  FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Eigen::VectorXd by_mesh, Library library = {});
 
   const Fitted& base;
   const double rows, cost;  ///< number, and sum of squared errors [sigma^2]
   const bool first;         ///< no earlier look at the same recording
   std::vector<Candidate> candidates;
+  Library library;                 ///< that they were read from
   Eigen::MatrixXd known;           ///< tangents of the base's parameters
   Eigen::VectorXd mesh_change;     ///< of each row, by a finer mesh [sigma]; zero where that makes the error much larger
   double by_mesh = 0.0;            ///< of the sum of squared errors

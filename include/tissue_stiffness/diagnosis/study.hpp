@@ -48,6 +48,8 @@ class Study {
   /// The free run at w. Of a nonlinear model it is off by as much as quick runs were at the last full run of a fit, here or
   /// in the study that was borrowed from.
   Rows rows(const Eigen::VectorXd& w) const;
+  /// What it predicts of each row, over sigma; 0 where that is not finite.
+  Eigen::VectorXd predicted(const Eigen::VectorXd& w) const;
   /// d rows / d amplitude of each of `shapes` (3n x count) as a further displacement of the free run at w, N x count.
   Eigen::MatrixXd rows_along(const Eigen::VectorXd& w, const Eigen::MatrixXd& shapes, const Rows& rows) const;
   /// Fits the training frames.

@@ -25,6 +25,8 @@ class FirstOrderModel : public ForwardModel {
   void focus(const std::vector<int>& nodes) override { reduced_.focus(nodes); }
   std::string description() const override;
 
+  const ReducedModel& reduced() const { return reduced_; }
+
  private:
   ReducedModel reduced_;
   PackedMatrix basis_, transposed_;

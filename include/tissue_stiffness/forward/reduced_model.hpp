@@ -33,7 +33,8 @@ struct ReducedModes {
 class ReducedModel : public ForwardModel {
  public:
   /// Throws InputError for a model that nothing moves, and for a nonlinear one that is to be simulated in full.
-  /// `relative`: a model of the same body, whose basis' root is taken over where it is this one's too.
+  /// `relative`: a model of the same body, whose basis' root is taken over where it is this one's too; or all of it, where
+  /// the options say so.
   explicit ReducedModel(const Model& model, const BasisOptions& options = {}, const ReducedModel* relative = nullptr);
 
   std::unique_ptr<Trajectory> start(const Eigen::VectorXd& theta, double start) const override;
@@ -95,6 +96,7 @@ class ReducedModel : public ForwardModel {
     Eigen::VectorXd shape;
     std::shared_ptr<const Eigen::MatrixXd> projected;
   };
+  ReducedBasis adopted(const ReducedModel& relative) const;
   std::shared_ptr<const Eigen::MatrixXd> shaped(const StrainTerm& term, const Eigen::VectorXd& parameters) const;
   void project();
   void project_part(std::size_t part);
