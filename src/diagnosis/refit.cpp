@@ -3,6 +3,7 @@
 #include <limits>
 #include <optional>
 
+#include "tissue_stiffness/diagnosis/fitted_entry.hpp"
 #include "tissue_stiffness/diagnosis/ranking.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
@@ -10,11 +11,7 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr double kSpread = 0.05;           // prior standard deviations, around the fit of a beginning
-constexpr double kLeastFactor = 1.02;      // of a log-normal prior in the proposed model file
 constexpr double kPromise = 0.1;           // of the structured part: what quick runs have to explain before a full one
-constexpr double kPriorWidth = 5.0;        // posterior standard deviations, of the proposed priors
-constexpr double kRoom = 0.5;              // of the distance to a parameter's bound: the most that they have
-constexpr double kLeastShare = 1e-3;       // of the proposal's prior: the least
 constexpr double kMostOfMesh = 4.0 / 3.0;  // what ever finer meshes change: Richardson's, at second order
 constexpr double kShares[] = {0.6, 1.0};   // of the training frames, fitted one after the other from a fit of the beginning
 
@@ -71,47 +68,6 @@ std::vector<Start> starts(const Study& study, const Study& base, const Eigen::Ve
 Start start_of(const Study& study, const std::map<std::string, double>& parameters) {
   const Model& model = study.model();
   return {model.coordinates(parameters, model.prior_mean()), kSpread * model.prior_std(), {}};
-}
-
-// Where `key: {` begins among an entry's arguments; the effect's own name may end like a key.
-std::size_t find_quantity(const std::string& entry, const std::string& key) {
-  for (std::size_t at = entry.find(key + ": {"); at != std::string::npos; at = entry.find(key + ": {", at + 1)) {
-    if (at > 0 && (entry[at - 1] == ' ' || entry[at - 1] == '{')) return at;
-  }
-  return std::string::npos;
-}
-
-// A prior that reaches beyond the parameter's bounds would have sigma points where no body can be.
-double within_bounds(double width, const FreeParameter& p, double value) {
-  return std::min(width, kRoom * std::min(value - p.lower, p.upper - value));
-}
-
-// "name: {key: value, ...}" with every estimated parameter's quantity replaced by its fit.
-std::string fitted_entry(const Study& study, const Study& base, const BatchFit& fit, const Candidate& way) {
-  std::string out = way.proposal.refine;
-  for (std::size_t i = 0; i < study.model().free_parameters().size(); ++i) {
-    const FreeParameter& p = study.model().free_parameters()[i];
-    if (base.index(p.name) >= 0 || p.name.rfind(way.effect, 0) != 0) continue;
-    const std::string key = p.name.substr(p.name.rfind('.') + 1);
-    const auto k = static_cast<Eigen::Index>(i);
-    const double width = kPriorWidth * std::sqrt(fit.covariance(k, k));
-    const bool vector = key.size() > 2 && key.compare(key.size() - 2, 2, "_x") == 0 && k + 2 < fit.w.size();
-    const std::string name = vector ? key.substr(0, key.size() - 2) : key;
-    const std::size_t at = find_quantity(out, name);
-    if (at == std::string::npos) continue;  // second and third components are written with the first
-    if (vector) {
-      const Eigen::Vector3d mean = fit.w.segment<3>(k);
-      out.replace(at, out.find('}', at) + 1 - at,
-                  name + ": " + normal(mean, std::max(width, kLeastShare * p.prior.spread)));
-      continue;
-    }
-    const bool positive = p.prior.kind == Quantity::Kind::log_normal;
-    const std::string quantity =
-        positive ? log_normal(p.to_value(fit.w[k]), std::max(std::exp(std::min(width, 3.0)), kLeastFactor))
-                 : normal(p.to_value(fit.w[k]), std::max(within_bounds(width, p, fit.w[k]), kLeastShare * p.prior.spread));
-    out.replace(at, out.find('}', at) + 1 - at, key + ": " + quantity);
-  }
-  return out;
 }
 
 // The start whose fit without full runs is best. A run that rings may need the base's parameters in another minimum.
@@ -178,7 +134,8 @@ Refit refit(const Fitted& base, const std::vector<Addition>& additions, const Ei
   out.way = additions.front().way;
   for (const Addition& addition : additions) {
     out.effects.push_back(addition.way->effect);
-    out.entries.push_back(fitted_entry(study, known, start->fit, *addition.way));
+    const std::string& label = settings.effects[settings.effects.size() - additions.size() + out.entries.size()].label;
+    out.entries.push_back(fitted_entry(addition.way->proposal.refine, label, study.model(), start->fit));
   }
   out.parameters = study.model().values(start->fit.w);
   out.train_rms = rms_error(rows, known.recording(), false);

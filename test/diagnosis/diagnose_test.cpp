@@ -10,6 +10,7 @@
 #include "tissue_stiffness/diagnosis/finding.hpp"
 #include "tissue_stiffness/diagnosis/first_look.hpp"
 #include "tissue_stiffness/forward/full_model.hpp"
+#include "tissue_stiffness/settings/extend_model.hpp"
 #include "verification/experiment.hpp"
 
 namespace tissue_stiffness {
@@ -145,6 +146,23 @@ TEST(Diagnose, AddsWhatItIsTold) {
   EXPECT_NEAR(d.steps.back().parameters.at("mass_damping.alpha"), 1.5, 0.15);
   options.add = {"pressure"};
   EXPECT_NE(refusal([&] { diagnose_bar(film({}, 1), options); }).find("--add"), std::string::npos);
+}
+
+// The first one's fit made up for the second.
+TEST(Diagnose, ProposesWhatItAddedAsTheLastFitHasIt) {
+  DiagnosisOptions options;
+  options.add = {"mass_damping", "added_mass"};
+  const Diagnosis d =
+      diagnose_bar(film({"mass_damping: {alpha: 1.5}", "added_mass: {region: tip, mass: 0.004}"}, 2), options);
+  ASSERT_EQ(d.steps.size(), 3U);
+  const double alone = d.steps[1].parameters.at("mass_damping.alpha"),
+               last = d.steps[2].parameters.at("mass_damping.alpha");
+  EXPECT_GT(std::abs(alone - last), 0.01 * last);
+  const Model next(extend_model(box_settings(bar("{prior: 35.0e3, factor: 3}")), d.entries), bar_mesh());
+  for (const auto& [name, value] : d.steps[2].parameters) {
+    if (name == "elasticity.young_modulus") continue;
+    EXPECT_NEAR(next.values(next.prior_mean()).at(name), value, 1e-4 * std::abs(value)) << name;
+  }
 }
 
 TEST(Diagnose, NamesTwoEffectsThatAreMissingTogether) {
