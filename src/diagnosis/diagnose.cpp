@@ -138,7 +138,7 @@ Diagnosis diagnose(const ModelSettings& settings, const TetMesh& mesh, const Rec
   for (const std::string& name : options.ignore) effect_spec({name, name, {}});  // throws what is none
   Diagnosis out;
   options.progress("fit of the given model", 0, 0);
-  Fitted model = fit_model(settings, mesh, recording);
+  Fitted given, model = fit_model(settings, mesh, recording);
   out.steps.push_back(step_of(model, recording, {}));
   Finding finding = look(model, {}, options);
   if (finding.verdict == "missing" || finding.verdict == "unexplained") {
@@ -166,6 +166,7 @@ Diagnosis diagnose(const ModelSettings& settings, const TetMesh& mesh, const Rec
     const Library library = same_body(model.study->model(), next.study->model()) ? std::move(finding.library) : Library();
     out.final_effects.insert(out.final_effects.end(), best.effects.begin(), best.effects.end());
     out.entries.insert(out.entries.end(), best.entries.begin(), best.entries.end());
+    if (!given.study) given = std::move(model);
     model = std::move(next);
     out.steps.push_back(step_of(model, recording, out.final_effects));
     if (k + 1 >= asked && is_noise(model.rows, finding.floor)) {
@@ -179,6 +180,7 @@ Diagnosis diagnose(const ModelSettings& settings, const TetMesh& mesh, const Rec
   out.estimate = summarise(model.study->model().free_parameters(), model.fit.w,
                            model.fit.covariance + doubt_of_nonlinear(model, recording));
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+  options.at_end(out, given.study ? given : model, model);
   return out;
 }
 

@@ -129,6 +129,12 @@ Eigen::VectorXd Study::predicted(const Eigen::VectorXd& w) const {
   return Eigen::Map<const Eigen::VectorXd>(out.data(), static_cast<Eigen::Index>(out.size()));
 }
 
+void Study::show(const Eigen::VectorXd& w, const FreeFrameVisitor& visit) {
+  forward_->focus({});
+  const FitProblem all = problem(*forward_, recording_.frames);
+  free_run({model_, *forward_, operators_, all.frames, all.start}, model_.theta(w), visit);
+}
+
 Eigen::MatrixXd Study::rows_along(const Eigen::VectorXd& w, const Eigen::MatrixXd& shapes, const Rows& rows) const {
   const FitProblem all = problem(quick(), recording_.frames);
   const Eigen::VectorXd theta = model_.theta(w);

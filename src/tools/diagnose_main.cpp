@@ -4,7 +4,9 @@
 #include <functional>
 #include <iostream>
 #include <iterator>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "tissue_stiffness/diagnosis/diagnose.hpp"
 #include "tissue_stiffness/diagnosis/replay_model.hpp"
@@ -28,13 +30,13 @@ std::string read_text(const std::string& file) {
 
 using namespace tissue_stiffness;
 
-/// What an estimator makes of the last step's model; of a model that is integrated in full what the fit made of it: that
-/// would take as long as the diagnosis.
-Estimate estimate_at_last(const ModelSettings& settings, const TetMesh& mesh, const Recording& recording,
-                          const Diagnosis& diagnosis) {
-  const ModelSettings last = extend_model(settings, diagnosis.entries);
-  if (Model(last, mesh).nonlinear()) return diagnosis.estimate;
-  Estimator estimator(last, mesh);
+/// What an estimator makes of the last model; of one that is integrated in full what the fit made of it: that would take as
+/// long as the diagnosis.
+Estimate estimate_at_last(const Diagnosis& diagnosis, const Fitted& given, const Fitted& last) {
+  if (last.study->model().nonlinear()) return diagnosis.estimate;
+  const Recording& recording = given.study->recording();
+  const Model& model = given.study->model();
+  Estimator estimator(extend_model(model.settings(), diagnosis.entries), model.mesh());
   estimator.set_first_stamp(recording.first_stamp);
   for (const LoadSample& load : recording.loads) estimator.add_load(load);
   estimator.replay(recording.frames);
@@ -50,21 +52,25 @@ void try_run(const std::string& what, const std::function<void()>& run) {
   }
 }
 
-/// The given model's free run and, where effects were added, the last one's.
-Showing show(const ModelSettings& settings, const RecordingReader& reader, const Recording& recording,
-             const Diagnosis& diagnosis) {
-  const BagReader& bag = reader.reader();
-  const std::vector<double> stamps = bag.picture_stamps();
-  Showing out{recording.first_stamp, {}, bag.pictures()};
-  out.replays.push_back(replay_model(settings, reader.mesh(), recording, diagnosis.steps.front().parameters, stamps));
-  out.replays.back().name = "as given";
-  if (diagnosis.entries.empty()) return out;
-  try_run("the extended model", [&] {
-    const ModelSettings extended = extend_model(settings, diagnosis.entries);
-    out.replays.push_back(replay_model(extended, reader.mesh(), recording, diagnosis.steps.back().parameters, stamps));
-    out.replays.back().name = "with " + effect_list(diagnosis.final_effects);
-  });
-  return out;
+/// What the report shows beyond the diagnosis: the estimate, and the free runs of the given model and, where effects were
+/// added, the last one's.
+void run_once_more(const Diagnosis& diagnosis, Fitted& given, Fitted& last, const std::vector<double>& stamps,
+                   Estimate& estimate, std::vector<Replay>& replays) {
+  const auto replay = [&](Fitted& fitted, const std::string& name) {
+    Replay out = replay_model(fitted, stamps);
+    out.name = name;
+    return out;
+  };
+  Replay extended;
+  replays.emplace_back();
+  tbb::parallel_invoke([&] { try_run("the estimator", [&] { estimate = estimate_at_last(diagnosis, given, last); }); },
+                       [&] { replays.front() = replay(given, "as given"); },
+                       [&] {
+                         if (&last == &given) return;
+                         try_run("the extended model",
+                                 [&] { extended = replay(last, "with " + effect_list(diagnosis.final_effects)); });
+                       });
+  if (!extended.name.empty()) replays.push_back(std::move(extended));
 }
 
 }  // namespace
@@ -94,20 +100,19 @@ int main(int argc, char** argv) {
     say("read the recording");
     const Recording recording = read_recording(reader, settings, texts.recording);
     options.progress = say;
+    std::optional<Estimate> estimate;
+    Showing showing{recording.first_stamp, {}, reader.reader().pictures()};
+    options.at_end = [&](const Diagnosis& found, Fitted& given, Fitted& last) {
+      say("run the models once more for the report");
+      estimate = found.estimate;
+      run_once_more(found, given, last, reader.reader().picture_stamps(), *estimate, showing.replays);
+    };
     Diagnosis diagnosis = diagnose(settings, reader.mesh(), recording, options);
+    diagnosis.estimate = *estimate;
     for (int i = 0; i < argc; ++i) texts.command_line += (i > 0 ? " " : "") + std::string(i > 0 ? argv[i] : "diagnose");
     texts.model_text = read_text(texts.model);
     texts.next_model_text = extend_model(texts.model_text, diagnosis.entries, settings.directory);
     texts.versions = versions();
-    say("run the models once more for the report");
-    Showing showing;
-    Estimate estimate = diagnosis.estimate;
-    tbb::parallel_invoke(
-        [&] {
-          try_run("the estimator", [&] { estimate = estimate_at_last(settings, reader.mesh(), recording, diagnosis); });
-        },
-        [&] { showing = show(settings, reader, recording, diagnosis); });
-    diagnosis.estimate = std::move(estimate);
     write_diagnosis(diagnosis, texts, showing, output);
     progress.finish();
     if (json) {

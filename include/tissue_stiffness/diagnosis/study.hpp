@@ -7,6 +7,7 @@
 
 #include "tissue_stiffness/diagnosis/recording.hpp"
 #include "tissue_stiffness/estimation/batch_fit.hpp"
+#include "tissue_stiffness/estimation/free_run.hpp"
 #include "tissue_stiffness/forward/anchored_model.hpp"
 #include "tissue_stiffness/forward/reduced_model.hpp"
 
@@ -50,6 +51,8 @@ class Study {
   Rows rows(const Eigen::VectorXd& w) const;
   /// What it predicts of each row, over sigma; 0 where that is not finite.
   Eigen::VectorXd predicted(const Eigen::VectorXd& w) const;
+  /// The free run at w, full of a nonlinear model, and where every node is: `visit` sees each frame.
+  void show(const Eigen::VectorXd& w, const FreeFrameVisitor& visit);
   /// d rows / d amplitude of each of `shapes` (3n x count) as a further displacement of the free run at w, N x count.
   Eigen::MatrixXd rows_along(const Eigen::VectorXd& w, const Eigen::MatrixXd& shapes, const Rows& rows) const;
   /// Fits the training frames.
