@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "tissue_stiffness/diagnosis/finding.hpp"
-#include "tissue_stiffness/diagnosis/fitted_entry.hpp"
+#include "tissue_stiffness/diagnosis/fit_entries.hpp"
 #include "tissue_stiffness/diagnosis/missing_force.hpp"
 #include "tissue_stiffness/diagnosis/residual_views.hpp"
 #include "tissue_stiffness/effects/registry.hpp"
@@ -81,16 +81,6 @@ void describe_residual(const Fitted& model, double floor, Diagnosis& out) {
   out.sigmas.structured = std::sqrt(std::max(0.0, out.sigmas.total * out.sigmas.total - 1.0));
   const double total = std::sqrt(model.rows.error.cwiseProduct(model.rows.sigma).squaredNorm() / count);
   out.metres = {total, sigma, floor * sigma, std::sqrt(std::max(0.0, total * total - sigma * sigma))};
-}
-
-// What was added first was fitted while the rest was missing.
-void refresh(std::vector<std::string>& entries, const Fitted& last) {
-  const Model& model = last.study->model();
-  const std::vector<EffectSettings>& effects = model.settings().effects;
-  const std::size_t given = effects.size() - entries.size();
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    entries[i] = fitted_entry(std::move(entries[i]), effects[given + i].label, model, last.fit);
-  }
 }
 
 // Of the held-out error beyond noise. Where nothing explains the error, what takes less of it is not what is missing.
@@ -176,7 +166,7 @@ Diagnosis diagnose(const ModelSettings& settings, const TetMesh& mesh, const Rec
     finding = look(model, {}, options, finding.by_mesh, library);
     out.final_verdict = finding.verdict;
   }
-  refresh(out.entries, model);
+  fit_entries(out.entries, model.study->model(), model.fit);  // what was added first was fitted while the rest was missing
   out.estimate = summarise(model.study->model().free_parameters(), model.fit.w,
                            model.fit.covariance + doubt_of_nonlinear(model, recording));
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();

@@ -3,7 +3,7 @@
 #include <limits>
 #include <optional>
 
-#include "tissue_stiffness/diagnosis/fitted_entry.hpp"
+#include "tissue_stiffness/diagnosis/fit_entries.hpp"
 #include "tissue_stiffness/diagnosis/ranking.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
@@ -134,9 +134,9 @@ Refit refit(const Fitted& base, const std::vector<Addition>& additions, const Ei
   out.way = additions.front().way;
   for (const Addition& addition : additions) {
     out.effects.push_back(addition.way->effect);
-    const std::string& label = settings.effects[settings.effects.size() - additions.size() + out.entries.size()].label;
-    out.entries.push_back(fitted_entry(addition.way->proposal.refine, label, study.model(), start->fit));
+    out.entries.push_back(addition.way->proposal.refine);
   }
+  fit_entries(out.entries, study.model(), start->fit);
   out.parameters = study.model().values(start->fit.w);
   out.train_rms = rms_error(rows, known.recording(), false);
   out.held_out_rms = rms_error(rows, known.recording(), true);

@@ -4,8 +4,8 @@
 #include <functional>
 #include <iostream>
 #include <iterator>
-#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tissue_stiffness/diagnosis/diagnose.hpp"
@@ -100,15 +100,15 @@ int main(int argc, char** argv) {
     say("read the recording");
     const Recording recording = read_recording(reader, settings, texts.recording);
     options.progress = say;
-    std::optional<Estimate> estimate;
+    Estimate estimate;
     Showing showing{recording.first_stamp, {}, reader.reader().pictures()};
     options.at_end = [&](const Diagnosis& found, Fitted& given, Fitted& last) {
       say("run the models once more for the report");
       estimate = found.estimate;
-      run_once_more(found, given, last, reader.reader().picture_stamps(), *estimate, showing.replays);
+      run_once_more(found, given, last, reader.reader().picture_stamps(), estimate, showing.replays);
     };
     Diagnosis diagnosis = diagnose(settings, reader.mesh(), recording, options);
-    diagnosis.estimate = *estimate;
+    diagnosis.estimate = std::move(estimate);
     for (int i = 0; i < argc; ++i) texts.command_line += (i > 0 ? " " : "") + std::string(i > 0 ? argv[i] : "diagnose");
     texts.model_text = read_text(texts.model);
     texts.next_model_text = extend_model(texts.model_text, diagnosis.entries, settings.directory);

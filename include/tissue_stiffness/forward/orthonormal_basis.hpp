@@ -64,13 +64,13 @@ class OrthonormalBasis {
   void add_one(Eigen::VectorXd x, Eigen::VectorXd weighted, Eigen::Index before) {
     constexpr double dependent = 1e-7;  // of its norm: what a new direction keeps at least
     constexpr double cancelled = 1e-3;  // of it: below, M x has lost digits
-    const double whole = std::sqrt(x.dot(weighted));
+    const double whole = x.dot(weighted);
     for (int pass = 0; pass < 2; ++pass) {
       const Eigen::VectorXd share = weighted_.middleCols(before, size_ - before).transpose() * x;
       x.noalias() -= vectors_.middleCols(before, size_ - before) * share;
       weighted.noalias() -= weighted_.middleCols(before, size_ - before) * share;
     }
-    if (!(x.dot(weighted) > cancelled * cancelled * whole * whole)) weighted = symmetric_product(mass_, x);
+    if (!(x.dot(weighted) > cancelled * cancelled * whole)) weighted = symmetric_product(mass_, x);
     const double norm = std::sqrt(x.dot(weighted));
     if (!(norm > dependent)) return;
     vectors_.col(size_) = x / norm;

@@ -1,7 +1,8 @@
-#include "tissue_stiffness/diagnosis/fitted_entry.hpp"
+#include "tissue_stiffness/diagnosis/fit_entries.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "tissue_stiffness/effects/proposal.hpp"
 
@@ -25,8 +26,6 @@ std::size_t find_quantity(const std::string& entry, const std::string& key) {
 double within_bounds(double width, const FreeParameter& p, double value) {
   return std::min(width, kRoom * std::min(value - p.lower, p.upper - value));
 }
-
-}  // namespace
 
 std::string fitted_entry(std::string entry, const std::string& label, const Model& model, const BatchFit& fit) {
   for (std::size_t i = 0; i < model.free_parameters().size(); ++i) {
@@ -52,6 +51,14 @@ std::string fitted_entry(std::string entry, const std::string& label, const Mode
     entry.replace(at, entry.find('}', at) + 1 - at, key + ": " + quantity);
   }
   return entry;
+}
+
+}  // namespace
+
+void fit_entries(std::vector<std::string>& entries, const Model& model, const BatchFit& fit) {
+  const std::vector<EffectSettings>& effects = model.settings().effects;
+  auto effect = effects.end() - static_cast<std::ptrdiff_t>(entries.size());
+  for (std::string& entry : entries) entry = fitted_entry(std::move(entry), (effect++)->label, model, fit);
 }
 
 }  // namespace tissue_stiffness
