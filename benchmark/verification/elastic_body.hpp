@@ -67,8 +67,9 @@ inline std::vector<int> all_elements(const Discretisation& fem) {
 /// Small-strain stiffness of the whole body [N/m].
 inline SparseMatrix linear_stiffness(const Discretisation& fem, const Lame& lame) {
   const Eigen::VectorXd ones = Eigen::VectorXd::Ones(fem.element_count());
-  const SparseMatrix volumetric = fem.volumetric_stiffness(ones);
-  return lame.lambda * volumetric + lame.mu * fem.shear_stiffness(volumetric);
+  SparseMatrix stiffness = fem.volumetric_stiffness(ones);
+  fem.make_elastic(lame.lambda, lame.mu, stiffness);
+  return stiffness;
 }
 
 /// A body without damping under a constant load, linear or neo-Hookean.

@@ -22,16 +22,16 @@ class Elasticity : public Effect {
       return shared(std::move(part));
     };
     SparseMatrix volumetric = context.fem.volumetric_stiffness(inside);
-    SparseMatrix shear = context.fem.shear_stiffness(volumetric);
     const Quantity ratio = read_parameters({"elasticity", "elasticity", arguments})[1];
     if (ratio.estimated()) {
+      SparseMatrix shear = volumetric;
+      context.fem.make_elastic(0.0, 1.0, shear);
       linear_.push_back({kept(std::move(volumetric)), [](const Parameters& p) { return lame(p[0], p[1]).lambda; }});
       linear_.push_back({kept(std::move(shear)), [](const Parameters& p) { return lame(p[0], p[1]).mu; }});
       return;
     }
     const Lame unit = lame(1.0, ratio.value);
-    volumetric *= unit.lambda;
-    add_scaled(volumetric, unit.mu, shear);
+    context.fem.make_elastic(unit.lambda, unit.mu, volumetric);
     linear_.push_back({kept(std::move(volumetric)), [](const Parameters& p) { return p[0]; }});
   }
 

@@ -189,23 +189,20 @@ SparseMatrix Discretisation::volumetric_stiffness(const Eigen::VectorXd& element
   });
 }
 
-// Of nodes a and b with shape gradients g: w g_b g_a^T + w (g_a . g_b) I, where the volumetric one has w g_a g_b^T.
-SparseMatrix Discretisation::shear_stiffness(const SparseMatrix& volumetric) const {
-  SparseMatrix result = pattern_;
+// Of nodes a and b with shape gradients g the shear modulus' is w g_b g_a^T + w (g_a . g_b) I, where this has w g_a g_b^T.
+void Discretisation::make_elastic(double lambda, double mu, SparseMatrix& volumetric) const {
+  const int* outer = pattern_.outerIndexPtr();
   tbb::parallel_for(0, node_count_, [&](int node) {
-    const int* starts = pattern_.outerIndexPtr() + 3 * node;
-    const int blocks = (starts[1] - starts[0]) / 3;
-    for (int k = 0; k < blocks; ++k) {
+    const int* starts = outer + 3 * node;
+    for (int k = 0; k < (starts[1] - starts[0]) / 3; ++k) {
+      const auto column = [&](int j) { return Eigen::Map<Eigen::Vector3d>(volumetric.valuePtr() + starts[j] + 3 * k); };
       Eigen::Matrix3d block;
-      for (int j = 0; j < 3; ++j)
-        block.col(j) = Eigen::Map<const Eigen::Vector3d>(volumetric.valuePtr() + starts[j] + 3 * k);
-      const double trace = block.trace();
-      block.transposeInPlace();
-      block.diagonal().array() += trace;
-      for (int j = 0; j < 3; ++j) Eigen::Map<Eigen::Vector3d>(result.valuePtr() + starts[j] + 3 * k) = block.col(j);
+      for (int j = 0; j < 3; ++j) block.col(j) = column(j);
+      Eigen::Matrix3d shear = block.transpose();
+      shear.diagonal().array() += block.trace();
+      for (int j = 0; j < 3; ++j) column(j) = lambda * block.col(j) + mu * shear.col(j);
     }
   });
-  return result;
 }
 
 void add_scaled(SparseMatrix& to, double scale, const SparseMatrix& part) {

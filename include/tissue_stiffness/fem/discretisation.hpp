@@ -61,8 +61,8 @@ class Discretisation {
 
   /// Small-strain stiffness of Lame's first parameter = 1 and shear modulus = 0 [m].
   SparseMatrix volumetric_stiffness(const Eigen::VectorXd& element_weight) const;
-  /// The other way round, from the same elements' volumetric one: both are sums of the same products of shape gradients.
-  SparseMatrix shear_stiffness(const SparseMatrix& volumetric) const;
+  /// Replaces it by that of any Lame's parameters: the shear modulus' is a sum of the same products of shape gradients.
+  void make_elastic(double lambda, double mu, SparseMatrix& volumetric) const;
 
  private:
   void compute_gradients();
