@@ -222,4 +222,12 @@ void add_scaled(SparseMatrix& to, double scale, const SparseMatrix& part) {
   }
 }
 
+bool same(const SparseMatrix& a, const SparseMatrix& b) {
+  const auto count = static_cast<std::size_t>(a.nonZeros());
+  return a.rows() == b.rows() && a.cols() == b.cols() && a.nonZeros() == b.nonZeros() &&
+         std::equal(a.outerIndexPtr(), a.outerIndexPtr() + a.outerSize() + 1, b.outerIndexPtr()) &&
+         std::equal(a.innerIndexPtr(), a.innerIndexPtr() + count, b.innerIndexPtr()) &&
+         std::equal(a.valuePtr(), a.valuePtr() + count, b.valuePtr());
+}
+
 }  // namespace tissue_stiffness

@@ -26,14 +26,6 @@ struct CoarseResponse {
   Eigen::MatrixXd roughly(const Eigen::MatrixXd& loads) const { return grids.solve_coarse(loads); }
 };
 
-bool same(const SparseMatrix& a, const SparseMatrix& b) {
-  const auto count = static_cast<std::size_t>(a.nonZeros());
-  return a.rows() == b.rows() && a.nonZeros() == b.nonZeros() &&
-         std::equal(a.outerIndexPtr(), a.outerIndexPtr() + a.outerSize() + 1, b.outerIndexPtr()) &&
-         std::equal(a.innerIndexPtr(), a.innerIndexPtr() + count, b.innerIndexPtr()) &&
-         std::equal(a.valuePtr(), a.valuePtr() + count, b.valuePtr());
-}
-
 bool same(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return a.rows() == b.rows() && a.cols() == b.cols() && a == b;
 }

@@ -88,6 +88,20 @@ Eigen::MatrixXd project_matrix(const SparseMatrix& k, const Eigen::MatrixXd& bas
   return own.transpose() * product;
 }
 
+Eigen::VectorXd prior_parameters(const Model& model, const Model::Part& part) {
+  return part.parameters(model.theta(model.prior_mean()));
+}
+
+bool same(const Discretisation& fem, const StrainFactorField& a, const StrainFactorField& b) {
+  for (int e = 0; e < fem.element_count(); ++e) {
+    for (int q = 0; q < fem.points_per_element(); ++q) {
+      const StrainFactor one = a(e, q), other = b(e, q);
+      if (one.cols() != other.cols() || one != other) return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 ReducedModel::ReducedModel(const Model& model, const BasisOptions& options, const ReducedModel* relative)
@@ -99,6 +113,10 @@ ReducedModel::ReducedModel(const Model& model, const BasisOptions& options, cons
                ? adopted(*relative)
                : build_reduced_basis(model, options, relative != nullptr ? relative->basis_.root : nullptr);
   if (!options.keep_root) basis_.root = nullptr;
+  for (const auto& part : model.parts()) projected_.emplace_back(part.terms);
+  if (options.adopt && relative != nullptr && basis_.vectors.cols() == relative->basis_.vectors.cols()) {
+    adopt_projections(*relative);
+  }
   project();
 }
 
@@ -124,40 +142,72 @@ ReducedBasis ReducedModel::adopted(const ReducedModel& relative) const {
   return out;
 }
 
+void ReducedModel::adopt_projections(const ReducedModel& relative) {
+  tbb::parallel_for(std::size_t{0}, projected_.size(), [&](std::size_t p) { adopt_projections(p, relative); });
+}
+
+void ReducedModel::adopt_projections(std::size_t index, const ReducedModel& relative) {
+  const auto& part = model_.parts()[index];
+  const auto& parts = relative.model_.parts();
+  const auto there =
+      std::find_if(parts.begin(), parts.end(), [&part](const Model::Part& p) { return p.label == part.label; });
+  if (there == parts.end()) return;
+  const Projected& known = relative.projected_[static_cast<std::size_t>(there - parts.begin())];
+  Projected& out = projected_[index];
+  const auto adopt = [](const auto& terms, const auto& others, const auto& from, auto& to) {
+    for (std::size_t k = 0; k < std::min(terms.size(), others.size()); ++k) {
+      if (same(*terms[k].matrix, *others[k].matrix)) to[k] = from[k];
+    }
+  };
+  adopt(part.terms.mass, there->terms.mass, known.mass, out.mass);
+  adopt(part.terms.stiffness, there->terms.stiffness, known.stiffness, out.stiffness);
+  const std::vector<StrainTerm>&strained = part.terms.strain_stiffness, &others = there->terms.strain_stiffness;
+  for (std::size_t k = 0; k < std::min(strained.size(), others.size()); ++k) {
+    if (model_.estimated(part, strained[k].shape) || known.strain_stiffness[k].size() == 0) continue;
+    const StrainFactorField here = strained[k].at(prior_parameters(model_, part));
+    if (same(model_.fem(), here, others[k].at(prior_parameters(relative.model_, *there)))) {
+      out.strain_stiffness[k] = known.strain_stiffness[k];
+    }
+  }
+}
+
 void ReducedModel::project() {
   bool strained = false, varies = false;
-  for (const auto& part : model_.parts()) {
-    for (const StrainTerm& term : part.terms.strain_stiffness) {
-      strained = true;
-      varies = varies || model_.estimated(part, term.shape);
+  for (std::size_t p = 0; p < projected_.size(); ++p) {
+    const auto& part = model_.parts()[p];
+    for (std::size_t k = 0; k < part.terms.strain_stiffness.size(); ++k) {
+      strained = strained || projected_[p].strain_stiffness[k].size() == 0;
+      varies = varies || model_.estimated(part, part.terms.strain_stiffness[k].shape);
     }
   }
   if (strained) strains_ = strains(model_.fem(), basis_.vectors);
-  projected_.resize(model_.parts().size());
   tbb::parallel_for(std::size_t{0}, projected_.size(), [this](std::size_t p) { project_part(p); });
   if (!varies) strains_.resize(0, 0);
 }
 
+// All that is not known yet.
 void ReducedModel::project_part(std::size_t index) {
   const auto& part = model_.parts()[index];
   const Eigen::MatrixXd& b = basis_.vectors;
   Projected& out = projected_[index];
-  const Eigen::VectorXd p = part.parameters(model_.theta(model_.prior_mean()));
-  for (const auto& term : part.terms.mass) {
+  for (std::size_t k = 0; k < part.terms.mass.size(); ++k) {
+    const SparseMatrix& mass = *part.terms.mass[k].matrix;
     const Eigen::MatrixX3d unit = unit_motion(b.rows());
     Eigen::MatrixX3d loose = unit;
     for (Eigen::Index i = 0; i < loose.rows(); ++i) {
       if (model_.fixed()[static_cast<std::size_t>(i)] != 0) loose.row(i).setZero();
     }
-    out.mass.push_back(project_matrix(*term.matrix, b));
-    out.weight.push_back(b.transpose() * (*term.matrix * unit));
-    out.momentum.push_back(b.transpose() * (*term.matrix * loose));
+    if (out.mass[k].size() == 0) out.mass[k] = project_matrix(mass, b);
+    out.weight.push_back(b.transpose() * (mass * unit));
+    out.momentum.push_back(b.transpose() * (mass * loose));
   }
-  for (const auto& term : part.terms.stiffness) out.stiffness.push_back(project_matrix(*term.matrix, b));
-  for (const auto& term : part.terms.strain_stiffness) {
-    out.strain_stiffness.emplace_back();
-    if (model_.estimated(part, term.shape)) continue;
-    out.strain_stiffness.back() = project_strain_stiffness(model_.fem(), term.at(p), strains_);
+  for (std::size_t k = 0; k < part.terms.stiffness.size(); ++k) {
+    if (out.stiffness[k].size() == 0) out.stiffness[k] = project_matrix(*part.terms.stiffness[k].matrix, b);
+  }
+  for (std::size_t k = 0; k < part.terms.strain_stiffness.size(); ++k) {
+    const StrainTerm& term = part.terms.strain_stiffness[k];
+    if (out.strain_stiffness[k].size() > 0 || model_.estimated(part, term.shape)) continue;
+    out.strain_stiffness[k] = project_strain_stiffness(model_.fem(), term.at(prior_parameters(model_, part)), strains_);
   }
   for (const auto& term : part.terms.loads) out.loads.push_back(b.transpose() * term.pattern);
 }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <initializer_list>
 #include <set>
@@ -107,6 +108,34 @@ TEST(ReducedModel, AdoptsTheVectorsOfARelativeThatHeldItsEffects) {
   std::printf("in a relative's vectors: %.1e of the motion\n", off);
   EXPECT_LT(off, 1e-3);
   EXPECT_EQ(ReducedModel(wide, options, &relative).basis(), relative.basis());
+}
+
+// Terms that are others here are projected anew, whatever the label: modes are those of this model's mass and stiffness.
+TEST(ReducedModel, AdoptsTheProjectionsOfEqualTermsAlone) {
+  const TetMesh mesh = bar_mesh(4);
+  const auto settings = [](const std::string& region, const std::string& ratio, const std::string& x) {
+    return box_settings({kInertia, "elasticity: {law: linear, poisson_ratio: " + ratio + ", young_modulus: 3.0e4}",
+                         "added_mass: {region: " + region + ", mass: 0.01}", kFixed, kGravity,
+                         "stiff_inclusion: {center: [" + x + ", 0.01, 0.01], radius: 0.012, excess: 1}"});
+  };
+  const Model same(settings("tip", "0.45", "0.03"), mesh);
+  const ReducedModel relative(same);
+  const auto known = relative.modes(prior(same));
+  BasisOptions options;
+  options.adopt = true;
+  for (const auto& [region, ratio, x] : std::vector<std::array<std::string, 3>>{
+           {"tip", "0.45", "0.03"}, {"tip", "0.45", "0.05"}, {"tip", "0.3", "0.03"}, {"top", "0.45", "0.03"}}) {
+    const Model model(settings(region, ratio, x), mesh);
+    const ReducedModel reduced(model, options, &relative);
+    ASSERT_EQ(reduced.basis(), relative.basis());
+    const auto modes = reduced.modes(prior(model));
+    EXPECT_EQ(modes->square == known->square, region == "tip" && ratio == "0.45" && x == "0.03");
+    const Eigen::MatrixXd shapes = reduced.basis() * modes->shapes, square = modes->square.asDiagonal();
+    const Eigen::MatrixXd mass = shapes.transpose() * (model.mass(prior(model)) * shapes);
+    const Eigen::MatrixXd stiffness = shapes.transpose() * (model.stiffness(prior(model)) * shapes);
+    EXPECT_LT((mass - Eigen::MatrixXd::Identity(mass.rows(), mass.cols())).norm(), 1e-8) << region << ratio << x;
+    EXPECT_LT((stiffness - square).norm(), 1e-8 * square.norm()) << region << ratio << x;
+  }
 }
 
 TEST(ReducedModel, FollowsTheFullOneWithSeveralModuli) {

@@ -106,6 +106,9 @@ inline std::shared_ptr<const SparseMatrix> shared(SparseMatrix&& matrix) {
 /// to += scale * part, for a part whose non-zeros lie in the pattern of `to`; costs what the part holds.
 void add_scaled(SparseMatrix& to, double scale, const SparseMatrix& part);
 
+/// Bit for bit.
+bool same(const SparseMatrix& a, const SparseMatrix& b);
+
 /// Shape functions and their derivatives with respect to the barycentric coordinates (r, s, t) of a 4- or 10-node
 /// tetrahedron, node order of TetMesh.
 Eigen::VectorXd tet_shape(int nodes, const Eigen::Vector3d& rst);

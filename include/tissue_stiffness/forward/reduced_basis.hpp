@@ -31,7 +31,8 @@ struct BasisOptions {
   int steps_per_frame = 4;  ///< of simulations in full
   /// From the mesh that this one was refined from: the stiffness needs no factor then, vectors are good to about a percent.
   std::shared_ptr<const Prolongation> coarser = nullptr;
-  /// A relative's vectors as they are, for a model of the same parts or some of them (by label), in whatever order.
+  /// A relative's vectors as they are, for a model of the same parts or some of them (by label), in whatever order; and, if
+  /// these are all of its vectors, what it has projected onto them.
   bool adopt = false;
   bool keep_root = false;  ///< for models of the same body that are to come; it holds the stiffness's factor
 };

@@ -73,6 +73,8 @@ class ReducedModel : public ForwardModel {
 
  private:
   struct Projected {
+    explicit Projected(const LinearTerms& terms)
+        : mass(terms.mass.size()), stiffness(terms.stiffness.size()), strain_stiffness(terms.strain_stiffness.size()) {}
     std::vector<Eigen::MatrixXd> mass, stiffness, strain_stiffness;  ///< the last: empty where it depends on theta
     std::vector<Eigen::VectorXd> loads;
     std::vector<Eigen::MatrixX3d> weight, momentum;  ///< each mass term times a unit motion along each axis
@@ -100,6 +102,9 @@ class ReducedModel : public ForwardModel {
   std::shared_ptr<const Eigen::MatrixXd> shaped(const StrainTerm& term, const Eigen::VectorXd& parameters) const;
   void project();
   void project_part(std::size_t part);
+  /// What a relative has projected onto the same vectors.
+  void adopt_projections(const ReducedModel& relative);
+  void adopt_projections(std::size_t part, const ReducedModel& relative);
   Proportions proportions(const Eigen::VectorXd& theta, bool half) const;
   std::vector<int> active(const Eigen::VectorXd& theta, bool half) const;
   /// Of masses and stiffnesses in these proportions, with no inertia of the stiffness.
