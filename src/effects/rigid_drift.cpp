@@ -16,8 +16,9 @@ class RigidDrift : public Effect {
     Eigen::Matrix3d more = Eigen::Matrix3d::Zero();  // R - I
     if (angle > 0.0) more = Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() - Eigen::Matrix3d::Identity();
     Eigen::Map<Eigen::Matrix3Xd> u(motion.displacement.data(), 3, motion.mesh.nodes.cols());
-    const Eigen::Matrix3Xd moved = motion.mesh.nodes + u;
-    u += (more * moved).colwise() + shift;
+    for (Eigen::Index node = 0; node < u.cols(); ++node) {
+      u.col(node) += more * (motion.mesh.nodes.col(node) + u.col(node)).eval() + shift;
+    }
   }
 };
 

@@ -39,8 +39,9 @@ class StrainStiffening : public Effect {
     const StrainFactorField factor = [&](int e, int q) -> StrainFactor {
       const Point x = look(motion.displacement, e, q, p);
       if (!(x.excess.value > 0.0)) return StrainFactor(6, 0);
+      const StrainFactor elastic = isotropic_factor(x.moduli.lambda, x.moduli.mu);
       const Eigen::Matrix<double, 6, 6> d =
-          x.excess.value * x.factor * x.factor.transpose() + x.excess.slope * x.stress * x.stress.transpose();
+          x.excess.value * elastic * elastic.transpose() + x.excess.slope * x.stress * x.stress.transpose();
       return StrainFactor(Eigen::Matrix<double, 6, 6>(d.llt().matrixL()));
     };
     add_strain_stiffness(fem_, factor, 1.0 - motion.finite_share, stiffness);
@@ -60,18 +61,18 @@ class StrainStiffening : public Effect {
 
  private:
   struct Point {
-    StrainFactor factor;  ///< of the elasticity there
+    Lame moduli;  ///< of the elasticity there
     Strain stress;
     StressScale excess;
   };
   Point look(const Eigen::VectorXd& u, int e, int q, const Parameters& p) const {
-    Point x{StrainFactor::Zero(6, 6), Strain::Zero(), {0.0, 0.0}};
+    Point x{{0.0, 0.0}, Strain::Zero(), {0.0, 0.0}};
     for (std::size_t s = 0; s < solids_.count(); ++s) {
       if (!solids_.holds(s, e)) continue;
-      const Lame c = lame(solids_.modulus(s, p), solids_.ratio(s, p));
-      x.factor = isotropic_factor(c.lambda, c.mu);
+      x.moduli = lame(solids_.modulus(s, p), solids_.ratio(s, p));
       const Strain strain = strain_at(fem_, u, e, q);
-      x.stress = x.factor * (x.factor.transpose() * strain);
+      x.stress = 2.0 * x.moduli.mu * strain;
+      x.stress.head<3>().array() += x.moduli.lambda * strain.head<3>().sum();
       x.excess = excess(p[0], solids_.modulus(s, p), 0.5 * strain.dot(x.stress));
     }
     return x;

@@ -12,11 +12,12 @@ namespace {
 
 const double kRoot = std::sqrt(2.0);
 
-// B^T s at one node with shape gradient g: the force that the stress s exerts there.
-Eigen::Vector3d nodal(const Strain& s, const Eigen::Vector3d& g) {
+// Times a node's shape gradient it is B^T s: the force that the stress s exerts there.
+Eigen::Matrix3d tensor(const Strain& s) {
   const double xy = s[3] / kRoot, yz = s[4] / kRoot, xz = s[5] / kRoot;
-  return {s[0] * g.x() + xy * g.y() + xz * g.z(), xy * g.x() + s[1] * g.y() + yz * g.z(),
-          xz * g.x() + yz * g.y() + s[2] * g.z()};
+  Eigen::Matrix3d t;
+  t << s[0], xy, xz, xy, s[1], yz, xz, yz, s[2];
+  return t;
 }
 
 // Adds B_a u_a.
@@ -65,11 +66,12 @@ StrainRows strains(const Discretisation& fem, const Eigen::MatrixXd& u) {
 
 Strain strain_at(const Discretisation& fem, const Eigen::VectorXd& u, int e, int q) {
   const auto g = fem.gradient(e, q);
-  Strain s = Strain::Zero();
+  Eigen::Matrix3d h = Eigen::Matrix3d::Zero();  // the displacement's gradient
   for (int a = 0; a < fem.nodes_per_element(); ++a) {
-    const Eigen::Index node = 3 * fem.elements()(a, e);
-    add_strain(g.col(a), u.row(node), u.row(node + 1), u.row(node + 2), 0, s);
+    h.noalias() += u.segment<3>(3 * fem.elements()(a, e)) * g.col(a).transpose();
   }
+  Strain s;
+  s << h.diagonal(), (h(0, 1) + h(1, 0)) / kRoot, (h(1, 2) + h(2, 1)) / kRoot, (h(0, 2) + h(2, 0)) / kRoot;
   return s;
 }
 
@@ -81,8 +83,9 @@ void add_strain_stiffness(const Discretisation& fem, const StrainFactorField& fa
       const StrainFactor r = factor(e, q);
       const auto g = fem.gradient(e, q);
       const Eigen::Index columns = r.cols();
-      for (int a = 0; a < n; ++a) {
-        for (Eigen::Index c = 0; c < columns; ++c) forces.col(6 * a + c) = nodal(r.col(c), g.col(a));
+      for (Eigen::Index c = 0; c < columns; ++c) {
+        const Eigen::Matrix3d stress = tensor(r.col(c));
+        for (int a = 0; a < n; ++a) forces.col(6 * a + c) = stress * g.col(a);
       }
       const double w = scale * fem.weight(e, q);
       for (int b = 0; columns > 0 && b < n; ++b) {
@@ -107,10 +110,9 @@ Eigen::MatrixXd apply_strain_stiffness(const Discretisation& fem, const StrainFa
       const Eigen::Index at = 6 * (static_cast<Eigen::Index>(e) * points + q);
       const Eigen::MatrixXd stress = fem.weight(e, q) * (r * (r.transpose() * strains.middleRows<6>(at)));
       const auto g = fem.gradient(e, q);
-      for (int a = 0; a < n; ++a) {
-        for (Eigen::Index c = 0; c < stress.cols(); ++c) {
-          result.block<3, 1>(3 * fem.elements()(a, e), c) += nodal(stress.col(c), g.col(a));
-        }
+      for (Eigen::Index c = 0; c < stress.cols(); ++c) {
+        const Eigen::Matrix3d of = tensor(stress.col(c));
+        for (int a = 0; a < n; ++a) result.block<3, 1>(3 * fem.elements()(a, e), c) += of * g.col(a);
       }
     }
   }
@@ -147,11 +149,9 @@ Eigen::MatrixXd project_strain_stiffness(const Discretisation& fem, const Strain
 void add_stress_force(const Discretisation& fem, const StressField& stress, Eigen::VectorXd& force) {
   for (int e = 0; e < fem.element_count(); ++e) {
     for (int q = 0; q < fem.points_per_element(); ++q) {
-      const Strain s = fem.weight(e, q) * stress(e, q);
+      const Eigen::Matrix3d s = tensor(fem.weight(e, q) * stress(e, q));
       const auto g = fem.gradient(e, q);
-      for (int a = 0; a < fem.nodes_per_element(); ++a) {
-        force.segment<3>(3 * fem.elements()(a, e)) -= nodal(s, g.col(a));
-      }
+      for (int a = 0; a < fem.nodes_per_element(); ++a) force.segment<3>(3 * fem.elements()(a, e)) -= s * g.col(a);
     }
   }
 }
