@@ -126,7 +126,7 @@ std::set<std::string> linear_effects(const Study& base, const std::vector<Candid
     names.push_back(candidate.effect);
     add_effect(settings, candidate.proposal.yaml);
   }
-  const Model model(settings, base.model().mesh(), base.model().regions());
+  const Model model(settings, base.model());
   std::set<std::string> linear;
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (!adds_extra_force(model.parts()[before + i])) linear.insert(names[i]);

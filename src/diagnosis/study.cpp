@@ -42,23 +42,27 @@ Study::Study(const ModelSettings& settings, const TetMesh& mesh, const Recording
 
 Study::Study(const ModelSettings& settings, const TetMesh& mesh, std::map<std::string, Region> regions,
              const Recording& recording, const BasisOptions& basis)
-    : Study(settings, mesh, std::move(regions), recording, basis, nullptr) {}
-
-Study::Study(const ModelSettings& settings, const Study& relative, const BasisOptions& basis)
-    : Study(settings, relative.model_.mesh(), relative.model_.regions(), relative.recording_, basis,
-            relative.forward_.get()) {}
-
-Study::Study(const ModelSettings& settings, const TetMesh& mesh, std::map<std::string, Region> regions,
-             const Recording& recording, const BasisOptions& basis, const ForwardModel* relative)
     : recording_(recording),
       training_(recording.training()),
       model_(settings, mesh, std::move(regions)),
       operators_(make_observation_operators(model_)) {
-  model_.drive(recording.first_stamp, recording.loads);
+  prepare(basis, nullptr);
+}
+
+Study::Study(const ModelSettings& settings, const Study& relative, const BasisOptions& basis)
+    : recording_(relative.recording_),
+      training_(relative.training_),
+      model_(settings, relative.model_),
+      operators_(make_observation_operators(model_)) {
+  prepare(basis, relative.forward_.get());
+}
+
+void Study::prepare(const BasisOptions& basis, const ForwardModel* relative) {
+  model_.drive(recording_.first_stamp, recording_.loads);
   BasisOptions whole = basis;
   whole.steps_per_frame = kSteps;
   forward_ = make_forward_model(model_, whole, relative);
-  const std::vector<int> nodes = observed_nodes(operators_, recording.frames);
+  const std::vector<int> nodes = observed_nodes(operators_, recording_.frames);
   forward_->focus(nodes);
   if (!model_.nonlinear() || basis.nonlinear != BasisOptions::Nonlinear::in_full) return;
   BasisOptions quick = basis;

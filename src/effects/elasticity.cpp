@@ -35,6 +35,7 @@ class Elasticity : public Effect {
     linear_.push_back({kept(std::move(volumetric)), [](const Parameters& p) { return p[0]; }});
   }
 
+  bool shareable() const override { return true; }
   void linear_terms(LinearTerms& out) const override {
     out.stiffness.insert(out.stiffness.end(), linear_.begin(), linear_.end());
   }

@@ -9,6 +9,7 @@ class Inertia : public Effect {
   Inertia(const Value&, const EffectContext& context)
       : unit_mass_(shared(context.fem.mass(Eigen::VectorXd::Ones(context.fem.element_count())))) {}
 
+  bool shareable() const override { return true; }
   void linear_terms(LinearTerms& out) const override {
     out.mass.push_back({unit_mass_, [](const Parameters& p) { return p[0]; }});
   }

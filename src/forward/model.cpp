@@ -42,15 +42,16 @@ Model::Model(const ModelSettings& settings, const TetMesh& mesh)
     : Model(settings, mesh, resolve_regions(settings.regions, mesh)) {}
 
 Model::Model(const ModelSettings& settings, const TetMesh& mesh, std::map<std::string, Region> regions)
-    : settings_(settings),
-      mesh_(mesh),
-      fem_(mesh_),
-      rest_(Eigen::VectorXd::Zero(fem_.dof_count())),
-      regions_(std::move(regions)) {
+    : Model(settings, std::make_shared<const Body>(mesh, std::move(regions)), nullptr) {}
+
+Model::Model(const ModelSettings& settings, const Model& relative) : Model(settings, relative.body_, &relative) {}
+
+Model::Model(const ModelSettings& settings, std::shared_ptr<const Body> body, const Model* relative)
+    : settings_(settings), body_(std::move(body)), rest_(Eigen::VectorXd::Zero(fem().dof_count())) {
   require_effect(settings_, "inertia");
   const EffectContext shared = context();
-  holders_.assign(static_cast<std::size_t>(fem_.node_count()), 0);
-  for (const EffectSettings& effect : settings_.effects) add_part(effect, shared);
+  holders_.assign(static_cast<std::size_t>(fem().node_count()), 0);
+  for (const EffectSettings& effect : settings_.effects) add_part(effect, shared, relative);
   link_elasticities();
   for (Part& part : parts_) {
     part.effect->linear_terms(part.terms);
@@ -60,7 +61,7 @@ Model::Model(const ModelSettings& settings, const TetMesh& mesh, std::map<std::s
   }
   nonlinear_ = nonlinear_ || finite_law_;
   check_laws();
-  fixed_.assign(static_cast<std::size_t>(fem_.dof_count()), 0);
+  fixed_.assign(static_cast<std::size_t>(fem().dof_count()), 0);
   for (std::size_t node = 0; node < holders_.size(); ++node) {
     if (holders_[node] > 0) std::fill_n(fixed_.begin() + static_cast<std::ptrdiff_t>(3 * node), 3, char{1});
   }
@@ -72,19 +73,30 @@ EffectContext Model::context() {
   std::vector<std::vector<int>> solids;
   for (const EffectSettings& effect : settings_.effects) {
     if (effect.name != "elasticity") continue;
-    solids.push_back(solid_elements(effect.arguments, fem_.element_count(), regions_));
+    solids.push_back(solid_elements(effect.arguments, fem().element_count(), regions()));
   }
   const double modulus = read_parameters(elasticity).front().value;
-  return {mesh_, fem_, regions_, settings_, std::move(solids), modulus, courses_, inputs_};
+  return {mesh(), fem(), regions(), settings_, std::move(solids), modulus, courses_, inputs_};
 }
 
-void Model::add_part(const EffectSettings& settings, const EffectContext& context) {
+void Model::add_part(const EffectSettings& settings, const EffectContext& context, const Model* relative) {
   Part part;
   part.label = settings.label;
   add_parameters(settings, part);
-  part.effect = make_effect(settings, context);
+  if (relative != nullptr) part.effect = relative->shared_effect(settings);
+  if (!part.effect) part.effect = make_effect(settings, context);
   for (const int node : part.effect->fixed_nodes()) ++holders_[static_cast<std::size_t>(node)];
   parts_.push_back(std::move(part));
+}
+
+// Null where there is none.
+std::shared_ptr<const Effect> Model::shared_effect(const EffectSettings& settings) const {
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    const EffectSettings& own = settings_.effects[i];
+    if (!parts_[i].effect->shareable() || own.name != settings.name || !own.arguments.same(settings.arguments)) continue;
+    return parts_[i].effect;
+  }
+  return nullptr;
 }
 
 void Model::add_parameters(const EffectSettings& settings, Part& part) {

@@ -49,7 +49,7 @@ std::vector<char> Model::fixed(const Eigen::VectorXd& theta) const {
 }
 
 SparseMatrix Model::mass(const Eigen::VectorXd& theta) const {
-  SparseMatrix m = fem_.pattern();
+  SparseMatrix m = fem().pattern();
   const double factor = mass_factor(theta);
   for (const Part& part : parts_) {
     if (part.terms.mass.empty()) continue;
@@ -60,7 +60,7 @@ SparseMatrix Model::mass(const Eigen::VectorXd& theta) const {
 }
 
 SparseMatrix Model::sum_stiffness(const Eigen::VectorXd& theta, bool reference) const {
-  SparseMatrix k = fem_.pattern();
+  SparseMatrix k = fem().pattern();
   for (const Part& part : parts_) {
     if (part.terms.stiffness.empty() && part.terms.strain_stiffness.empty()) continue;
     const double share = reference ? 1.0 : 1.0 - finite_share(part, theta);
@@ -69,7 +69,7 @@ SparseMatrix Model::sum_stiffness(const Eigen::VectorXd& theta, bool reference) 
     for (const MatrixTerm& term : part.terms.stiffness) add(k, share * term.coefficient(p), term);
     for (const StrainTerm& term : part.terms.strain_stiffness) {
       const double scale = share * term.coefficient(p);
-      if (scale != 0.0) add_strain_stiffness(fem_, term.at(p), scale, k);
+      if (scale != 0.0) add_strain_stiffness(fem(), term.at(p), scale, k);
     }
   }
   return k;
@@ -217,7 +217,7 @@ void Model::add_nonlinear_stiffness(const Point& at, Motion motion, SparseMatrix
     if (motion.finite_share == 1.0) {
       effect.add_finite_stiffness(motion, p, stiffness);
     } else if (motion.finite_share > 0.0) {
-      SparseMatrix finite = fem_.pattern();
+      SparseMatrix finite = fem().pattern();
       effect.add_finite_stiffness(motion, p, finite);
       stiffness += motion.finite_share * finite;
     }
@@ -247,7 +247,7 @@ double Model::delay(const Eigen::VectorXd& theta) const {
 
 ObservedMotion Model::observe(const Eigen::VectorXd& theta, double since,
                               const Eigen::Ref<const Eigen::VectorXd>& displacement) const {
-  ObservedMotion motion{mesh_, since, displacement};
+  ObservedMotion motion{mesh(), since, displacement};
   for (const Part& part : parts_) {
     if (part.effect->observes()) part.effect->observe(part.parameters(theta), motion);
   }

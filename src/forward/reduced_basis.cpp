@@ -18,6 +18,7 @@ constexpr double kResponseShare = 0.6;  // of the room for absent effects: stati
 constexpr int kFew = 3;                 // absent effects that may grow large: their stiffness acts on what is added, too
 constexpr double kFaint = 1e-12;        // of the strongest response, squared: what is left out
 constexpr double kFree = 1e-9;          // of the highest eigenvalue: below it a body moves freely
+constexpr double kRounding = 1e-14;     // of a coefficient
 
 // (P^T K P)^-1 on the coarser mesh.
 struct CoarseResponse {
@@ -26,16 +27,55 @@ struct CoarseResponse {
   Eigen::MatrixXd roughly(const Eigen::MatrixXd& loads) const { return grids.solve_coarse(loads); }
 };
 
-bool same(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+bool equal(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return a.rows() == b.rows() && a.cols() == b.cols() && a == b;
 }
+
+// What a body's mass and stiffness are sums of.
+struct BodyTerms {
+  using List = std::vector<std::pair<std::shared_ptr<const SparseMatrix>, double>>;
+  List mass, stiffness;
+  bool complete = true;  // nothing else is in them
+
+  BodyTerms() = default;
+  BodyTerms(const Model& model, const Eigen::VectorXd& theta) {
+    const double factor = model.mass_factor(theta);
+    for (const Model::Part& part : model.parts()) {
+      const Eigen::VectorXd p = part.parameters(theta);
+      for (const MatrixTerm& term : part.terms.mass) add(mass, term.matrix, factor * term.coefficient(p));
+      for (const MatrixTerm& term : part.terms.stiffness) add(stiffness, term.matrix, term.coefficient(p));
+      for (const StrainTerm& term : part.terms.strain_stiffness) complete = complete && term.coefficient(p) == 0.0;
+    }
+  }
+
+  // The same mass, and a stiffness in proportion: responses differ by a factor, which a basis has not.
+  bool same_body(const BodyTerms& other) const {
+    return complete && other.complete && in_proportion(mass, other.mass, 1.0) &&
+           in_proportion(stiffness, other.stiffness, 0.0);
+  }
+
+ private:
+  static void add(List& list, const std::shared_ptr<const SparseMatrix>& matrix, double coefficient) {
+    if (coefficient != 0.0) list.emplace_back(matrix, coefficient);
+  }
+  // As 1 to `factor`; 0: to any.
+  static bool in_proportion(const List& a, const List& b, double factor) {
+    if (a.size() != b.size() || a.empty()) return false;
+    const double ratio = factor != 0.0 ? factor : b.front().second / a.front().second;
+    return std::equal(a.begin(), a.end(), b.begin(), [ratio](const auto& one, const auto& another) {
+      return (one.first == another.first || same(*one.first, *another.first)) &&
+             std::abs(ratio * one.second - another.second) <= kRounding * std::abs(another.second);
+    });
+  }
+};
 
 }  // namespace
 
 class BasisRoot {
  public:
   // The body.
-  SparseMatrix stiffness, mass;
+  BodyTerms terms;
+  std::shared_ptr<const SparseMatrix> stiffness, mass;
   std::vector<char> fixed;
   std::shared_ptr<const StaticResponse> held;
   // What moves it.
@@ -44,11 +84,14 @@ class BasisRoot {
   Eigen::Index size = 0;
   Eigen::MatrixXd vectors, weighted;  ///< the second: M times the first
 
-  bool same_body(const BasisRoot& other) const {
-    return fixed == other.fixed && same(stiffness, other.stiffness) && same(mass, other.mass);
+  void take_body(const BasisRoot& known) {
+    stiffness = known.stiffness;
+    mass = known.mass;
+    held = known.held;
   }
+
   bool same_motion(const BasisRoot& other) const {
-    return size == other.size && same(loads, other.loads) &&
+    return size == other.size && equal(loads, other.loads) &&
            std::equal(groups.begin(), groups.end(), other.groups.begin(), other.groups.end(),
                       [](const SparseMatrix& a, const SparseMatrix& b) { return same(a, b); });
   }
@@ -82,20 +125,27 @@ class Builder {
  private:
   std::shared_ptr<const BasisRoot> make_root(const std::shared_ptr<const BasisRoot>& known) const {
     auto root = std::make_shared<BasisRoot>();
-    take(root->stiffness, model_.reference_stiffness(prior_.theta));
-    take(root->mass, model_.mass(prior_.theta));
-    root->mass.prune(0.0);  // of each pair of nodes' 3 x 3 block, a third
+    root->terms = BodyTerms(model_, prior_.theta);
     root->fixed = model_.fixed(prior_.theta);
-    root->loads = acting_loads(model_, prior_, root->mass);
+    const bool same_hold = known && known->fixed == root->fixed;
+    bool same_body = same_hold && known->terms.same_body(root->terms);
+    if (!same_body) {
+      root->stiffness = shared(model_.reference_stiffness(prior_.theta));
+      SparseMatrix mass = model_.mass(prior_.theta);
+      mass.prune(0.0);  // of each pair of nodes' 3 x 3 block, a third
+      root->mass = shared(std::move(mass));
+      same_body = same_hold && same(*known->stiffness, *root->stiffness) && same(*known->mass, *root->mass);
+    }
+    if (same_body) root->take_body(*known);
+    root->loads = acting_loads(model_, prior_, *root->mass);
     root->groups = stiffness_groups(model_, prior_);
     const Eigen::Index most = std::max(options_.size, options_.largest), free_dofs = model_.fem().dof_count() / 2;
     root->size = std::min<Eigen::Index>(options_.size, std::min(most, free_dofs));
-    const bool same_body = known && known->same_body(*root);
     if (same_body && known->same_motion(*root)) return known;
-    root->held = same_body
-                     ? known->held
-                     : std::make_shared<StaticResponse>(root->stiffness, root->mass, root->fixed, options_.coarser.get());
-    OrthonormalBasis basis(root->mass, root->size);
+    if (!root->held) {
+      root->held = std::make_shared<StaticResponse>(*root->stiffness, *root->mass, root->fixed, options_.coarser.get());
+    }
+    OrthonormalBasis basis(*root->mass, root->size);
     const bool between = root->held->grids() != nullptr && root->groups.empty();
     if (root->loads.cols() > 0) {
       between ? refine(basis, *root) : extend(basis, *root->held, root->loads, root->groups, root->size);
@@ -156,14 +206,14 @@ class Builder {
   // The same from the vectors of the coarser mesh: static responses to the loads and to the inertia of each, all at once.
   static void refine(OrthonormalBasis& basis, const BasisRoot& root) {
     const TwoGrid& grids = *root.held->grids();
-    const SparseMatrix mass = grids.to_coarse(root.mass);
+    const SparseMatrix mass = grids.to_coarse(*root.mass);
     OrthonormalBasis coarse(mass, std::min(root.size, mass.rows()));
     const CoarseResponse respond{grids};
     extend(coarse, respond, grids.to_coarse(root.loads), {}, root.size);
     Eigen::MatrixXd loads(root.loads.rows(), root.size);
     const Eigen::Index first = std::min(root.loads.cols(), root.size), rest = std::min(root.size - first, coarse.size());
     loads.leftCols(first) = root.loads.leftCols(first);
-    loads.middleCols(first, rest) = symmetric_product(root.mass, grids.to_fine(coarse.vectors().leftCols(rest)));
+    loads.middleCols(first, rest) = symmetric_product(*root.mass, grids.to_fine(coarse.vectors().leftCols(rest)));
     basis.add(root.held->roughly(loads.leftCols(first + rest)), root.size);
   }
 
@@ -294,7 +344,7 @@ class Builder {
   BasisOptions options_;
   PriorView prior_;
   std::shared_ptr<const BasisRoot> root_;
-  const SparseMatrix &mass_ = root_->mass, &stiffness_ = root_->stiffness;
+  const SparseMatrix &mass_ = *root_->mass, &stiffness_ = *root_->stiffness;
 };
 
 }  // namespace

@@ -101,6 +101,14 @@ std::string Value::shown() const {
   return shortened("{" + text + "}");
 }
 
+bool Value::same(const Value& other) const {
+  const auto same_entry = [](const auto& a, const auto& b) { return a.first == b.first && a.second.same(b.second); };
+  return type_ == other.type_ && boolean_ == other.boolean_ && number_ == other.number_ && text_ == other.text_ &&
+         std::equal(items_.begin(), items_.end(), other.items_.begin(), other.items_.end(),
+                    [](const Value& a, const Value& b) { return a.same(b); }) &&
+         std::equal(entries_.begin(), entries_.end(), other.entries_.begin(), other.entries_.end(), same_entry);
+}
+
 bool Value::has(const std::string& key) const {
   insert_once(asked_, key);
   return std::any_of(entries_.begin(), entries_.end(), [&](const auto& entry) { return entry.first == key; });

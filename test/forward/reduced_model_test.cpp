@@ -62,13 +62,14 @@ TEST(ReducedModel, FollowsTheFullOneUnderLoads) {
   EXPECT_LT(away, 1e-3);
 }
 
-// An effect that is absent at the prior leaves the root alone; another prior or another load does not.
+// An effect that is absent at the prior leaves the root alone, another modulus changes nothing but a factor; another load
+// or another body is another root.
 TEST(ReducedModel, TakesOverARelativesRootOnlyWhereItIsItsOwn) {
   const TetMesh mesh = bar_mesh(5);
   const std::string modulus = elastic("{prior: 3.0e4, factor: 2}");
   const std::vector<std::vector<std::string>> lists = {
       {kInertia, modulus, kFixed, kGravity, "foundation: {region: top, stiffness: {mean: 0, std: 1.0e4}}"},
-      {kInertia, elastic("{prior: 4.0e4, factor: 2}"), kFixed, kGravity},
+      {kInertia, modulus, kFixed, kGravity, "foundation: {region: top, stiffness: 1.0e4}"},
       {kInertia, modulus, kFixed, "gravity: {acceleration: [3, 0, -1]}"}};
   const Model base(box_settings({kInertia, modulus, kFixed, kGravity}), mesh);
   BasisOptions options;
@@ -80,9 +81,41 @@ TEST(ReducedModel, TakesOverARelativesRootOnlyWhereItIsItsOwn) {
     EXPECT_EQ(alone.basis(), beside.basis()) << effects[1] << effects.back();
   }
   const Model more(box_settings(lists.front()), mesh), other(box_settings(lists.back()), mesh);
+  const Model harder(box_settings({kInertia, elastic("{prior: 4.0e4, factor: 2}"), kFixed, kGravity}), mesh);
   const auto root = build_reduced_basis(base, options).root;
   EXPECT_EQ(build_reduced_basis(more, options, root).root, root);
+  EXPECT_EQ(build_reduced_basis(harder, options, root).root, root);
   EXPECT_NE(build_reduced_basis(other, options, root).root, root);
+  const Model reused(harder.settings(), base);
+  const Eigen::VectorXd alone = ReducedModel(harder).modes(prior(harder))->square;
+  const Eigen::VectorXd beside = ReducedModel(reused, options, &relative).modes(prior(reused))->square;
+  EXPECT_LT(((alone - beside).array() / alone.array()).head(20).abs().maxCoeff(), 1e-6);
+}
+
+TEST(Model, SharesWithARelativeWhatBothHaveOfTheBody) {
+  const auto model_of = [](const std::string& density, const std::string& ratio) {
+    return box_settings({"inertia: {density: " + density + "}", elastic("{prior: 3.0e4, factor: 2}", "near"),
+                         "elasticity: {law: linear, region: far, young_modulus: 1.0e4, poisson_ratio: " + ratio + "}",
+                         kFixed, kGravity});
+  };
+  const Model base(model_of("1000", "0.4"), bar_mesh());
+  const Model lighter(model_of("900", "0.4"), base), other(model_of("1000", "0.3"), base);
+  const auto matrix = [](const Model& model, std::size_t part) {
+    const LinearTerms& terms = model.parts()[part].terms;
+    return (part == 0 ? terms.mass : terms.stiffness).front().matrix;
+  };
+  EXPECT_EQ(&lighter.fem(), &base.fem());
+  EXPECT_NE(matrix(lighter, 0), matrix(base, 0));
+  EXPECT_EQ(matrix(other, 0), matrix(base, 0));
+  EXPECT_EQ(matrix(lighter, 2), matrix(base, 2));
+  EXPECT_NE(matrix(other, 2), matrix(base, 2));
+  for (const Model* model : {&lighter, &other}) {
+    const Model alone(model->settings(), bar_mesh());
+    const Eigen::VectorXd theta = prior(alone);
+    EXPECT_EQ((alone.mass(theta) - model->mass(theta)).norm(), 0.0);
+    EXPECT_EQ((alone.stiffness(theta) - model->stiffness(theta)).norm(), 0.0);
+    EXPECT_EQ(alone.fixed(theta), model->fixed(theta));
+  }
 }
 
 // What was absent there acts here, in another place of the list; of a support that is missing here nothing is left.

@@ -119,6 +119,17 @@ TEST(Value, UnreadKeysAreErrorsWithWhatWasAskedFor) {
   EXPECT_NO_THROW(root.require_all_read());
 }
 
+TEST(Value, IsTheSameWhereverItWasWritten) {
+  const std::string text = "{a: [1, two, true], b: {c: }}";
+  const auto value = [](const std::string& of) { return parse_yaml("x: 0\ny: " + of, "m.yaml").at("y"); };
+  EXPECT_TRUE(parse_yaml("y: " + text, "other.yaml").at("y").same(value(text)));
+  for (const char* other : {"{a: [1, two, false], b: {c: }}", "{a: [1, two], b: {c: }}", "{a: [1.5, two, true], b: {c: }}",
+                            "{a: [1, two, true], b: {d: }}", "{a: [1, two, true]}", "1"}) {
+    EXPECT_FALSE(value(text).same(value(other))) << other;
+    EXPECT_FALSE(value(other).same(value(text))) << other;
+  }
+}
+
 TEST(Value, UnreadKeysInsideListsAreFound) {
   const Value root = parse_yaml("a:\n- {b: 1}\n- {b: 1, c: 2}\n", "m.yaml");
   for (const Value& item : root.at("a").items()) item.at("b").as_integer(0, 9);

@@ -88,8 +88,7 @@ class Study {
   Eigen::VectorXd spread_beyond(const Study& base) const;
 
  private:
-  Study(const ModelSettings& settings, const TetMesh& mesh, std::map<std::string, Region> regions,
-        const Recording& recording, const BasisOptions& basis, const ForwardModel* relative);
+  void prepare(const BasisOptions& basis, const ForwardModel* relative);
   FitProblem problem(const ForwardModel& forward, const std::vector<Frame>& frames) const;
   /// All of them, or copies in `room`.
   const std::vector<Frame>& first_of_training(double share, std::vector<Frame>& room) const;

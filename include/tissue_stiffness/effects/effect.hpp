@@ -78,6 +78,10 @@ class Effect {
  public:
   virtual ~Effect() = default;
 
+  /// It follows from its own entry, the mesh and its regions alone, and nothing changes it: models of one body may share
+  /// it.
+  virtual bool shareable() const { return false; }
+
   virtual void linear_terms(LinearTerms&) const {}
   /// Its parameters are followed by those of the model's elasticities.
   virtual bool needs_elasticity() const { return false; }

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tissue_stiffness/effects/registry.hpp"
@@ -37,14 +38,16 @@ class Model {
   Model(const ModelSettings& settings, const TetMesh& mesh);
   /// With the regions' parts of the mesh as given, whatever shapes the settings have for them.
   Model(const ModelSettings& settings, const TetMesh& mesh, std::map<std::string, Region> regions);
+  /// Of a relative's mesh and regions; the body, and what both models have in common of it, they share.
+  Model(const ModelSettings& settings, const Model& relative);
   Model(const Model&) = delete;
   Model& operator=(const Model&) = delete;
 
-  const TetMesh& mesh() const { return mesh_; }
-  const Discretisation& fem() const { return fem_; }
+  const TetMesh& mesh() const { return body_->mesh; }
+  const Discretisation& fem() const { return body_->fem; }
   /// Displacement of the body before anything moves it: 3n zeros.
   const Eigen::VectorXd& rest() const { return rest_; }
-  const std::map<std::string, Region>& regions() const { return regions_; }
+  const std::map<std::string, Region>& regions() const { return body_->regions; }
   const std::vector<FreeParameter>& free_parameters() const { return free_; }
   const std::vector<LoadInput>& load_inputs() const { return inputs_; }
   CourseTable& courses() { return courses_; }
@@ -129,7 +132,7 @@ class Model {
   /// One effect in the model: its terms and where its parameters stand in theta.
   struct Part {
     std::string label;
-    std::unique_ptr<Effect> effect;
+    std::shared_ptr<const Effect> effect;
     std::vector<int> indices;  ///< of its parameters in theta
     LinearTerms terms;
     Eigen::VectorXd parameters(const Eigen::VectorXd& theta) const;
@@ -145,8 +148,16 @@ class Model {
   double finite_share(const Part& part, const Eigen::VectorXd& theta) const;
 
  private:
+  struct Body {
+    Body(const TetMesh& of, std::map<std::string, Region> with) : mesh(of), fem(mesh), regions(std::move(with)) {}
+    TetMesh mesh;
+    Discretisation fem;
+    std::map<std::string, Region> regions;
+  };
+  Model(const ModelSettings& settings, std::shared_ptr<const Body> body, const Model* relative);
   EffectContext context();
-  void add_part(const EffectSettings& settings, const EffectContext& context);
+  void add_part(const EffectSettings& settings, const EffectContext& context, const Model* relative);
+  std::shared_ptr<const Effect> shared_effect(const EffectSettings& settings) const;
   void add_parameters(const EffectSettings& settings, Part& part);
   void link_elasticities();
   void check_laws() const;
@@ -155,10 +166,8 @@ class Model {
   SparseMatrix sum_stiffness(const Eigen::VectorXd& theta, bool reference) const;
 
   ModelSettings settings_;
-  TetMesh mesh_;
-  Discretisation fem_;
+  std::shared_ptr<const Body> body_;
   Eigen::VectorXd rest_;
-  std::map<std::string, Region> regions_;
   CourseTable courses_;
   std::vector<LoadInput> inputs_;
   std::vector<Part> parts_;

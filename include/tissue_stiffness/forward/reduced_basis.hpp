@@ -40,7 +40,8 @@ struct BasisOptions {
 /// Load-dependent Ritz vectors (Wilson, Yuan & Dickens 1982), repeated K^-1 M solves from the static responses to the
 /// loads. Several moduli: K = sum E_r K_r, the basis holds K^-1 K_r x too. Terms that are zero at the prior give their
 /// static responses to the leading motion, K^-1 dK_j x, K^-1 dM_j x and K^-1 dF_j, the most common of them first (proper
-/// orthogonal decomposition). `known`: another model's root, taken over as far as it is this one's too, bit for bit. Throws
+/// orthogonal decomposition). `known`: another model's root, taken over as far as it is this one's too: of a body that both
+/// share (see Model), with a stiffness in proportion. Throws
 /// InputError for a model that nothing moves.
 ReducedBasis build_reduced_basis(const Model& model, const BasisOptions& options,
                                  const std::shared_ptr<const BasisRoot>& known = nullptr);

@@ -38,6 +38,9 @@ class Value {
   const std::string& path() const { return path_; }
   std::string shown() const;  ///< the value as a user would write it, shortened
 
+  /// Of the same content, wherever it was written.
+  bool same(const Value& other) const;
+
   bool has(const std::string& key) const;
   std::vector<std::string> keys() const;
 
