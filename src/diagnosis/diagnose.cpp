@@ -104,7 +104,7 @@ Eigen::MatrixXd doubt_of_nonlinear(const Fitted& fitted, const Recording& record
   const MeshError::Question question(model, recording.frames, w, fitted.fit.covariance.diagonal().cwiseSqrt(),
                                      model.prior_std());
   try {
-    return mesh_doubt(model, MeshError(model.settings(), model.mesh(), model.theta(w)).study(question).shift);
+    return mesh_doubt(model, MeshError(model, model.theta(w)).study(question).shift);
   } catch (const NumericalError&) {
     return none;
   }
@@ -147,7 +147,7 @@ Diagnosis diagnose(const ModelSettings& settings, const TetMesh& mesh, const Rec
   for (std::size_t k = 0; k < most; ++k) {
     if (k >= asked && finding.verdict != "missing" && finding.verdict != "unexplained") break;
     const std::vector<Refit> refits =
-        k < asked ? look(model, {options.add[k]}, options, finding.by_mesh, finding.library).refits : finding.refits;
+        k < asked ? look(model, {options.add[k]}, options, finding.finer, finding.library).refits : finding.refits;
     if (refits.empty() || (k >= asked && !proven(model, refits.front()))) break;
     if (k >= asked && finding.verdict == "unexplained" && !takes_a_part(model, refits.front(), recording)) break;
     const Refit& best = refits.front();
@@ -163,14 +163,14 @@ Diagnosis diagnose(const ModelSettings& settings, const TetMesh& mesh, const Rec
       out.final_verdict = "adequate";
       break;
     }
-    finding = look(model, {}, options, finding.by_mesh, library);
+    finding = look(model, {}, options, finding.finer, library);
     out.final_verdict = finding.verdict;
   }
   fit_entries(out.entries, model.study->model(), model.fit);  // what was added first was fitted while the rest was missing
   out.estimate = summarise(model.study->model().free_parameters(), model.fit.w,
                            model.fit.covariance + doubt_of_nonlinear(model, recording));
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
-  options.at_end(out, given.study ? given : model, model);
+  options.at_end(out, given.study ? given : model, model, finding.finer.study.get());
   return out;
 }
 

@@ -103,8 +103,8 @@ bool proven(const Fitted& base, const Refit& refit) {
 }
 
 Finding look(const Fitted& base, const std::vector<std::string>& wanted, const DiagnosisOptions& options,
-             const Eigen::VectorXd& by_mesh, const Library& library) {
-  const FirstLook look(base, options, by_mesh, library);
+             const FinerMesh& finer, const Library& library) {
+  const FirstLook look(base, options, finer, library);
   require_proposed(look, wanted);
   Finding out;
   out.refits = search_refits(look, wanted, options);
@@ -112,7 +112,7 @@ Finding look(const Fitted& base, const std::vector<std::string>& wanted, const D
   if (out.verdict == "missing" || out.verdict == "unexplained") out.set = set_of(look, out.refits);
   out.effects = describe(look, out.refits);
   out.floor = look.floor;
-  out.by_mesh = look.mesh_change;
+  out.finer = {look.mesh_change, look.finer};
   out.library = look.library;
   return out;
 }

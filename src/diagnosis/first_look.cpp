@@ -3,6 +3,7 @@
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "tissue_stiffness/diagnosis/finding.hpp"
 
@@ -22,13 +23,14 @@ constexpr double kElsewhere = 0.2;
 
 }  // namespace
 
-FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Eigen::VectorXd change, Library earlier)
+FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, FinerMesh earlier, Library known_library)
     : base(fitted),
       rows(fitted.rows.count()),
       cost(fitted.rows.error.squaredNorm()),
-      first(change.size() == 0),
-      library(std::move(earlier)),
-      mesh_change(std::move(change)) {
+      first(earlier.change.size() == 0),
+      library(std::move(known_library)),
+      mesh_change(std::move(earlier.change)),
+      finer(std::move(earlier.study)) {
   const std::string step = "tangents of the library, and what a finer mesh would change";
   options.progress(step, 0, 0);
   const Study::Rows& r = base.rows;
@@ -42,7 +44,10 @@ FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Eige
         known = base_tangents(*base.study, base.fit.w, base.fit.covariance.diagonal().cwiseSqrt(), r);
       },
       [&] {
-        if (!mesh_change.any() || worsens(mesh_change)) mesh_change = finer_mesh(base);
+        if (mesh_change.any() && !worsens(mesh_change)) return;
+        FinerMesh now = finer_mesh(base, finer.get());
+        mesh_change = std::move(now.change);
+        if (now.study) finer = std::move(now.study);
       });
   if (worsens(mesh_change)) mesh_change.setZero();
   by_mesh = cost - (r.error - mesh_change).squaredNorm();

@@ -338,7 +338,7 @@ void Search::compare_on_finer_mesh() {
       leaders.size(), [&](std::size_t i) { return "on a finer mesh: " + leaders[i]->effects.front(); },
       [&](std::size_t i) {  // a fit that ends in another minimum there speaks against nothing
         double& cost = leaders[i]->cost_beside_mesh;
-        cost = std::min(cost, cost_on_finer_mesh(look_.base, *leaders[i]));
+        cost = std::min(cost, cost_on_finer_mesh(look_.base, *leaders[i], look_.finer.get()));
       });
   sort_refits();
 }

@@ -11,10 +11,10 @@ class Estimator::Implementation {
   std::unique_ptr<Scheme> scheme;
 };
 
-Estimator::Estimator(const ModelSettings& settings, const TetMesh& mesh)
+Estimator::Estimator(const ModelSettings& settings, const TetMesh& mesh, const Relatives& relatives)
     : implementation_(std::make_unique<Implementation>(settings.estimator == EstimatorKind::paper
                                                            ? make_paper_scheme(settings, mesh)
-                                                           : make_unscented_scheme(settings, mesh))) {}
+                                                           : make_unscented_scheme(settings, mesh, relatives))) {}
 Estimator::~Estimator() = default;
 Estimator::Estimator(Estimator&&) noexcept = default;
 

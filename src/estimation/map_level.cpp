@@ -109,7 +109,7 @@ const MapLevel::MeshStudy& MapLevel::mesh_study() {
   const MeshError::Question q(model_, question_.frames, filter_->anchor(), filter_->spread(),
                               prior_covariance_.diagonal().cwiseSqrt());
   try {
-    study_->answer = MeshError(model_.settings(), model_.mesh(), model_.regions(), basis_, model_.theta(q.w)).study(q);
+    study_->answer = MeshError(model_, model_.theta(q.w), basis_).study(q);
   } catch (const NumericalError& error) {
     study_->why_not = error.what();
   }

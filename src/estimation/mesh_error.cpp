@@ -102,27 +102,24 @@ Eigen::MatrixXd mesh_doubt(const Model& model, const Eigen::VectorXd& shift) {
 }
 
 struct MeshError::Studies {
-  Model coarse, fine;
-  ReducedModel coarse_runs, fine_runs;
+  Model coarse;
+  std::unique_ptr<Model> fine;
+  std::unique_ptr<ReducedModel> coarse_runs, fine_runs;
   std::vector<std::unique_ptr<ObservationOperator>> operators;
 
   // The finer model knows theta, if there is one.
-  Studies(const ModelSettings& settings, const TetMesh& mesh, const std::map<std::string, Region>& regions,
-          const BasisOptions& basis, const Eigen::VectorXd* theta)
-      : Studies(settings, mesh, regions, basis, finer(mesh, settings.mesh), theta) {}
-
- private:
-  Studies(const ModelSettings& settings, const TetMesh& mesh, const std::map<std::string, Region>& regions,
-          const BasisOptions& basis, const TetMesh& refined, const Eigen::VectorXd* theta)
-      : coarse(settings, mesh, regions),
-        fine(settings, refined, refine(regions, mesh, refined)),
-        coarse_runs(coarse, of_linear_part(basis)),
-        fine_runs(knowing(theta, fine), of_linear_part(basis_beside(mesh, refined))),
-        operators(make_observation_operators(coarse)) {}
-
-  static const Model& knowing(const Eigen::VectorXd* theta, Model& model) {
-    if (theta != nullptr) model.know(*theta);
-    return model;
+  Studies(const Model& model, const BasisOptions& basis, const Eigen::VectorXd* theta, const Relatives& known)
+      : coarse(model.settings(), model), operators(make_observation_operators(coarse)) {
+    coarse_runs = std::make_unique<ReducedModel>(coarse, of_linear_part(basis), known.own);
+    if (known.finer != nullptr) {
+      fine = std::make_unique<Model>(coarse.settings(), known.finer->model());
+    } else {
+      const TetMesh refined = finer(coarse.mesh(), coarse.settings().mesh);
+      fine = std::make_unique<Model>(coarse.settings(), refined, refine(coarse.regions(), coarse.mesh(), refined));
+    }
+    if (theta != nullptr) fine->know(*theta);
+    fine_runs =
+        std::make_unique<ReducedModel>(*fine, of_linear_part(basis_beside(coarse.mesh(), fine->mesh())), known.finer);
   }
 };
 
@@ -144,14 +141,10 @@ std::string MeshError::why_not(const Model& model) {
   return why_not(model.mesh());
 }
 
-MeshError::MeshError(const ModelSettings& settings, const TetMesh& mesh)
-    : studies_(
-          std::make_unique<Studies>(settings, mesh, resolve_regions(settings.regions, mesh), BasisOptions(), nullptr)) {}
-MeshError::MeshError(const ModelSettings& settings, const TetMesh& mesh, const Eigen::VectorXd& theta)
-    : MeshError(settings, mesh, resolve_regions(settings.regions, mesh), {}, theta) {}
-MeshError::MeshError(const ModelSettings& settings, const TetMesh& mesh, const std::map<std::string, Region>& regions,
-                     const BasisOptions& basis, const Eigen::VectorXd& theta)
-    : studies_(std::make_unique<Studies>(settings, mesh, regions, basis, &theta)) {}
+MeshError::MeshError(const Model& model)
+    : studies_(std::make_unique<Studies>(model, BasisOptions(), nullptr, Relatives())) {}
+MeshError::MeshError(const Model& model, const Eigen::VectorXd& theta, const BasisOptions& basis, const Relatives& known)
+    : studies_(std::make_unique<Studies>(model, basis, &theta, known)) {}
 MeshError::~MeshError() = default;
 
 MeshError::Question::Question(const Model& model, std::vector<Frame> seen, Eigen::VectorXd at, Eigen::VectorXd around,
@@ -174,22 +167,22 @@ Eigen::VectorXd MeshError::Answer::believed(double mean_square) const {
 MeshError::Answer MeshError::study(const Question& q) {
   Studies& s = *studies_;
   drive(q, s.coarse);
-  drive(q, s.fine);
+  drive(q, *s.fine);
   const std::vector<int> nodes = observed_nodes(s.operators, q.frames);
-  s.coarse_runs.focus(nodes);
-  s.fine_runs.focus(nodes);
+  s.coarse_runs->focus(nodes);
+  s.fine_runs->focus(nodes);
   // Nodes of the coarse mesh keep their numbers in the finer one, whose run is seen through them.
   std::vector<Prediction> truth;
   const Eigen::VectorXd theta = s.coarse.theta(q.w);
-  const auto run = s.fine_runs.start(theta, q.start);
+  const auto run = s.fine_runs->start(theta, q.start);
   for (const Frame& frame : q.frames) {
-    run->advance(frame.time - s.fine.delay(theta));
+    run->advance(frame.time - s.fine->delay(theta));
     const Eigen::VectorXd u = run->displacement().head(s.coarse.fem().dof_count());
     truth.push_back(predict_frame(s.coarse, s.operators, frame, theta, u));
   }
   const auto run_coarse = [&](AnchoredFilter& filter, const Eigen::VectorXd& anchor) {
     filter.move_anchor(anchor, q.spread);
-    Ensemble ensemble(s.coarse, s.coarse_runs, s.operators);
+    Ensemble ensemble(s.coarse, *s.coarse_runs, s.operators);
     ensemble.restart(filter.sigma_points(), {q.start});
     for (std::size_t k = 0; k < q.frames.size(); ++k) {
       ensemble.advance(q.frames[k].time);

@@ -6,7 +6,7 @@
 #include "tissue_stiffness/estimation/compare.hpp"
 #include "tissue_stiffness/estimation/ensemble.hpp"
 #include "tissue_stiffness/estimation/posterior.hpp"
-#include "tissue_stiffness/forward/reduced_basis.hpp"
+#include "tissue_stiffness/forward/reduced_model.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -27,15 +27,18 @@ bool saw_something(const Observation& observation) {
 
 }  // namespace
 
-Scheme::Scheme(const ModelSettings& settings, const TetMesh& mesh)
-    : model_(std::make_unique<Model>(settings, mesh)), operators_(make_observation_operators(*model_)) {
+Scheme::Scheme(const ModelSettings& settings, const TetMesh& mesh, const Relatives& relatives)
+    : model_(relatives.own != nullptr ? std::make_unique<Model>(settings, relatives.own->model())
+                                      : std::make_unique<Model>(settings, mesh)),
+      operators_(make_observation_operators(*model_)) {
   if (model_->free_parameters().empty()) {
     throw InputError(settings.name + ": effects", "only known numbers", "at least one {prior, factor} or {mean, std}");
   }
   if (operators_.empty()) throw InputError(settings.name + ": observations", "an empty list", "at least one entry");
   BasisOptions basis;
   if (mesh.node_count() > kManyNodes) basis.size = kFewVectors;
-  forward_ = make_forward_model(*model_, basis);
+  basis.keep_root = relatives.own != nullptr;
+  forward_ = make_forward_model(*model_, basis, relatives.own);
   displacement_ = Eigen::Matrix3Xd::Zero(3, mesh.node_count());
   const Eigen::VectorXd std = model_->prior_std();
   estimate_ = summarise(model_->free_parameters(), model_->prior_mean(), std.cwiseAbs2().asDiagonal());

@@ -27,8 +27,11 @@ constexpr double kInvalidSigmas = 10.0;     // rms error over noise at which the
 
 class UnscentedScheme : public Scheme {
  public:
-  UnscentedScheme(const ModelSettings& settings, const TetMesh& mesh)
-      : Scheme(settings, mesh), track_(new_track()), unstudied_(MeshError::why_not(*model_)) {}
+  UnscentedScheme(const ModelSettings& settings, const TetMesh& mesh, const Relatives& relatives)
+      : Scheme(settings, mesh, relatives),
+        track_(new_track()),
+        unstudied_(MeshError::why_not(*model_)),
+        relatives_(relatives) {}
 
   std::vector<std::string> description() const override {
     const std::string why = unstudied_ + failure_;
@@ -258,10 +261,10 @@ class UnscentedScheme : public Scheme {
     MeshError::Question question(*model_, frames_, filter.mean(), filter.spread(), model_->prior_std());
     const auto study = [this, once = replaying(), question = std::move(question)] {
       if (once) {
-        studied_ = MeshError(model_->settings(), model_->mesh(), model_->theta(question.w)).study(question);
+        studied_ = MeshError(*model_, model_->theta(question.w), {}, relatives_).study(question);
         return;
       }
-      if (mesh_error_ == nullptr) mesh_error_ = std::make_unique<MeshError>(model_->settings(), model_->mesh());
+      if (mesh_error_ == nullptr) mesh_error_ = std::make_unique<MeshError>(*model_);
       studied_ = mesh_error_->study(question);
     };
     study_ = background() ? aside(study) : std::async(std::launch::deferred, study);  // with every core
@@ -277,7 +280,8 @@ class UnscentedScheme : public Scheme {
   bool complete_ = true;              ///< every frame since the track's start is in frames_
   std::unique_ptr<Revisit> revisit_;  ///< under way
 
-  std::string unstudied_;                         ///< why the mesh's error is not assessed; empty: it is
+  std::string unstudied_;  ///< why the mesh's error is not assessed; empty: it is
+  const Relatives relatives_;
   std::string failure_;                           ///< of the last study; more frames may settle the next
   std::unique_ptr<MeshError> mesh_error_;         ///< the study's own; only its thread touches it
   MeshError::Answer studied_;                     ///< the same
@@ -288,8 +292,9 @@ class UnscentedScheme : public Scheme {
 
 }  // namespace
 
-std::unique_ptr<Scheme> make_unscented_scheme(const ModelSettings& settings, const TetMesh& mesh) {
-  return std::make_unique<UnscentedScheme>(settings, mesh);
+std::unique_ptr<Scheme> make_unscented_scheme(const ModelSettings& settings, const TetMesh& mesh,
+                                              const Relatives& relatives) {
+  return std::make_unique<UnscentedScheme>(settings, mesh, relatives);
 }
 
 }  // namespace tissue_stiffness

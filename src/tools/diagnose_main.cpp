@@ -32,11 +32,12 @@ using namespace tissue_stiffness;
 
 /// What an estimator makes of the last model; of one that is integrated in full what the fit made of it: that would take as
 /// long as the diagnosis.
-Estimate estimate_at_last(const Diagnosis& diagnosis, const Fitted& given, const Fitted& last) {
+Estimate estimate_at_last(const Diagnosis& diagnosis, const Fitted& given, const Fitted& last, const Study* finer) {
   if (last.study->model().nonlinear()) return diagnosis.estimate;
   const Recording& recording = given.study->recording();
   const Model& model = given.study->model();
-  Estimator estimator(extend_model(model.settings(), diagnosis.entries), model.mesh());
+  const Relatives relatives{last.study->reduced().get(), finer != nullptr ? finer->reduced().get() : nullptr};
+  Estimator estimator(extend_model(model.settings(), diagnosis.entries), model.mesh(), relatives);
   estimator.set_first_stamp(recording.first_stamp);
   for (const LoadSample& load : recording.loads) estimator.add_load(load);
   estimator.replay(recording.frames);
@@ -54,8 +55,8 @@ void try_run(const std::string& what, const std::function<void()>& run) {
 
 /// What the report shows beyond the diagnosis: the estimate, and the free runs of the given model and, where effects were
 /// added, the last one's.
-void run_once_more(const Diagnosis& diagnosis, Fitted& given, Fitted& last, const std::vector<double>& stamps,
-                   Estimate& estimate, std::vector<Replay>& replays) {
+void run_once_more(const Diagnosis& diagnosis, Fitted& given, Fitted& last, const Study* finer,
+                   const std::vector<double>& stamps, Estimate& estimate, std::vector<Replay>& replays) {
   const auto replay = [&](Fitted& fitted, const std::string& name) {
     Replay out = replay_model(fitted, stamps);
     out.name = name;
@@ -63,13 +64,13 @@ void run_once_more(const Diagnosis& diagnosis, Fitted& given, Fitted& last, cons
   };
   Replay extended;
   replays.emplace_back();
-  tbb::parallel_invoke([&] { try_run("the estimator", [&] { estimate = estimate_at_last(diagnosis, given, last); }); },
-                       [&] { replays.front() = replay(given, "as given"); },
-                       [&] {
-                         if (&last == &given) return;
-                         try_run("the extended model",
-                                 [&] { extended = replay(last, "with " + effect_list(diagnosis.final_effects)); });
-                       });
+  tbb::parallel_invoke(
+      [&] { try_run("the estimator", [&] { estimate = estimate_at_last(diagnosis, given, last, finer); }); },
+      [&] { replays.front() = replay(given, "as given"); },
+      [&] {
+        if (&last == &given) return;
+        try_run("the extended model", [&] { extended = replay(last, "with " + effect_list(diagnosis.final_effects)); });
+      });
   if (!extended.name.empty()) replays.push_back(std::move(extended));
 }
 
@@ -102,10 +103,10 @@ int main(int argc, char** argv) {
     options.progress = say;
     Estimate estimate;
     Showing showing{recording.first_stamp, {}, reader.reader().pictures()};
-    options.at_end = [&](const Diagnosis& found, Fitted& given, Fitted& last) {
+    options.at_end = [&](const Diagnosis& found, Fitted& given, Fitted& last, const Study* finer) {
       say("run the models once more for the report");
       estimate = found.estimate;
-      run_once_more(found, given, last, reader.reader().picture_stamps(), estimate, showing.replays);
+      run_once_more(found, given, last, finer, reader.reader().picture_stamps(), estimate, showing.replays);
     };
     Diagnosis diagnosis = diagnose(settings, reader.mesh(), recording, options);
     diagnosis.estimate = std::move(estimate);

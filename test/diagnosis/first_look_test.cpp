@@ -41,7 +41,7 @@ class BarWithADamping : public ::testing::Test {
 
 TEST_F(BarWithADamping, CountsAMeshsChangeThatIsPartOfTheError) {
   const Eigen::VectorXd part = 0.3 * base_.rows.error;
-  const FirstLook look(base_, {}, part);
+  const FirstLook look(base_, {}, {part});
   EXPECT_EQ(look.mesh_change, part);
   EXPECT_NEAR(look.by_mesh, (1.0 - 0.49) * look.cost, 1e-9 * look.cost);
   EXPECT_GT(look.floor, 0.0);
@@ -50,7 +50,7 @@ TEST_F(BarWithADamping, CountsAMeshsChangeThatIsPartOfTheError) {
 
 // A fit on a finer mesh that ended in another minimum: no effect has to explain more than that.
 TEST_F(BarWithADamping, DropsAMeshsChangeThatMakesTheErrorMuchLarger) {
-  const FirstLook look(base_, {}, -0.3 * base_.rows.error);
+  const FirstLook look(base_, {}, {-0.3 * base_.rows.error});
   EXPECT_FALSE(look.mesh_change.any());
   EXPECT_EQ(look.by_mesh, 0.0);
   EXPECT_EQ(look.floor, 0.0);
@@ -59,7 +59,7 @@ TEST_F(BarWithADamping, DropsAMeshsChangeThatMakesTheErrorMuchLarger) {
 
 // Amplitudes of tangents are counted from where the effect is absent: a scale is 1 there.
 TEST_F(BarWithADamping, CountsAmplitudesFromWhereAnEffectIsAbsent) {
-  const FirstLook look(base_, {}, Eigen::VectorXd::Zero(base_.rows.error.size()));
+  const FirstLook look(base_, {}, {Eigen::VectorXd::Zero(base_.rows.error.size())});
   std::map<std::string, double> absent;
   for (const Candidate& candidate : look.candidates) absent[candidate.effect] = candidate.absent;
   EXPECT_EQ(absent.at("image_scale"), 1.0);
@@ -69,7 +69,7 @@ TEST_F(BarWithADamping, CountsAmplitudesFromWhereAnEffectIsAbsent) {
 // What an earlier look's models hold, they hold once one of its effects has been added, too.
 TEST_F(BarWithADamping, ReadsTangentsInTheVectorsOfAnEarlierLook) {
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(base_.rows.error.size());
-  const FirstLook first(base_, {}, none);
+  const FirstLook first(base_, {}, {none});
   ModelSettings damped = given_;
   add_effect(damped, "viscous_damping: {beta: {prior: 5.0e-3, factor: 2}}");
   Fitted next;
@@ -77,7 +77,7 @@ TEST_F(BarWithADamping, ReadsTangentsInTheVectorsOfAnEarlierLook) {
   const Model& model = next.study->model();
   next.fit = next.study->fit(model.prior_mean(), 0.1 * model.prior_std());
   next.rows = next.study->rows(next.fit.w);
-  const FirstLook alone(next, {}, none), after(next, {}, none, first.library);
+  const FirstLook alone(next, {}, {none}), after(next, {}, {none}, first.library);
   ASSERT_EQ(alone.candidates.size(), after.candidates.size());
   double worst = 0.0;
   for (std::size_t c = 0; c < alone.candidates.size(); ++c) {
@@ -97,14 +97,14 @@ TEST_F(BarWithADamping, IsExplainedByWhatLeavesLittle) {
     refit.cost = look.rows + (1.0 - share) * look.structured();
     return look.explained_by(refit);
   };
-  const FirstLook strong(base_, {}, 1e-6 * base_.rows.error);
+  const FirstLook strong(base_, {}, {1e-6 * base_.rows.error});
   ASSERT_GT(strong.structured(), strong.rows);
   EXPECT_FALSE(explained(strong, 0.84, {"a"}));
   EXPECT_TRUE(explained(strong, 0.86, {"a"}));
   EXPECT_FALSE(explained(strong, 0.96, {"a", "b"}));
   EXPECT_TRUE(explained(strong, 0.98, {"a", "b"}));
   base_.rows.error *= std::sqrt(1.4 * strong.rows / strong.cost);
-  const FirstLook faint(base_, {}, 1e-6 * base_.rows.error);
+  const FirstLook faint(base_, {}, {1e-6 * base_.rows.error});
   EXPECT_TRUE(explained(faint, 0.84, {"a"}));
   EXPECT_FALSE(explained(faint, 0.7, {"a"}));
   EXPECT_FALSE(explained(faint, 0.84, {"a", "b"}));

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "bar.hpp"
+#include "tissue_stiffness/forward/reduced_model.hpp"
+#include "tissue_stiffness/meshing/refine.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -69,6 +71,25 @@ TEST(MeshError, IsTheSameOfAReplay) {
     EXPECT_NEAR(a.mean, b.mean, 0.2 * a.std);
     EXPECT_NEAR(a.std, b.std, 0.2 * a.std);
   }
+}
+
+// Models of the same body, at their own prior, save work and nothing else.
+TEST(MeshError, IsTheSameBesideRelatives) {
+  const ModelSettings model = settings(true);
+  const std::vector<Frame> frames = recording(40);
+  const Model own(settings(false), coarse());
+  const TetMesh refined = finer(own.mesh(), model.mesh);
+  const Model fine(settings(false), refined, refine(own.regions(), own.mesh(), refined));
+  BasisOptions keeping, beside = basis_beside(own.mesh(), refined);
+  keeping.keep_root = beside.keep_root = true;
+  const ReducedModel own_runs(own, keeping), fine_runs(fine, beside);
+  Estimator alone(model, coarse()), related(model, coarse(), {&own_runs, &fine_runs});
+  alone.replay(frames);
+  related.replay(frames);
+  const ParameterEstimate &a = alone.estimate().parameters.front(), &b = related.estimate().parameters.front();
+  std::printf("E %.3f Pa alone, %.3f Pa beside relatives, +- %.1f\n", a.mean, b.mean, a.std);
+  EXPECT_NEAR(a.mean, b.mean, 0.01 * a.std);
+  EXPECT_NEAR(a.std, b.std, 0.01 * a.std);
 }
 
 // Under a load so small that both laws mean the same body.

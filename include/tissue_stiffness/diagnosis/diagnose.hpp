@@ -18,8 +18,9 @@ struct DiagnosisOptions {
   /// What begins; where such steps are counted, how many of them are over and how many there are.
   std::function<void(const std::string&, std::size_t done, std::size_t total)> progress = [](const std::string&,
                                                                                              std::size_t, std::size_t) {};
-  /// Sees the given model and the last one, which may be the same, when all is said.
-  std::function<void(const Diagnosis&, Fitted& given, Fitted& last)> at_end = [](const Diagnosis&, Fitted&, Fitted&) {};
+  /// Sees the given model and the last one, which may be the same, when all is said; and a model on a finer mesh, or null.
+  using End = std::function<void(const Diagnosis&, Fitted& given, Fitted& last, const Study* finer)>;
+  End at_end = [](const Diagnosis&, Fitted&, Fitted&, const Study*) {};
 };
 
 /// Compares the fitted model's free run with the recording, ranks what the library offers as missing, proves the best by

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "tissue_stiffness/diagnosis/diagnose.hpp"
+#include "tissue_stiffness/diagnosis/finer_mesh.hpp"
 #include "tissue_stiffness/diagnosis/ranking.hpp"
 
 namespace tissue_stiffness {
@@ -15,15 +16,15 @@ struct Finding {
   std::vector<MissingEffect> effects;  ///< best first
   std::vector<Refit> refits;           ///< best first
   double floor = 0.0;                  ///< rms of what a finer mesh would change [sigma]
-  Eigen::VectorXd by_mesh;             ///< what a finer mesh would change of each row [sigma]
-  Library library;                     ///< that the tangents were read from
+  FinerMesh finer;
+  Library library;  ///< that the tangents were read from
 };
 
 /// Ranks the library by tangents, refits the best (or `wanted` ones, if any), and the best pairs where no single effect
-/// explains the error. `by_mesh`: as an earlier look at the same recording found it; empty: found out now.
+/// explains the error. `finer`: as an earlier look at the same recording found it; empty: found out now.
 /// `library`: see find_candidates. Throws InputError for a wanted effect that nothing proposes.
 Finding look(const Fitted& base, const std::vector<std::string>& wanted, const DiagnosisOptions& options,
-             const Eigen::VectorXd& by_mesh = {}, const Library& library = {});
+             const FinerMesh& finer = {}, const Library& library = {});
 
 /// rms over what has to be left, of a fit that need not be bettered.
 constexpr double kExplained = 1.02;
@@ -35,13 +36,5 @@ constexpr double unavoidable_mean_square(double floor) {
 
 /// Held-out frames agree that the refit is better than the base.
 bool proven(const Fitted& base, const Refit& refit);
-
-/// What the same model changes of each row [sigma], on a mesh of eight times as many elements with a smooth boundary and
-/// fitted to the same frames: the error that is the mesh's own. Zero where it cannot be found out: the model is nonlinear
-/// or large, or the model file does not want it.
-Eigen::VectorXd finer_mesh(const Fitted& base);
-
-/// Sum of squared errors over sigma of the refit's model on that mesh, fitted again.
-double cost_on_finer_mesh(const Fitted& base, const Refit& refit);
 
 }  // namespace tissue_stiffness

@@ -5,23 +5,25 @@
 #include <vector>
 
 #include "tissue_stiffness/diagnosis/diagnose.hpp"
+#include "tissue_stiffness/diagnosis/finer_mesh.hpp"
 #include "tissue_stiffness/diagnosis/ranking.hpp"
 
 namespace tissue_stiffness {
 
 /// What a fitted model's error shows before anything is refitted: the library, ranked by its tangents, and the mesh's part.
 struct FirstLook {
-  /// `by_mesh`: what a finer mesh changes, as an earlier look at the same recording found it; found out now where it is
+  /// `earlier`: what an earlier look at the same recording found of a finer mesh; its change is found out now where it is
   /// empty or zero, or makes the error much larger. `library`: see find_candidates.
-  FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Eigen::VectorXd by_mesh, Library library = {});
+  FirstLook(const Fitted& fitted, const DiagnosisOptions& options, FinerMesh earlier, Library library = {});
 
   const Fitted& base;
   const double rows, cost;  ///< number, and sum of squared errors [sigma^2]
   const bool first;         ///< no earlier look at the same recording
   std::vector<Candidate> candidates;
-  Library library;                 ///< that they were read from
-  Eigen::MatrixXd known;           ///< tangents of the base's parameters
-  Eigen::VectorXd mesh_change;     ///< of each row, by a finer mesh [sigma]; zero where that makes the error much larger
+  Library library;              ///< that they were read from
+  Eigen::MatrixXd known;        ///< tangents of the base's parameters
+  Eigen::VectorXd mesh_change;  ///< of each row, by a finer mesh [sigma]; zero where that makes the error much larger
+  std::shared_ptr<const Study> finer;
   double by_mesh = 0.0;            ///< of the sum of squared errors
   double floor = 0.0;              ///< rms of what the base's parameters leave of the mesh's change [sigma]
   std::unique_ptr<Scorer> scorer;  ///< of the error that the mesh does not explain

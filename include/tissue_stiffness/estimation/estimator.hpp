@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tissue_stiffness/estimation/free_run.hpp"
+#include "tissue_stiffness/estimation/relatives.hpp"
 #include "tissue_stiffness/settings/model_settings.hpp"
 #include "tissue_stiffness/types/estimate.hpp"
 #include "tissue_stiffness/types/load_sample.hpp"
@@ -37,7 +38,7 @@ struct Identifiability {
 class Estimator {
  public:
   /// Throws InputError for a model that does not fit the mesh or the effects' specs.
-  Estimator(const ModelSettings& settings, const TetMesh& mesh);
+  Estimator(const ModelSettings& settings, const TetMesh& mesh, const Relatives& relatives = {});
   ~Estimator();
   Estimator(Estimator&&) noexcept;
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tissue_stiffness/effects/course.hpp"
+#include "tissue_stiffness/estimation/relatives.hpp"
 #include "tissue_stiffness/forward/model.hpp"
 #include "tissue_stiffness/forward/reduced_basis.hpp"
 #include "tissue_stiffness/settings/model_settings.hpp"
@@ -38,12 +39,10 @@ class MeshError {
   static std::string why_not(const Model& model);
 
   /// Throws as Model does.
-  MeshError(const ModelSettings& settings, const TetMesh& mesh);
-  /// For studies at theta alone, which the finer mesh's basis then needs to hold alone: half the work.
-  MeshError(const ModelSettings& settings, const TetMesh& mesh, const Eigen::VectorXd& theta);
-  /// The same with the regions' parts of the mesh as given, and the coarse model's basis of that size.
-  MeshError(const ModelSettings& settings, const TetMesh& mesh, const std::map<std::string, Region>& regions,
-            const BasisOptions& basis, const Eigen::VectorXd& theta);
+  explicit MeshError(const Model& model);
+  /// For studies at theta alone, which the finer mesh's basis then needs to hold alone: half the work. With the coarse
+  /// model's basis of that size.
+  MeshError(const Model& model, const Eigen::VectorXd& theta, const BasisOptions& basis = {}, const Relatives& known = {});
   ~MeshError();
   MeshError(const MeshError&) = delete;
   MeshError& operator=(const MeshError&) = delete;

@@ -17,7 +17,7 @@ namespace tissue_stiffness {
 /// What every estimation scheme shares: the model, its sensors, the clock, and the checks before a frame is used.
 class Scheme {
  public:
-  Scheme(const ModelSettings& settings, const TetMesh& mesh);
+  Scheme(const ModelSettings& settings, const TetMesh& mesh, const Relatives& relatives = {});
   virtual ~Scheme() = default;
 
   StepResult step(const Frame& frame);
@@ -84,7 +84,8 @@ class Scheme {
   bool background_ = false, replaying_ = false, more_follow_ = false;
 };
 
-std::unique_ptr<Scheme> make_unscented_scheme(const ModelSettings& settings, const TetMesh& mesh);
+std::unique_ptr<Scheme> make_unscented_scheme(const ModelSettings& settings, const TetMesh& mesh,
+                                              const Relatives& relatives);
 std::unique_ptr<Scheme> make_paper_scheme(const ModelSettings& settings, const TetMesh& mesh);
 
 }  // namespace tissue_stiffness
