@@ -112,7 +112,7 @@ Finding look(const Fitted& base, const std::vector<std::string>& wanted, const D
   if (out.verdict == "missing" || out.verdict == "unexplained") out.set = set_of(look, out.refits);
   out.effects = describe(look, out.refits);
   out.floor = look.floor;
-  out.finer = {look.mesh_change, look.finer};
+  out.finer = look.finer;
   out.library = look.library;
   return out;
 }

@@ -29,8 +29,7 @@ FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Fine
       cost(fitted.rows.error.squaredNorm()),
       first(earlier.change.size() == 0),
       library(std::move(known_library)),
-      mesh_change(std::move(earlier.change)),
-      finer(std::move(earlier.study)) {
+      finer(std::move(earlier)) {
   const std::string step = "tangents of the library, and what a finer mesh would change";
   options.progress(step, 0, 0);
   const Study::Rows& r = base.rows;
@@ -44,16 +43,13 @@ FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Fine
         known = base_tangents(*base.study, base.fit.w, base.fit.covariance.diagonal().cwiseSqrt(), r);
       },
       [&] {
-        if (mesh_change.any() && !worsens(mesh_change)) return;
-        FinerMesh now = finer_mesh(base, finer.get());
-        mesh_change = std::move(now.change);
-        if (now.study) finer = std::move(now.study);
+        if (!finer.change.any() || worsens(finer.change)) finer = finer_mesh(base, finer.study.get());
       });
-  if (worsens(mesh_change)) mesh_change.setZero();
-  by_mesh = cost - (r.error - mesh_change).squaredNorm();
-  floor = Scorer(r.error, known, r.offsets, 1.0).remaining(mesh_change);
+  if (worsens(finer.change)) finer.change.setZero();
+  by_mesh = cost - (r.error - finer.change).squaredNorm();
+  floor = Scorer(r.error, known, r.offsets, 1.0).remaining(finer.change);
   // An effect has to explain what the mesh does not.
-  scorer = std::make_unique<Scorer>(r.error - mesh_change, known, r.offsets, 1.0, kRemainder * mesh_change);
+  scorer = std::make_unique<Scorer>(r.error - finer.change, known, r.offsets, 1.0, kRemainder * finer.change);
   ranked = rank(*scorer, candidates, kRemainder * floor);
 }
 

@@ -169,7 +169,7 @@ void Search::refit_all(std::vector<std::vector<Addition>> list) {
   std::vector<std::optional<Refit>> done(trials.size());
   try_each(
       trials.size(), [&](std::size_t i) { return "refit with " + names_of(trials[i].second); },
-      [&](std::size_t i) { done[i] = refit(look_.base, trials[i].second, look_.mesh_change, rival); });
+      [&](std::size_t i) { done[i] = refit(look_.base, trials[i].second, look_.finer.change, rival); });
   for (std::optional<Refit>& refit : done) {
     if (refit) refits_.push_back(std::move(*refit));
   }
@@ -289,7 +289,7 @@ std::vector<const Candidate*> Search::different_ways() const {
   std::vector<Eigen::Index> offsets = look_.base.rows.offsets;
   offsets.resize(1 + static_cast<std::size_t>(kBeginning * static_cast<double>(offsets.size() - 1)));
   const Eigen::Index rows = offsets.back();
-  const Scorer scorer((look_.base.rows.error - look_.mesh_change).head(rows), look_.known.topRows(rows), offsets, 1.0);
+  const Scorer scorer((look_.base.rows.error - look_.finer.change).head(rows), look_.known.topRows(rows), offsets, 1.0);
   std::vector<std::pair<const Candidate*, Score>> ways;
   for (const Candidate& candidate : look_.candidates) {
     if (!candidate.linear) continue;
@@ -338,7 +338,7 @@ void Search::compare_on_finer_mesh() {
       leaders.size(), [&](std::size_t i) { return "on a finer mesh: " + leaders[i]->effects.front(); },
       [&](std::size_t i) {  // a fit that ends in another minimum there speaks against nothing
         double& cost = leaders[i]->cost_beside_mesh;
-        cost = std::min(cost, cost_on_finer_mesh(look_.base, *leaders[i], look_.finer.get()));
+        cost = std::min(cost, cost_on_finer_mesh(look_.base, *leaders[i], look_.finer.study.get()));
       });
   sort_refits();
 }

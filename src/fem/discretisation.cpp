@@ -223,6 +223,7 @@ void add_scaled(SparseMatrix& to, double scale, const SparseMatrix& part) {
 }
 
 bool same(const SparseMatrix& a, const SparseMatrix& b) {
+  if (&a == &b) return true;
   const auto count = static_cast<std::size_t>(a.nonZeros());
   return a.rows() == b.rows() && a.cols() == b.cols() && a.nonZeros() == b.nonZeros() &&
          std::equal(a.outerIndexPtr(), a.outerIndexPtr() + a.outerSize() + 1, b.outerIndexPtr()) &&

@@ -50,20 +50,19 @@ struct BodyTerms {
 
   // The same mass, and a stiffness in proportion: responses differ by a factor, which a basis has not.
   bool same_body(const BodyTerms& other) const {
-    return complete && other.complete && in_proportion(mass, other.mass, 1.0) &&
-           in_proportion(stiffness, other.stiffness, 0.0);
+    if (!complete || !other.complete || stiffness.empty() || other.stiffness.empty()) return false;
+    const double ratio = other.stiffness.front().second / stiffness.front().second;
+    return in_proportion(mass, other.mass, 1.0) && in_proportion(stiffness, other.stiffness, ratio);
   }
 
  private:
   static void add(List& list, const std::shared_ptr<const SparseMatrix>& matrix, double coefficient) {
     if (coefficient != 0.0) list.emplace_back(matrix, coefficient);
   }
-  // As 1 to `factor`; 0: to any.
-  static bool in_proportion(const List& a, const List& b, double factor) {
-    if (a.size() != b.size() || a.empty()) return false;
-    const double ratio = factor != 0.0 ? factor : b.front().second / a.front().second;
-    return std::equal(a.begin(), a.end(), b.begin(), [ratio](const auto& one, const auto& another) {
-      return (one.first == another.first || same(*one.first, *another.first)) &&
+  // As 1 to `ratio`.
+  static bool in_proportion(const List& a, const List& b, double ratio) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [ratio](const auto& one, const auto& another) {
+      return same(*one.first, *another.first) &&
              std::abs(ratio * one.second - another.second) <= kRounding * std::abs(another.second);
     });
   }

@@ -156,7 +156,7 @@ void ReducedModel::adopt_projections(std::size_t index, const ReducedModel& rela
   Projected& out = projected_[index];
   const auto adopt = [](const auto& terms, const auto& others, const auto& from, auto& to) {
     for (std::size_t k = 0; k < std::min(terms.size(), others.size()); ++k) {
-      if (terms[k].matrix == others[k].matrix || same(*terms[k].matrix, *others[k].matrix)) to[k] = from[k];
+      if (same(*terms[k].matrix, *others[k].matrix)) to[k] = from[k];
     }
   };
   adopt(part.terms.mass, there->terms.mass, known.mass, out.mass);

@@ -255,8 +255,8 @@ TEST(Diagnose, FindsTheMeshsChangeOutAnewWhereAnEarlierLookHasItWrong) {
   const FirstLook look(base, {}, {-base.rows.error});
   EXPECT_GT(look.by_mesh, 0.8 * look.structured());
   const FinerMesh alone = finer_mesh(base);
-  EXPECT_TRUE(look.mesh_change.isApprox(alone.change));
-  EXPECT_TRUE(look.mesh_change.isApprox(finer_mesh(base, alone.study.get()).change, 1e-6));
+  EXPECT_TRUE(look.finer.change.isApprox(alone.change));
+  EXPECT_TRUE(look.finer.change.isApprox(finer_mesh(base, alone.study.get()).change, 1e-6));
 }
 
 // Fibres imitate the mesh's error besides, and explain more than the springs that are there.

@@ -20,10 +20,9 @@ struct FirstLook {
   const double rows, cost;  ///< number, and sum of squared errors [sigma^2]
   const bool first;         ///< no earlier look at the same recording
   std::vector<Candidate> candidates;
-  Library library;              ///< that they were read from
-  Eigen::MatrixXd known;        ///< tangents of the base's parameters
-  Eigen::VectorXd mesh_change;  ///< of each row, by a finer mesh [sigma]; zero where that makes the error much larger
-  std::shared_ptr<const Study> finer;
+  Library library;                 ///< that they were read from
+  Eigen::MatrixXd known;           ///< tangents of the base's parameters
+  FinerMesh finer;                 ///< its change is zero where that makes the error much larger
   double by_mesh = 0.0;            ///< of the sum of squared errors
   double floor = 0.0;              ///< rms of what the base's parameters leave of the mesh's change [sigma]
   std::unique_ptr<Scorer> scorer;  ///< of the error that the mesh does not explain
