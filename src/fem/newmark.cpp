@@ -150,7 +150,11 @@ void Newmark::factorize(const Column& c) {
   SparseMatrix j = c.system->stiffness(c.middle.time, c.middle.displacement, c.middle.velocity);
   j *= 1.0 - alpha_f_;
   add_scaled(j, (1.0 - alpha_m_) / (beta_ * h * h), c.system->mass());
-  if (c.system->damped()) add_scaled(j, (1.0 - alpha_f_) * gamma_ / (beta_ * h), c.system->damping());
+  const double to_velocity = (1.0 - alpha_f_) * gamma_ / (beta_ * h);
+  if (c.system->damped()) add_scaled(j, to_velocity, c.system->damping());
+  if (c.system->rubs()) {
+    add_scaled(j, to_velocity, c.system->friction(c.middle.time, c.middle.displacement, c.middle.velocity));
+  }
   for (const Relaxation& branch : c.system->relaxations()) {
     const double quick = branch.modulus * (1.0 - RelaxationStep(branch, (1.0 - alpha_f_) * h).to);
     add_scaled(j, (1.0 - alpha_f_) * quick, c.system->relaxing_stiffness());

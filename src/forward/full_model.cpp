@@ -74,8 +74,8 @@ class FullTrajectories : public Trajectories {
   // Impacts are filmed so fast that a few explicit steps reach the next frame.
   void choose(const std::vector<double>& spans) {
     chosen_ = true;
-    const bool lumped = std::all_of(systems_.begin(), systems_.end(), [](const auto& s) { return s->can_be_lumped(); });
-    if (options_.step <= 0.0 && lumped) {
+    const bool can_leap = std::all_of(systems_.begin(), systems_.end(), [](const auto& s) { return s->can_leap(); });
+    if (options_.step <= 0.0 && can_leap) {
       central_.emplace_back(*systems_.front(), states_.front().time);
       explicit_steps_ = spans.front() < kExplicitSteps * central_.front().largest_step();
     }
@@ -173,8 +173,9 @@ ModelSystem::ModelSystem(const Model& model, const Eigen::VectorXd& theta)
     if (beta > 0.0) damping_ += beta * reference_;
   }
   gravity_ = mass_ * model.body_acceleration(theta).replicate(mass_.rows() / 3, 1);
-  lumps_ = !(inertia > 0.0);
-  if (!lumps_) mass_ += inertia * reference_;
+  if (inertia > 0.0) mass_ += inertia * reference_;
+  rubs_ = model.rubs(point_);
+  leaps_ = !(inertia > 0.0) && !rubs_;
   if (!linear_part_) rotations_.emplace(model.fem());
 }
 
@@ -189,6 +190,12 @@ SparseMatrix ModelSystem::stiffness(double time, const Eigen::VectorXd& u, const
   SparseMatrix k = stiffness_;
   model_.add_nonlinear_stiffness(point_, {time, u, v}, k);
   return k;
+}
+
+SparseMatrix ModelSystem::friction(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const {
+  SparseMatrix c = model_.fem().pattern();
+  model_.add_friction(point_, {time, u, v}, c);
+  return c;
 }
 
 void ModelSystem::find_rotations(const Eigen::VectorXd& u, Eigen::Matrix3Xd& rotations) const {

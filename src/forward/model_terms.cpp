@@ -224,6 +224,20 @@ void Model::add_nonlinear_stiffness(const Point& at, Motion motion, SparseMatrix
   }
 }
 
+bool Model::rubs(const Point& at) const {
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    if (parts_[i].effect->rubs(at.parts[i].parameters)) return true;
+  }
+  return false;
+}
+
+void Model::add_friction(const Point& at, const Motion& motion, SparseMatrix& damping) const {
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    const Eigen::VectorXd& p = at.parts[i].parameters;
+    if (parts_[i].effect->rubs(p)) parts_[i].effect->add_friction(motion, p, damping);
+  }
+}
+
 double Model::stored_energy(const Point& at, Motion motion) const {
   double sum = 0.0;
   for (std::size_t i = 0; i < parts_.size(); ++i) {

@@ -283,6 +283,44 @@ TEST(EveryEffect, TangentEqualsFiniteDifferencesOfTheForce) {
   EXPECT_GE(nonlinear, 3);
 }
 
+// At a velocity of its own for each node; effects whose force depends on it say so.
+TEST(EveryEffect, FrictionEqualsFiniteDifferencesByTheVelocity) {
+  const TetMesh mesh = bar_mesh(2);
+  const Eigen::VectorXd u = large_displacement(mesh), v = 0.1 * large_displacement(mesh).reverse();
+  int rubbing = 0;
+  for (const EffectSpec& spec : effect_specs()) {
+    Arguments arguments = example_arguments(spec, "linear", "skin");
+    for (const ParameterSpec& p : spec.parameters) {
+      if (p.name == "friction") arguments[p.name] = "0.4";
+    }
+    const Model model(box_settings(bar_with(spec.name, arguments)), mesh);
+    const Model::Part& part = model.parts().back();
+    const Eigen::VectorXd p = part.parameters(model.theta(model.prior_mean()));
+    const auto force = [&](const Eigen::VectorXd& velocity) {
+      Eigen::VectorXd f = Eigen::VectorXd::Zero(u.size());
+      if (part.effect->nonlinear()) part.effect->add_force(motion(u, velocity), p, f);
+      return f;
+    };
+    if (!part.effect->rubs(p)) {
+      EXPECT_EQ(force(v), force(-v)) << spec.name << " depends on the velocity but does not say so";
+      continue;
+    }
+    ++rubbing;
+    SparseMatrix tangent = model.fem().pattern();
+    part.effect->add_friction(motion(u, v), p, tangent);
+    Eigen::MatrixXd differences(u.size(), u.size());
+    const double h = 1e-7;
+    for (Eigen::Index j = 0; j < u.size(); ++j) {
+      const Eigen::VectorXd step = h * Eigen::VectorXd::Unit(u.size(), j);
+      differences.col(j) = -(force(v + step) - force(v - step)) / (2.0 * h);
+    }
+    EXPECT_GT(differences.norm(), 0.0) << spec.name << ": the example does nothing";
+    EXPECT_LT((Eigen::MatrixXd(tangent) - differences).cwiseAbs().maxCoeff(), 1e-6 * differences.cwiseAbs().maxCoeff())
+        << spec.name;
+  }
+  EXPECT_EQ(rubbing, 1);
+}
+
 // What is left of the linear terms' force when the body hardly moves.
 TEST(EveryEffect, FiniteStrainTendsToTheLinearTerms) {
   const TetMesh mesh = bar_mesh(2);

@@ -91,11 +91,11 @@ TEST(Damping, BothAddUp) {
 class Fall : public testing::Test {
  protected:
   static constexpr double kHeight = 0.004, kSpeed = 0.4, kMass = 1000.0 * 8e-6;
-  void make(const std::string& contact) {
+  void make(const std::string& contact, const std::string& velocity = "[0, 0, -0.4]") {
     ModelSettings settings =
         box_settings({kInertia, "elasticity: {law: neo_hookean, young_modulus: 1.0e5, poisson_ratio: 0.4}",
                       "gravity: {acceleration: [0, 0, -9.81]}", contact},
-                     "[{vertices: {topic: /v, noise: 1.0e-4}}]", "initial: {velocity: [0, 0, -0.4]}");
+                     "[{vertices: {topic: /v, noise: 1.0e-4}}]", "initial: {velocity: " + velocity + "}");
     settings.regions.clear();
     mesh_ = make_box_mesh({0.02, 0.02, 0.02}, 2, 2, 2, 2);
     model_ = std::make_unique<Model>(settings, mesh_);
@@ -140,6 +140,24 @@ TEST_F(Fall, ThePlaneThrowsTheBlockBackAndKeepsItsEnergy) {
   EXPECT_LT(worst, 0.02);
   EXPECT_GT(upwards / impact, 0.7);                                 // the rest rings inside the block
   EXPECT_LT(momentum().head<2>().norm(), 0.02 * std::abs(before));  // no friction (and a mesh that is not quite symmetric)
+}
+
+// Slides 0.4^2 / (2 mu g) = 16 mm, rocking on its soft underside; then it rests.
+TEST_F(Fall, FrictionStopsASlidingBlockWhereCoulombSays) {
+  const std::string plane = "contact_plane: {point: [0, 0, 0], normal: [0, 0, 1], friction: 0.5}";
+  make(plane, "[0.4, 0, 0]");
+  run_->advance(0.16);
+  const auto place = [&] {
+    const Eigen::VectorXd p = model_->mass(prior(*model_)) * run_->displacement();
+    return Eigen::Map<const Eigen::Matrix3Xd>(p.data(), 3, p.size() / 3).rowwise().sum().x() / kMass;
+  };
+  const double stopped = place();
+  run_->advance(0.26);
+  const double expected = 0.4 * 0.4 / (2.0 * 0.5 * 9.81);
+  std::printf("friction: slid %.2f mm, Coulomb's law %.2f mm; 0.1 s later %.2f mm\n", 1e3 * stopped, 1e3 * expected,
+              1e3 * place());
+  EXPECT_NEAR(stopped, expected, 0.05 * expected);
+  EXPECT_NEAR(place(), stopped, 0.01 * expected);
 }
 
 TEST_F(Fall, TheGapMovesThePlaneAlongItsNormal) {

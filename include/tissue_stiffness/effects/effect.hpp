@@ -103,6 +103,9 @@ class Effect {
   virtual void add_force(const Motion&, const Parameters&, Eigen::VectorXd&) const {}
   /// Adds -d force / d displacement [N/m]; symmetric, pattern of the discretisation.
   virtual void add_stiffness(const Motion&, const Parameters&, SparseMatrix&) const {}
+  /// The force depends on the velocity: then adds -d force / d velocity [N s/m], symmetric, the same pattern.
+  virtual bool rubs(const Parameters&) const { return false; }
+  virtual void add_friction(const Motion&, const Parameters&, SparseMatrix&) const {}
   /// Stored energy [J], where the effect has one.
   virtual double energy(const Motion&, const Parameters&) const { return 0.0; }
 

@@ -23,6 +23,9 @@ class DynamicSystem {
   Eigen::VectorXd force(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const;
   /// -df/du, symmetric [N/m].
   virtual SparseMatrix stiffness(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const = 0;
+  /// The part of -df/dv that changes with the motion [N s/m]; read only when rubs().
+  virtual bool rubs() const { return false; }
+  virtual SparseMatrix friction(double, const Eigen::VectorXd&, const Eigen::VectorXd&) const { return {}; }
   /// Branches whose force the state's history carries, and the stiffness they share (read only when there are any).
   virtual const std::vector<Relaxation>& relaxations() const;
   virtual const SparseMatrix& relaxing_stiffness() const { return mass(); }

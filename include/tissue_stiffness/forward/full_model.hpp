@@ -48,8 +48,10 @@ class ModelSystem : public DynamicSystem {
   const SparseMatrix& relaxing_stiffness() const override { return reference_; }
   void add_force(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v, Eigen::VectorXd& force) const override;
   SparseMatrix stiffness(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const override;
-  /// A diagonal can stand for the mass.
-  bool can_be_lumped() const { return lumps_; }
+  bool rubs() const override { return rubs_; }
+  SparseMatrix friction(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const override;
+  /// A diagonal can stand for the mass, and no force changes faster with the velocity than explicit steps follow.
+  bool can_leap() const { return leaps_; }
   void find_rotations(const Eigen::VectorXd& u, Eigen::Matrix3Xd& rotations) const override;
   /// Kinetic and stored energy less the work of gravity [J].
   double energy(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const;
@@ -62,7 +64,7 @@ class ModelSystem : public DynamicSystem {
   std::vector<Relaxation> relaxations_;
   Eigen::VectorXd gravity_;
   std::optional<NodalRotations> rotations_;  ///< where the whole stiffness turns with the material
-  bool damped_ = false, linear_part_ = false, lumps_ = true;
+  bool damped_ = false, linear_part_ = false, rubs_ = false, leaps_ = true;
 };
 
 }  // namespace tissue_stiffness

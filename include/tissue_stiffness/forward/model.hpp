@@ -119,6 +119,9 @@ class Model {
   void add_loads(const Point& at, double time, Eigen::VectorXd& force) const;
   void add_nonlinear_force(const Point& at, Motion motion, Eigen::VectorXd& force) const;
   void add_nonlinear_stiffness(const Point& at, Motion motion, SparseMatrix& stiffness) const;
+  /// Some force depends on the velocity beyond the damping; how.
+  bool rubs(const Point& at) const;
+  void add_friction(const Point& at, const Motion& motion, SparseMatrix& damping) const;
   /// Elastic and contact energy [J].
   double stored_energy(const Point& at, Motion motion) const;
 
