@@ -7,8 +7,8 @@ import numpy as np
 import rosbag
 import yaml
 
-from biventricle import write_obj
 from common import MODULUS, Workshop, modulus, publish, table
+from meshes import write_obj
 
 STARTS = (0.5, 5.0)  # times the truth
 VELOCITIES = (0.0, 0.01, 20.0)  # m/s, assumed in their table 2

@@ -151,12 +151,6 @@ def build(edge):
     return weld(parts)
 
 
-def write_obj(path, points, triangles):
-    with open(path, 'w') as file:
-        file.writelines('v %.9g %.9g %.9g\n' % tuple(p) for p in points)
-        file.writelines('f %d %d %d\n' % tuple(t + 1) for t in triangles)
-
-
 def cavity_volume(points, triangles):
     """Of a cavity whose surface is open in the plane z = 0 and turned inwards [m^3]."""
     a, b, c = (points[triangles[:, i]] for i in range(3))

@@ -10,8 +10,8 @@ from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 from tf2_msgs.msg import TFMessage
 
-from biventricle import write_obj
 from common import publish, read_cloud, table
+from meshes import revolved, write_obj
 
 IMAGE, INFO, FRAME = '/ultrasound/image_raw', '/ultrasound/camera_info', 'ultrasound'
 WALL = 0.010       # m, assumed thickness
@@ -53,22 +53,6 @@ def evenly(points):
     length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
     at = np.linspace(0.0, length[-1], int(round(length[-1] / EDGE)) + 1)
     return np.stack([np.interp(at, length, points[:, i]) for i in range(2)], axis=1)
-
-
-def revolved(line):
-    """The closed surface that a line from the axis to the axis sweeps around z."""
-    count = int(round(2 * np.pi * line[:, 0].max() / EDGE))
-    turn = 2 * np.pi * np.arange(count) / count
-    rings = [np.stack([r * np.cos(turn), r * np.sin(turn), np.full(count, z)], axis=1) for r, z in line[1:-1]]
-    points = np.concatenate([[[0, 0, line[0, 1]]]] + rings + [[[0, 0, line[-1, 1]]]])
-    k, nxt, last = np.arange(count), (np.arange(count) + 1) % count, len(points) - 1
-    triangles = [np.stack([np.zeros(count, int), 1 + nxt, 1 + k], axis=1)]
-    for i in range(len(rings) - 1):
-        a, b = 1 + i * count, 1 + (i + 1) * count
-        triangles += [np.stack([a + k, a + nxt, b + k], axis=1), np.stack([a + nxt, b + nxt, b + k], axis=1)]
-    a = 1 + (len(rings) - 1) * count
-    triangles.append(np.stack([a + k, a + nxt, np.full(count, last)], axis=1))
-    return points, np.concatenate(triangles)
 
 
 def pose(base, apex, camera, stamp):
@@ -151,7 +135,8 @@ def relative_stiffness(work, cine):
     inner = evenly(profile(curves[first], ends[0][0], ends[0][1], scale))
     outer = evenly(thickened(inner))
     rim = np.linspace(outer[0], inner[0], int(round(WALL / EDGE)) + 1)[1:-1]
-    points, triangles = revolved(np.concatenate([outer[::-1], rim, inner]))
+    line = np.concatenate([outer[::-1], rim, inner])
+    points, triangles = revolved(line, int(round(2 * np.pi * line[:, 0].max() / EDGE)))
     write_obj(work.path('ventricle.obj'), points, triangles)
     radii, heights = np.hypot(points[:, 0], points[:, 1]), points[:, 2]
     on_inner = cKDTree(inner).query(np.stack([radii, heights], axis=1))[0] < 1e-6

@@ -5,9 +5,10 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.spatial import cKDTree
 
-from biventricle import biventricle, cavity_volume, write_obj
+from biventricle import biventricle, cavity_volume
 from common import MODULUS, TOPIC, Workshop, modulus, publish, read_cloud, table, write_vertices
 from figures import plt, save
+from meshes import write_obj
 
 MODULI = (40, 80, 100, 140, 180)  # kPa
 STARTS = ((20, 10), (40, 10), (50, 10), (70, 20), (90, 20))  # kPa

@@ -1,5 +1,7 @@
-"""Tetrahedral meshes of boxes, and the file that they go into."""
+"""Tetrahedral meshes of boxes, surfaces of revolution, and the files that they go into."""
 import itertools
+
+import numpy as np
 
 
 def box(size, cells):
@@ -19,6 +21,27 @@ def box(size, cells):
             inversions = sum(a > b for a, b in itertools.combinations(order, 2))
             tets.append(tet if inversions % 2 == 0 else [tet[0], tet[2], tet[1], tet[3]])
     return nodes, tets
+
+
+def revolved(line, count):
+    """The closed surface that a line of (radius, height) from the axis to the axis sweeps around z in `count` steps."""
+    turn = 2 * np.pi * np.arange(count) / count
+    rings = [np.stack([r * np.cos(turn), r * np.sin(turn), np.full(count, z)], axis=1) for r, z in line[1:-1]]
+    points = np.concatenate([[[0, 0, line[0][1]]]] + rings + [[[0, 0, line[-1][1]]]])
+    k, nxt, last = np.arange(count), (np.arange(count) + 1) % count, len(points) - 1
+    triangles = [np.stack([np.zeros(count, int), 1 + nxt, 1 + k], axis=1)]
+    for i in range(len(rings) - 1):
+        a, b = 1 + i * count, 1 + (i + 1) * count
+        triangles += [np.stack([a + k, a + nxt, b + k], axis=1), np.stack([a + nxt, b + nxt, b + k], axis=1)]
+    a = 1 + (len(rings) - 1) * count
+    triangles.append(np.stack([a + k, a + nxt, np.full(count, last)], axis=1))
+    return points, np.concatenate(triangles)
+
+
+def write_obj(path, points, triangles):
+    with open(path, 'w') as file:
+        file.writelines('v %.9g %.9g %.9g\n' % tuple(p) for p in points)
+        file.writelines('f %d %d %d\n' % tuple(t + 1) for t in triangles)
 
 
 def write_vtk(path, nodes, tets):
