@@ -117,8 +117,9 @@ std::optional<StepResult> Scheme::catch_up() {
   }
 }
 
-StepResult Scheme::replay(const std::vector<Frame>& frames) {
+StepResult Scheme::replay(const std::vector<Frame>& frames, const Estimate* near) {
   replaying_ = true;
+  near_ = near;
   StepResult last;
   for (const Frame& frame : frames) {
     more_follow_ = &frame != &frames.back();
@@ -126,6 +127,7 @@ StepResult Scheme::replay(const std::vector<Frame>& frames) {
     if (result.used || !last.used) last = std::move(result);
   }
   replaying_ = false;
+  near_ = nullptr;
   return last;
 }
 

@@ -50,6 +50,21 @@ std::unique_ptr<Track> Track::twin() const {
   return out;
 }
 
+void Track::expect(const Estimate& near) {
+  Eigen::VectorXd anchor = filter_.anchor(), spread = filter_.spread();
+  for (std::size_t i = 0; i < model_.free_parameters().size(); ++i) {
+    const FreeParameter& free = model_.free_parameters()[i];
+    const auto known = std::find_if(near.parameters.begin(), near.parameters.end(),
+                                    [&free](const ParameterEstimate& p) { return p.name == free.name; });
+    if (known == near.parameters.end()) continue;
+    const auto k = static_cast<Eigen::Index>(i);
+    anchor[k] = free.to_coordinate(known->mean);
+    const double wide = free.to_coordinate(known->mean + kNewSpread * known->std) - anchor[k];
+    spread[k] = std::clamp(wide, kFloor * spread[k], spread[k]);
+  }
+  filter_.move_anchor(anchor, spread);
+}
+
 void Track::begin() {
   ensemble_ = std::make_unique<Ensemble>(model_, *forward_, operators_);
   ensemble_->restart(filter_.sigma_points(), start_);

@@ -139,6 +139,7 @@ class UnscentedScheme : public Scheme {
   void begin_if_needed() {
     if (track_->begun()) return;
     track_ = new_track();  // the start, and the prior of a velocity that was read, are known now
+    if (near() != nullptr) track_->expect(*near());
     track_->begin();
   }
 
@@ -155,6 +156,7 @@ class UnscentedScheme : public Scheme {
   bool revisit() {
     if (revisit_ || !complete_) return false;
     if (overfull()) return look_back(*track_, frames_, {std::nullopt, frames_.size() / 2});
+    if (near() != nullptr && more_follow()) return false;
     if (std::optional<ChangeQuestion> again = past_.closer(frames_.size())) {
       return look_back(past_.track(), past_.frames_since_its_start(frames_), {std::move(again)});
     }

@@ -40,7 +40,7 @@ Estimate estimate_at_last(const Diagnosis& diagnosis, const Fitted& given, const
   Estimator estimator(extend_model(model.settings(), diagnosis.entries), model.mesh(), relatives);
   estimator.set_first_stamp(recording.first_stamp);
   for (const LoadSample& load : recording.loads) estimator.add_load(load);
-  estimator.replay(recording.frames);
+  estimator.replay(recording.frames, &diagnosis.estimate);
   return estimator.estimate();
 }
 

@@ -29,6 +29,27 @@ TEST(Starts, TenTimesOffReachesFivePercentWithinThirtyFrames) {
   }
 }
 
+// A replay that begins where another fit ended comes to the same estimate, and one that begins a few standard deviations
+// beside it does, too.
+TEST(Starts, AReplayNearAnEstimateEndsWhereAPlainOneDoes) {
+  const TetMesh mesh = bar_mesh();
+  const auto model = box_settings(bar_under_gravity(prior(50e3, 3)));
+  const Experiment bar(model, mesh, {20e3});
+  const std::vector<Frame> frames = see_all(bar, bar.film(0.0, kFilmed, 40), kNoise, 3);
+  Estimator plain(model, mesh);
+  plain.replay(frames);
+  const ParameterEstimate expected = plain.estimate().parameters.front();
+  for (const double off : {1.0, 1.002}) {
+    Estimate guess = plain.estimate();
+    guess.parameters.front().mean *= off;
+    Estimator near(model, mesh);
+    const StepResult last = near.replay(frames, &guess);
+    EXPECT_TRUE(last.used);
+    EXPECT_NEAR(value(near) / expected.mean, 1.0, 2e-4) << off;
+    EXPECT_NEAR(near.estimate().parameters.front().std / expected.std, 1.0, 0.1) << off;
+  }
+}
+
 TEST(Starts, TwoRegionsGetTheirOwnModulus) {
   const TetMesh mesh = bar_mesh();
   const auto model = [](double near, double far) {

@@ -68,8 +68,9 @@ class Estimator {
   bool looks_back() const;
 
   /// Steps through frames that were measured before, waiting for every look back, and with one look at
-  /// the mesh's error, at the end; the last used one's result, or the last's.
-  StepResult replay(const std::vector<Frame>& frames);
+  /// the mesh's error, at the end; the last used one's result, or the last's. `near`: the estimate as other means have it:
+  /// the first sigma points lie there, and nothing is looked at again before the end.
+  StepResult replay(const std::vector<Frame>& frames, const Estimate* near = nullptr);
 
   /// Back to the prior; loads and frames are forgotten.
   void reset();

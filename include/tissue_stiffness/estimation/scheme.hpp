@@ -21,7 +21,7 @@ class Scheme {
   virtual ~Scheme() = default;
 
   StepResult step(const Frame& frame);
-  StepResult replay(const std::vector<Frame>& frames);
+  StepResult replay(const std::vector<Frame>& frames, const Estimate* near);
   std::optional<StepResult> catch_up();
   void reset();
   void set_first_stamp(double time);
@@ -54,6 +54,8 @@ class Scheme {
   /// A replay's frames come at once: what is asked of the recording now and then is asked at its last.
   bool more_follow() const { return more_follow_; }
   bool replaying() const { return replaying_; }
+  /// A replay's estimate as other means have it, or null.
+  const Estimate* near() const { return near_; }
 
   double start() const { return first_stamp_.value_or(0.0) + model_->settings().time.start; }
   Prediction at_rest(const Frame& frame) const;
@@ -82,6 +84,7 @@ class Scheme {
   double first_load_ = std::numeric_limits<double>::infinity();  ///< earliest load's time [s]
   std::optional<double> last_time_;
   bool background_ = false, replaying_ = false, more_follow_ = false;
+  const Estimate* near_ = nullptr;
 };
 
 std::unique_ptr<Scheme> make_unscented_scheme(const ModelSettings& settings, const TetMesh& mesh,

@@ -11,6 +11,7 @@
 #include "tissue_stiffness/estimation/corrected_runs.hpp"
 #include "tissue_stiffness/estimation/ensemble.hpp"
 #include "tissue_stiffness/filter/anchored_filter.hpp"
+#include "tissue_stiffness/types/estimate.hpp"
 
 namespace tissue_stiffness {
 
@@ -38,6 +39,8 @@ class Track {
   bool corrected() const { return corrected_ != nullptr; }
 
   bool begun() const { return ensemble_ != nullptr; }
+  /// Lays the sigma points of a track that has not begun around an estimate that other means have found.
+  void expect(const Estimate& near);
   void begin();
   void advance(double time) { ensemble_->advance(time); }
   Ensemble::Predicted predict(const Frame& frame) const { return ensemble_->predict(frame); }
