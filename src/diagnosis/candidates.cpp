@@ -155,6 +155,7 @@ std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd&
     if (!spec.proposals || std::find(ignore.begin(), ignore.end(), spec.name) != ignore.end()) continue;
     for (Proposal& proposal : spec.proposals(context)) {
       all.push_back({spec.name, std::move(proposal), {}});
+      all.back().of_simulation = spec.of_simulation;
       for (const ParameterSpec& parameter : spec.parameters) {
         if (parameter.name != all.back().proposal.amplitude) continue;
         all.back().absent = parameter.absent;
@@ -195,6 +196,16 @@ std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd&
   tbb::parallel_invoke([&] { read(linear_ones, 4, BasisOptions::Nonlinear::left_out, library.linear); },
                        [&] { read(others, 16, BasisOptions::Nonlinear::first_order, library.others); });
   return all;
+}
+
+std::vector<std::string> entries_of_simulation(const Study& base, const Eigen::VectorXd& w) {
+  const ProposalContext context = context_of(base, w, false);
+  std::vector<std::string> entries;
+  for (const EffectSpec& spec : effect_specs()) {
+    if (!spec.of_simulation) continue;
+    for (Proposal& proposal : spec.proposals(context)) entries.push_back(std::move(proposal.refine));
+  }
+  return entries;
 }
 
 Eigen::MatrixXd base_tangents(const Study& base, const Eigen::VectorXd& w, const Eigen::VectorXd& std,

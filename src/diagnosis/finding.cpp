@@ -33,13 +33,13 @@ std::string judge(const FirstLook& look, const std::vector<Refit>& refits) {
 std::vector<std::string> set_of(const FirstLook& look, const std::vector<Refit>& refits) {
   std::vector<std::string> set;
   if (refits.empty()) return set;
-  const double variance = std::max(1.0, refits.front().cost_beside_mesh / look.rows);
+  const double variance = std::max(1.0, refits.front().cost_beside_numerics / look.rows);
   const double best = evidence(refits.front(), look.rows, variance);
   const double by_a_finer_mesh = kRemainder * look.floor * look.floor * look.rows;
   for (const Refit& r : refits) {
     const bool larger = r.effects.size() > refits.front().effects.size();
     const bool alike = best - evidence(r, look.rows, variance) < kSameEvidence ||
-                       r.cost_beside_mesh - refits.front().cost_beside_mesh < by_a_finer_mesh;
+                       r.cost_beside_numerics - refits.front().cost_beside_numerics < by_a_finer_mesh;
     if (larger || !alike) continue;
     for (const std::string& effect : r.effects) {
       if (std::find(set.begin(), set.end(), effect) == set.end()) set.push_back(effect);

@@ -70,10 +70,12 @@ bool FirstLook::numerics() const {
 }
 
 bool FirstLook::explained_by(const Refit& refit) const {
-  const double left = refit.cost - rows, of_mesh = floor * floor * rows;
+  const double of_mesh = floor * floor * rows;
+  const auto takes = [&](double share, double left) { return left < std::max((1.0 - share) * structured(), of_mesh); };
+  const double left = refit.cost - rows;
   const double alone = left < of_mesh + kLittle * rows ? kNearly : kExplains;
-  const double share = refit.effects.size() > 1 ? kPairExplains : alone;
-  return left < std::max((1.0 - share) * structured(), of_mesh);
+  return takes(refit.effects.size() > 1 ? kPairExplains : alone, left) ||
+         takes(kPairExplains, refit.cost_beside_steps - rows);
 }
 
 }  // namespace tissue_stiffness

@@ -5,6 +5,7 @@
 
 #include "tissue_stiffness/diagnosis/fit_entries.hpp"
 #include "tissue_stiffness/diagnosis/ranking.hpp"
+#include "tissue_stiffness/settings/extend_model.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
@@ -106,6 +107,28 @@ double cost_beside(const Eigen::VectorXd& error, const Eigen::VectorXd& mesh_cha
   return (error - share * mesh_change).squaredNorm();
 }
 
+struct BesideSteps {
+  Eigen::VectorXd error;
+  double price;  ///< of the further parameters, after Schwarz
+};
+
+// The base with these entries, from these parameters, and what a simulation's time steps do besides. `known`: parameters
+// that are estimated without.
+std::optional<BesideSteps> beside_steps(const Fitted& base, std::vector<std::string> entries,
+                                        const std::map<std::string, double>& parameters, int known) {
+  const Study& of = *base.study;
+  const std::vector<std::string> steps = entries_of_simulation(of, base.fit.w);
+  if (steps.empty()) return std::nullopt;
+  entries.insert(entries.end(), steps.begin(), steps.end());
+  const Study study(extend_model(of.model().settings(), entries), of);
+  const Model& model = study.model();
+  const Eigen::VectorXd start = model.coordinates(parameters, model.prior_mean());
+  const BatchFit fit = study.quick_fit(study.scan_near(start, study.tuning_shared_with(of)).w, study.spread_beyond(of));
+  Study::Rows rows = study.rows(fit.w);
+  const auto added = static_cast<double>(model.free_parameters().size()) - known;
+  return BesideSteps{std::move(rows.error), added * std::log(rows.count())};
+}
+
 }  // namespace
 
 Refit refit(const Fitted& base, const std::vector<Addition>& additions, const Eigen::VectorXd& mesh_change, double rival) {
@@ -134,8 +157,9 @@ Refit refit(const Fitted& base, const std::vector<Addition>& additions, const Ei
   out.way = additions.front().way;
   for (const Addition& addition : additions) {
     out.effects.push_back(addition.way->effect);
-    out.entries.push_back(addition.way->proposal.refine);
+    out.proposals.push_back(addition.way->proposal.refine);
   }
+  out.entries = out.proposals;
   fit_entries(out.entries, study.model(), start->fit);
   out.parameters = study.model().values(start->fit.w);
   out.train_rms = rms_error(rows, known.recording(), false);
@@ -145,11 +169,28 @@ Refit refit(const Fitted& base, const std::vector<Addition>& additions, const Ei
   out.p_value =
       prediction_p_value(held_out_squares(base.rows, known.recording()) - held_out_squares(rows, known.recording()));
   out.fitted = start->fit.cost;
-  out.cost = rows.error.squaredNorm();
-  out.cost_beside_mesh = cost_beside(rows.error, mesh_change);
+  out.cost = out.cost_beside_steps = rows.error.squaredNorm();
+  out.cost_beside_numerics = cost_beside(rows.error, mesh_change);
   out.added_parameters = static_cast<int>(study.model().free_parameters().size() - known.model().free_parameters().size());
   if (!only_quick) out.model = std::move(model);
   return out;
+}
+
+void allow_for_steps(const Fitted& base, const Eigen::VectorXd& mesh_change, Refit& refit) {
+  refit.allows_for_steps = true;
+  const int known = static_cast<int>(base.study->model().free_parameters().size()) + refit.added_parameters;
+  const std::optional<BesideSteps> found = beside_steps(base, refit.proposals, refit.parameters, known);
+  if (!found || refit.way->of_simulation) return;
+  refit.cost_beside_steps = std::min(refit.cost_beside_steps, found->error.squaredNorm() + found->price);
+  refit.cost_beside_numerics = std::min(refit.cost_beside_numerics, cost_beside(found->error, mesh_change) + found->price);
+}
+
+double cost_beside_steps(const Fitted& base) {
+  const Model& model = base.study->model();
+  const auto known = static_cast<int>(model.free_parameters().size());
+  const std::optional<BesideSteps> found = beside_steps(base, {}, model.values(base.fit.w), known);
+  const double cost = base.rows.error.squaredNorm();
+  return found ? std::min(cost, found->error.squaredNorm() + found->price) : cost;
 }
 
 }  // namespace tissue_stiffness

@@ -33,6 +33,10 @@ constexpr double kMeshCounts = 0.2;    // rms of its error [sigma] from which le
 constexpr std::size_t kLeaders = 4;    // that are
 constexpr double kSeen = 0.5;          // of what a refit explains: a tangent that sees less is none
 constexpr double kFaithful = 0.9;      // and one that sees as much tells what others would explain
+constexpr double kClose = 0.9;         // of what the best refit explains: as good, but for the numerics
+constexpr double kVisible = 0.02;      // of the noise's sum of squares: more than a slightly wrong one
+constexpr double kChance = 3.0;        // standard deviations of that sum
+constexpr std::ptrdiff_t kSimple = 2;  // parameters of what is fitted to the beginning where the error may be noise
 constexpr double kReach = 1.05;        // times the best cost so far: fewer parameters may make up for less than that
 constexpr double kRival = 0.5;         // of a leader's evidence by tangents: less is no rival
 
@@ -43,12 +47,15 @@ class Search {
 
   std::vector<Refit> operator()(const std::vector<std::string>& wanted) {
     refit_singles(wanted);
-    if (!wanted.empty() || look_.noise() || look_.numerics()) return std::move(refits_);
-    if (leaves_more_than_noise() || (faint() && look_.first)) refit_others();  // the first look's set is told
-    if (leaves_more_than_noise()) refit_other_kinds();
-    if (leaves_more_than_noise()) refit_rest();
-    if ((leaves_more_than_noise() && !explained()) || tangents_mislead() || quiet()) refit_from_beginning();
+    if (!wanted.empty() || look_.numerics()) return std::move(refits_);
+    compare_beside_steps();
+    if (look_.noise() && !puzzles()) return std::move(refits_);
+    if (unsettled() || (faint() && look_.first)) refit_others();  // the first look's set is told
+    if (unsettled()) refit_other_kinds();
+    if (unsettled()) refit_rest();
+    if ((unsettled() && !explained()) || tangents_mislead() || quiet()) refit_from_beginning();
     if (leaves_more_than_noise() && !explained()) refit_pairs();
+    compare_beside_steps();
     compare_on_finer_mesh();
     return std::move(refits_);
   }
@@ -60,6 +67,10 @@ class Search {
   void refit_rest();
   void refit_from_beginning();
   void refit_pairs();
+  double left_beside_steps();
+  bool steps_explain();
+  void refit_steps();
+  void compare_beside_steps();
   void compare_on_finer_mesh();
   void add_other_way(const Ranked& r, std::vector<std::vector<Addition>>& list) const;
   std::vector<const Candidate*> different_ways() const;
@@ -76,8 +87,12 @@ class Search {
     return r.best->linear || r.score.explained * look_.cost > kPromise * look_.structured();
   }
   bool leaves_more_than_noise() const {
-    return refits_.empty() || refits_.front().cost > kExplained * kExplained * look_.unavoidable();
+    return refits_.empty() || refits_.front().cost_beside_steps > kExplained * kExplained * look_.unavoidable();
   }
+  /// An error that may be noise is more than that, as far as the recording's own time steps are not to blame, and nothing
+  /// explains it.
+  bool puzzles();
+  bool unsettled() { return leaves_more_than_noise() || puzzles(); }
   /// The best refit explains what its tangent did not see, and not all of it: its twins may not have been seen either.
   bool tangents_mislead() const;
   bool mesh_counts() const { return look_.floor > kMeshCounts; }
@@ -99,6 +114,7 @@ class Search {
   const FirstLook& look_;
   const DiagnosisOptions& options_;
   std::vector<Refit> refits_;
+  std::optional<double> left_;  ///< of the base's sum of squared errors beside time steps
 };
 
 // Parameters that are fitted besides the base's.
@@ -114,8 +130,15 @@ std::ptrdiff_t parameters_of(const std::vector<Addition>& additions) {
 }
 
 bool Search::tangents_mislead() const {
-  if (refits_.empty() || refits_.front().cost < kClean * kClean * look_.rows) return false;
+  if (refits_.empty() || refits_.front().cost_beside_steps < kClean * kClean * look_.rows) return false;
   return seen_of_best() < kSeen;
+}
+
+bool Search::puzzles() {
+  if (!look_.noise() || explained()) return false;
+  const double visible = std::max(kVisible, kChance * std::sqrt(2.0 / look_.rows));
+  const auto is_more = [&](double cost) { return cost > look_.unavoidable() + visible * look_.rows; };
+  return is_more(look_.cost) && is_more(left_beside_steps());
 }
 
 double Search::seen_of_best() const {
@@ -178,19 +201,22 @@ void Search::refit_all(std::vector<std::vector<Addition>> list) {
 }
 
 void Search::refit_singles(const std::vector<std::string>& wanted) {
+  const bool told = !look_.first && wanted.empty();
   std::vector<std::vector<Addition>> leaders, others;
   for (const Ranked& r : look_.ranked) {
     const bool asked = std::find(wanted.begin(), wanted.end(), r.effect) != wanted.end();
-    if (!asked && (!r.declared || !worth_full_runs(r) || leaders.size() + others.size() >= kRefits || !wanted.empty()))
+    const bool of_simulation = told && r.best->of_simulation && r.evidence > kSameEvidence;
+    if (!asked && !of_simulation &&
+        (!r.declared || !worth_full_runs(r) || leaders.size() + others.size() >= kRefits || !wanted.empty()))
       continue;
     // Once the set is told, what leaves only noise need not be compared with what sees far less.
-    const bool leads = look_.first || asked || r.evidence > kRival * look_.ranked.front().evidence;
+    const bool leads = look_.first || asked || of_simulation || r.evidence > kRival * look_.ranked.front().evidence;
     (leads ? leaders : others).push_back({{r.best, r.score.amplitude}});
   }
-  const bool told = !look_.first && wanted.empty();
   auto next = leaders.begin();
-  if (told) {  // the simplest first: where they leave only noise, nothing else is needed
-    const auto simpler = [](const auto& a, const auto& b) { return parameters_of(a) < parameters_of(b); };
+  if (told) {  // the recording's own time steps, then the simplest: where they leave only noise, nothing else is needed
+    const auto effort = [](const auto& a) { return a.front().way->of_simulation ? 0 : parameters_of(a); };
+    const auto simpler = [&](const auto& a, const auto& b) { return effort(a) < effort(b); };
     std::stable_sort(leaders.begin(), leaders.end(), simpler);
     while (next != leaders.end() && !simpler(leaders.front(), *next)) ++next;
   } else if (!leaders.empty()) {  // the first alone: what falls behind it need not be fitted to the end
@@ -292,7 +318,7 @@ std::vector<const Candidate*> Search::different_ways() const {
   const Scorer scorer((look_.base.rows.error - look_.finer.change).head(rows), look_.known.topRows(rows), offsets, 1.0);
   std::vector<std::pair<const Candidate*, Score>> ways;
   for (const Candidate& candidate : look_.candidates) {
-    if (!candidate.linear) continue;
+    if (!candidate.linear || (look_.noise() && parameters_of({{&candidate, {}}}) > kSimple)) continue;
     const Tangent beginning{candidate.tangent.columns.topRows(rows), candidate.tangent.prior_std};
     ways.emplace_back(&candidate, scorer.score(beginning));
   }
@@ -327,6 +353,44 @@ void Search::refit_pairs() {
   refit_all(list);
 }
 
+double Search::left_beside_steps() {
+  if (!left_) left_ = cost_beside_steps(look_.base);
+  return *left_;
+}
+
+bool Search::steps_explain() {
+  const double gain = look_.cost - left_beside_steps();
+  return gain > kClose * look_.structured() || gain > look_.cost - refits_.front().cost;
+}
+
+// Alone: nothing has to be missing beside them.
+void Search::refit_steps() {
+  std::vector<std::vector<Addition>> list;
+  for (const Ranked& r : look_.ranked) {
+    if (r.best->of_simulation && !refitted(r.effect)) list.push_back({{r.best, r.score.amplitude}});
+  }
+  refit_all(list);
+}
+
+// A recording may be simulated itself: what its time steps do decides between twins, and may be all that an effect leaves.
+void Search::compare_beside_steps() {
+  if (refits_.empty() || refits_.front().way->of_simulation) return;
+  std::vector<Refit*> leaders, others;
+  for (Refit& r : refits_) {
+    const bool close = look_.cost - r.cost > kClose * (look_.cost - refits_.front().cost);
+    if (r.way->linear && close && leaders.size() < kLeaders) leaders.push_back(&r);
+  }
+  if (leaders.size() < 2 && !leaves_more_than_noise()) return;
+  if (steps_explain()) return refit_steps();
+  for (Refit* r : leaders) {
+    if (!r->allows_for_steps) others.push_back(r);
+  }
+  try_each(
+      others.size(), [&](std::size_t i) { return "beside time steps: " + others[i]->effects.front(); },
+      [&](std::size_t i) { allow_for_steps(look_.base, look_.finer.change, *others[i]); });
+  sort_refits();
+}
+
 // Where the mesh's error is much of what the leaders leave, the one that imitates it best would win.
 void Search::compare_on_finer_mesh() {
   if (refits_.size() < 2 || !mesh_counts()) return;
@@ -337,7 +401,7 @@ void Search::compare_on_finer_mesh() {
   try_each(
       leaders.size(), [&](std::size_t i) { return "on a finer mesh: " + leaders[i]->effects.front(); },
       [&](std::size_t i) {  // a fit that ends in another minimum there speaks against nothing
-        double& cost = leaders[i]->cost_beside_mesh;
+        double& cost = leaders[i]->cost_beside_numerics;
         cost = std::min(cost, cost_on_finer_mesh(look_.base, *leaders[i], look_.finer.study.get()));
       });
   sort_refits();
@@ -345,7 +409,7 @@ void Search::compare_on_finer_mesh() {
 
 void Search::sort_refits() {
   double lowest = look_.cost;
-  for (const Refit& r : refits_) lowest = std::min(lowest, r.cost_beside_mesh);
+  for (const Refit& r : refits_) lowest = std::min(lowest, r.cost_beside_numerics);
   const double variance = std::max(1.0, lowest / look_.rows);
   std::stable_sort(refits_.begin(), refits_.end(), [&](const Refit& a, const Refit& b) {
     return evidence(a, look_.rows, variance) > evidence(b, look_.rows, variance);
@@ -356,7 +420,7 @@ void Search::sort_refits() {
 }  // namespace
 
 double evidence(const Refit& refit, double rows, double variance) {
-  return -0.5 * refit.cost_beside_mesh / variance - 0.5 * refit.added_parameters * std::log(rows);
+  return -0.5 * refit.cost_beside_numerics / variance - 0.5 * refit.added_parameters * std::log(rows);
 }
 
 std::vector<Refit> search_refits(const FirstLook& look, const std::vector<std::string>& wanted,

@@ -31,6 +31,7 @@ EffectSpec period_elongation_spec() {
   spec.source = "Hughes 1987, sec. 9.1; Bathe 1996, sec. 9.4";
   spec.parameters = {{"step_squared", "h^2", "s^2", 0.0, 1e2, ParameterSpec::Default::required, 0.0, 0.0, 1}};
   spec.proposals = propose;
+  spec.of_simulation = true;
   return spec;
 }
 

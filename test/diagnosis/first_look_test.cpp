@@ -89,12 +89,13 @@ TEST_F(BarWithADamping, ReadsTangentsInTheVectorsOfAnEarlierLook) {
   EXPECT_LT(worst, 0.02);
 }
 
-// Most of it, and more where much is left beside the noise; of two effects, nearly all.
+// Most of it, and more where much is left beside the noise; of two effects, or of one beside time steps, nearly all.
 TEST_F(BarWithADamping, IsExplainedByWhatLeavesLittle) {
-  const auto explained = [](const FirstLook& look, double share, std::vector<std::string> effects) {
+  const auto explained = [](const FirstLook& look, double share, std::vector<std::string> effects, double beside = 0.0) {
     Refit refit;
     refit.effects = std::move(effects);
     refit.cost = look.rows + (1.0 - share) * look.structured();
+    refit.cost_beside_steps = look.rows + (1.0 - std::max(share, beside)) * look.structured();
     return look.explained_by(refit);
   };
   const FirstLook strong(base_, {}, {1e-6 * base_.rows.error});
@@ -103,6 +104,8 @@ TEST_F(BarWithADamping, IsExplainedByWhatLeavesLittle) {
   EXPECT_TRUE(explained(strong, 0.86, {"a"}));
   EXPECT_FALSE(explained(strong, 0.96, {"a", "b"}));
   EXPECT_TRUE(explained(strong, 0.98, {"a", "b"}));
+  EXPECT_FALSE(explained(strong, 0.5, {"a"}, 0.96));
+  EXPECT_TRUE(explained(strong, 0.5, {"a"}, 0.98));
   base_.rows.error *= std::sqrt(1.4 * strong.rows / strong.cost);
   const FirstLook faint(base_, {}, {1e-6 * base_.rows.error});
   EXPECT_TRUE(explained(faint, 0.84, {"a"}));

@@ -20,7 +20,8 @@ struct Candidate {
   double absent = 0.0;                                      ///< parameter value that its amplitude is counted from
   double lower = -std::numeric_limits<double>::infinity();  ///< bounds of the amplitude
   double upper = std::numeric_limits<double>::infinity();
-  bool linear = true;  ///< quick to refit
+  bool linear = true;          ///< quick to refit
+  bool of_simulation = false;  ///< no physics (EffectSpec)
 
   /// Within the bounds: nothing is explained by a negative damping.
   bool allows(const Eigen::VectorXd& amplitude) const;
@@ -44,6 +45,9 @@ using CountProgress = std::function<void(std::size_t done, std::size_t total)>;
 std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd& w, bool within_noise,
                                        const std::vector<std::string>& ignore, const CountProgress& progress,
                                        Library& library);
+
+/// Entries for what a recording has of its making where it is itself simulated, and the base model does not allow for.
+std::vector<std::string> entries_of_simulation(const Study& base, const Eigen::VectorXd& w);
 
 /// d rows / d w of the fitted base model, in sigmas: N x free parameters.
 Eigen::MatrixXd base_tangents(const Study& base, const Eigen::VectorXd& w, const Eigen::VectorXd& std,

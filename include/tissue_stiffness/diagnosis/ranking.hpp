@@ -56,6 +56,7 @@ std::vector<RankedPair> rank_pairs(const Scorer& scorer, const std::vector<Candi
 struct Refit {
   const Candidate* way = nullptr;  ///< of the first effect
   std::vector<std::string> effects;
+  std::vector<std::string> proposals;                ///< entries that it was fitted with
   std::vector<std::string> entries;                  ///< for the model file: estimated parameters with their fit as prior
   std::map<std::string, double> parameters;          ///< of the whole model, by name
   double train_rms = 0.0, held_out_rms = 0.0;        ///< [m]
@@ -63,7 +64,9 @@ struct Refit {
   double p_value = 1.0;                              ///< of predicting the held-out frames no better
   double fitted = 0.0;                               ///< cost of the training frames and the prior
   double cost = 0.0;                                 ///< sum of squared errors over sigma, all frames
-  double cost_beside_mesh = 0.0;                     ///< of what no share of the mesh's change explains
+  double cost_beside_steps = 0.0;                    ///< the same, or what allow_for_steps has found
+  double cost_beside_numerics = 0.0;                 ///< of what no share of the mesh's change explains either
+  bool allows_for_steps = false;
   int added_parameters = 0;
   std::shared_ptr<Fitted> model;  ///< null where it was only run quickly, and of all but the best
 };
@@ -73,5 +76,13 @@ struct Refit {
 /// no start can be run. `mesh_change`: of the base's rows by a finer mesh [sigma]; an effect that imitates it has no
 /// advantage. `rival`: what another refit was `fitted` with; where this one is no better it need not be the best.
 Refit refit(const Fitted& base, const std::vector<Addition>& additions, const Eigen::VectorXd& mesh_change, double rival);
+
+/// Fits the refit's model once more with what a simulated recording has of its time steps besides (entries_of_simulation),
+/// and lowers its two costs beside numerics to what is left then, but for what the further parameters are worth after
+/// Schwarz. For linear refits.
+void allow_for_steps(const Fitted& base, const Eigen::VectorXd& mesh_change, Refit& refit);
+
+/// The same of the base: what is left of its sum of squared errors.
+double cost_beside_steps(const Fitted& base);
 
 }  // namespace tissue_stiffness

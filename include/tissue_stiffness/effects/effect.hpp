@@ -38,6 +38,7 @@ struct EffectSpec {
   std::vector<ParameterSpec> parameters;
   std::vector<std::pair<std::string, std::string>> keys;  ///< further keys and what they take
   Proposer proposals = nullptr;                           ///< null: its absence is nothing to look for
+  bool of_simulation = false;                             ///< no physics, but what a simulated recording has of its making
 };
 
 /// What an effect may look at while it is built.
