@@ -1,7 +1,9 @@
 """Scenes of the study, and what is hidden in them. A truth never is the estimator's own model: it runs on a finer mesh with
 other nodes, in time steps instead of modes, and most hidden effects take another form than the library's."""
 
-from meshes import box
+import os
+
+from meshes import box, write_vtk
 
 STEP = 0.0005       # s, of a truth
 TRIAL_STEP = 0.001  # s, where only an effect's size is asked for
@@ -17,21 +19,33 @@ def elasticity(modulus, poisson=0.45, **more):
     return {'elasticity': dict(law='linear', young_modulus=modulus, poisson_ratio=poisson, **more)}
 
 
+def faces(size):
+    return {'clamp': {'box': {'min': [-1, -1, -1], 'max': [1e-6, 1, 1]}},
+            'tip': {'box': {'min': [size[0] - 1e-6, -1, -1], 'max': [1, 1, 1]}},
+            'side': {'box': {'min': [-1, -1, -1], 'max': [1, 1, 1e-6]}}}
+
+
+def wrench(*terms):
+    return {'/tool/wrench': {'rate': 200, 'terms': list(terms)}}
+
+
 def step_of(hidden, strength, usual):
     """Time step of a truth [s]: long ones are what elongates periods."""
     return min(1.0 / RATE, max(usual, LONG_STEP * strength)) if hidden == 'period_elongation' else usual
 
 
 class Scene:
-    """A body, its loads, and how each effect is hidden in it at strength s (1: about as large as tissue has it)."""
+    """A box, its loads, and how each effect is hidden in it at strength s (1: about as large as tissue has it)."""
+
+    rate, noise = RATE, NOISE
 
     def __init__(self, name, size, cells, true_cells, modulus, regions, effects, loads):
         self.name, self.size, self.cells, self.true_cells, self.modulus = name, size, cells, true_cells, modulus
         self.regions, self.effects, self.loads = regions, effects, loads
 
-    def markers(self, nodes):
-        """Every second of the nodes on the surface."""
-        surface = [list(node) for node in nodes
+    def markers(self):
+        """Every second of the nodes on the model's surface."""
+        surface = [list(node) for node in self.nodes_and_tets(self.cells)[0]
                    if any(min(x, length - x) < 1e-9 for x, length in zip(node, self.size))]
         return surface[::2]
 
@@ -53,8 +67,13 @@ class Scene:
         """Thickness of what lies between the body and what holds it [m]."""
         return 0.05 * self.size[0] if hidden == 'elastic_support' else 0.0
 
-    def mesh(self, cells, hidden='none'):
-        """Nodes and tetrahedra of the body and of the layer that it may be held by."""
+    def write_mesh(self, folder, name, true, hidden='none'):
+        """The model's mesh, or the one of the truth; what a model file says of it."""
+        write_vtk(os.path.join(folder, name + '.vtk'), *self.nodes_and_tets(self.true_cells if true else self.cells, hidden))
+        return {'file': name + '.vtk'}
+
+    def nodes_and_tets(self, cells, hidden='none'):
+        """Of the body and of the layer that it may be held by."""
         layer = self.layer(hidden)
         more = LAYER_CELLS if layer else 0
         nodes, tets = box([cells[0] + more] + self.size[1:], [cells[0] + more] + cells[1:])
@@ -91,6 +110,10 @@ class Scene:
             effects[0] = elasticity(modulus, poisson=0.45 - 0.1 * min(s, 4.0))
         elif hidden == 'gravity':
             effects.append({'gravity': {'acceleration': [0.0, 0.7 * s, 0.7 * s]}})
+        elif hidden == 'image_scale':
+            effects.append({'image_scale': {'ratio': 1.0 + 0.2 * s}})
+        elif hidden == 'time_offset':
+            effects.append({'time_offset': {'offset': 0.01 * s}})
         elif hidden == 'push':  # somebody leans on the body for a while: no effect of the library
             effects.append({'traction': {'region': 'side', 'topic': PUSH_TOPIC}})
         elif hidden == 'geometric_nonlinearity':  # a hyperelastic law, under s times the load
@@ -102,15 +125,6 @@ class Scene:
 
 def scenes():
     bar, slab = [0.10, 0.02, 0.02], [0.08, 0.05, 0.02]
-
-    def faces(size):
-        return {'clamp': {'box': {'min': [-1, -1, -1], 'max': [1e-6, 1, 1]}},
-                'tip': {'box': {'min': [size[0] - 1e-6, -1, -1], 'max': [1, 1, 1]}},
-                'side': {'box': {'min': [-1, -1, -1], 'max': [1, 1, 1e-6]}}}
-
-    def wrench(*terms):
-        return {'/tool/wrench': {'rate': 200, 'terms': list(terms)}}
-
     base = [{'inertia': {'density': 1000.0}}, {'fixed': {'region': 'clamp'}}]
     pulled = base + [{'traction': {'region': 'tip', 'topic': '/tool/wrench'}}]
     return [

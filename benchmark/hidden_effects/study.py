@@ -14,8 +14,8 @@ import sensor_msgs.point_cloud2 as point_cloud2
 import yaml
 
 from figures import plt, save
-from meshes import write_vtk
-from scenes import NOISE, RATE, STEP, TRIAL_STEP, scenes, step_of
+from organs import organs
+from scenes import STEP, TRIAL_STEP, scenes, step_of
 
 DURATION = 1.6    # s
 TOPIC = '/tissue/markers'
@@ -30,11 +30,19 @@ HIDDEN = {
                               'gravity'],
     'slab worked by a tool': ['none', 'viscoelasticity', 'elastic_support', 'stiff_inclusion', 'foundation', 'gravity'],
 }
+ORGANS = {
+    'block worked by a tool': ['viscous_damping', 'mass_damping', 'viscoelasticity', 'stiff_inclusion', 'foundation', 'gravity',
+                               'image_scale', 'time_offset', 'compressibility'],
+    'ventricle filled by a pressure': ['viscous_damping', 'viscoelasticity', 'stiff_inclusion', 'fibre_reinforcement',
+                                       'active_contraction', 'elastic_support', 'foundation', 'gravity', 'image_scale'],
+}
+STEPS_PER_FRAME = (4, 8)  # of their truths: independent simulators take as few
 MODULUS = 'elasticity.young_modulus'
 TIME_LIMIT = 600  # s a run
 VISIBLE = 1.15    # held-out error over a clean recording's: there is something to find
 EVERY = 8  # draws there come one of each of these, numbered from here on:
 PUSHES, LONG_STEPS = 10000, 20000  # pushes that nobody recorded, which no effect of the library is; truths in long time steps
+EVERY_ORGAN, FIRST_ORGAN = 2, 30000  # draws there comes one of a block or a ventricle
 MOST_TRIALS = 5   # of a strength
 STRONGEST = 10.0
 
@@ -57,17 +65,17 @@ def write(folder, name, content):
 
 
 def observations(scene):
-    return [{'markers': {'topic': TOPIC, 'noise': NOISE, 'rest': scene.markers(scene.mesh(scene.cells)[0])}}]
+    return [{'markers': {'topic': TOPIC, 'noise': scene.noise, 'rest': scene.markers()}}]
 
 
-def simulate(arguments, folder, scene, modulus, hidden, strength, load=1.0, cells=None, noise=1e-9, memory=0.0, seed=1,
+def simulate(arguments, folder, scene, modulus, hidden, strength, load=1.0, true=False, noise=1e-9, memory=0.0, seed=1,
              step=STEP):
     step = step_of(hidden, strength, step)
     regions, effects = scene.truth(modulus, hidden, strength, load)
     loads = scene.loads_with(modulus, hidden, strength)
-    write_vtk(os.path.join(folder, 'true.vtk'), *scene.mesh(cells or scene.cells, hidden))
-    content = {'mesh': {'file': 'true.vtk'}, 'regions': regions, 'effects': effects, 'observations': observations(scene),
-               'simulation': {'duration': DURATION, 'rate': RATE, 'step': step, 'spectral_radius': 1.0, 'seed': seed,
+    content = {'mesh': scene.write_mesh(folder, 'true', true, hidden), 'regions': regions, 'effects': effects,
+               'observations': observations(scene),
+               'simulation': {'duration': DURATION, 'rate': scene.rate, 'step': step, 'spectral_radius': 1.0, 'seed': seed,
                               **({'loads': loads} if loads else {}),
                               'sensors': {TOPIC: {'noise': noise, 'memory': memory}}}}
     bag = os.path.join(folder, 'recording.bag')
@@ -94,6 +102,8 @@ def load_for(hidden, strength):
 
 def strength_for(arguments, folder, scene, modulus, hidden, misfit):
     """The effect's strength at which it moves the body by about `misfit` of its motion; on the coarse mesh, which is quick."""
+    if hidden == 'image_scale':  # moves the whole picture by as much
+        return misfit
     strength = 0.02
     plain = None
     for _ in range(MOST_TRIALS):
@@ -110,23 +120,23 @@ def strength_for(arguments, folder, scene, modulus, hidden, misfit):
 
 def draw(task):
     """One recording with something hidden, and what the diagnosis says of it."""
-    arguments, number, scene_name, hidden, misfit, memory, absent = task
+    arguments, number, scene_name, hidden, misfit, memory, absent, step = task
     rng = random.Random(1000 + number)
-    scene = next(s for s in scenes() if s.name == scene_name)
+    scene = next(s for s in scenes() + organs() if s.name == scene_name)
     begun = time.time()
     folder = os.path.join(arguments.output, 'draw_%03d' % number)
     os.makedirs(folder, exist_ok=True)
     modulus = scene.modulus * rng.uniform(0.7, 1.4)
     row = {'number': number, 'scene': scene_name, 'hidden': hidden, 'misfit': misfit, 'memory': memory, 'absent': absent}
     try:
-        write_vtk(os.path.join(folder, 'mesh.vtk'), *scene.mesh(scene.cells))
+        mesh = scene.write_mesh(folder, 'mesh', False)
         strength = 0.0 if hidden == 'none' else strength_for(arguments, folder, scene, modulus, hidden, misfit)
         load = load_for(hidden, strength)
-        bag = simulate(arguments, folder, scene, modulus, hidden, strength, load, scene.true_cells, NOISE, memory, number + 1)
+        bag = simulate(arguments, folder, scene, modulus, hidden, strength, load, True, scene.noise, memory, number + 1, step)
         start = modulus * rng.choice((0.5, 0.7, 1.5, 2.0))
         effects = [{'elasticity': {'law': 'linear', 'young_modulus': {'prior': start, 'factor': 3.0}, 'poisson_ratio': 0.45}}]
-        model = write(folder, 'model.yaml', {'mesh': {'file': 'mesh.vtk'}, 'regions': scene.regions,
-                                             'effects': effects + scene.effects_under(load), 'observations': observations(scene)})
+        model = write(folder, 'model.yaml', {'mesh': mesh, 'regions': scene.regions, 'effects': effects + scene.effects_under(load),
+                                             'observations': observations(scene)})
         command = [arguments.diagnose, model, bag, '--quiet', '--output', folder]
         if not absent:  # what the library lacks can only be told from the given model
             command.append('--auto')
@@ -149,21 +159,31 @@ def draw(task):
     return row
 
 
+def organ_task(arguments, number, rng):
+    scene = rng.choice(organs())
+    hidden = rng.choice(ORGANS[scene.name]) if rng.random() > 0.15 else 'none'
+    absent = hidden != 'none' and rng.random() < 0.15
+    step = 1.0 / scene.rate / rng.choice(STEPS_PER_FRAME)
+    return arguments, number, scene.name, hidden, rng.choice(MISFITS), rng.choice((0.0, 0.6)), absent, step
+
+
 def tasks(arguments):
     """Draws in an order of which any beginning is a fair sample."""
-    rng, rng_of_pushes, rng_of_steps = random.Random(7), random.Random(8), random.Random(9)
+    rng, rng_of_pushes, rng_of_steps, rng_of_organs = (random.Random(seed) for seed in (7, 8, 9, 10))
     out = []
     for number in range(arguments.draws):
         scene = rng.choice(sorted(HIDDEN))
         hidden = rng.choice(HIDDEN[scene]) if rng.random() > 0.15 else 'none'
         absent = hidden != 'none' and rng.random() < 0.15
-        out.append((arguments, number, scene, hidden, rng.choice(MISFITS), rng.choice((0.0, 0.6)), absent))
+        out.append((arguments, number, scene, hidden, rng.choice(MISFITS), rng.choice((0.0, 0.6)), absent, STEP))
+        if number % EVERY_ORGAN == 0:
+            out.append(organ_task(arguments, FIRST_ORGAN + number, rng_of_organs))
         if number % EVERY != 0:
             continue
         for first, what, own, absent in ((PUSHES, 'push', rng_of_pushes, True),
                                          (LONG_STEPS, 'period_elongation', rng_of_steps, False)):
             out.append((arguments, first + number, own.choice(sorted(HIDDEN)), what, own.choice(MISFITS),
-                        own.choice((0.0, 0.6)), absent))
+                        own.choice((0.0, 0.6)), absent, STEP))
     return out
 
 
@@ -183,7 +203,7 @@ def tables(rows):
     slow = [row for row in good if row['hidden'] == 'period_elongation']
     hidden = [row for row in good if row['hidden'] not in ('none', 'period_elongation') and not row['absent']]
     # What a clean recording leaves of a scene is its mesh's part.
-    plain = {name: sorted(row['given'] for row in clean if row['scene'] == name) or [1.0] for name in HIDDEN}
+    plain = {name: sorted(row['given'] for row in clean if row['scene'] == name) or [1.0] for name in {**HIDDEN, **ORGANS}}
     floor = {name: values[len(values) // 2] for name, values in plain.items()}
     leaves = {row['number'] for row in good if row['given'] > VISIBLE * floor[row['scene']]}
     seen = [row for row in hidden if row['number'] in leaves]
