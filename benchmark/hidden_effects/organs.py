@@ -39,7 +39,7 @@ class Ventricle(Scene):
     """A thick half ellipsoid, held at its base."""
 
     rate, noise = 50.0, 3e-4
-    edge, true_edge = 0.0075, 0.0055
+    edge, true_edge = 0.0105, 0.0075
 
     def __init__(self, name, modulus, loads):
         region = {'clamp': {'box': {'min': [-1, -1, BASE - 1e-6], 'max': [1, 1, 1]}},

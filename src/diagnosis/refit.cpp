@@ -107,26 +107,22 @@ double cost_beside(const Eigen::VectorXd& error, const Eigen::VectorXd& mesh_cha
   return (error - share * mesh_change).squaredNorm();
 }
 
-struct BesideSteps {
-  Eigen::VectorXd error;
-  double price;  ///< of the further parameters, after Schwarz
-};
-
 // The base with these entries, from these parameters, and what a simulation's time steps do besides. `known`: parameters
 // that are estimated without.
-std::optional<BesideSteps> beside_steps(const Fitted& base, std::vector<std::string> entries,
-                                        const std::map<std::string, double>& parameters, int known) {
+CostBesideSteps beside_steps(const Fitted& base, std::vector<std::string> entries,
+                             const std::map<std::string, double>& parameters, std::size_t known,
+                             const Eigen::VectorXd& mesh_change) {
   const Study& of = *base.study;
   const std::vector<std::string> steps = entries_of_simulation(of, base.fit.w);
-  if (steps.empty()) return std::nullopt;
+  if (steps.empty()) return {};
   entries.insert(entries.end(), steps.begin(), steps.end());
   const Study study(extend_model(of.model().settings(), entries), of);
   const Model& model = study.model();
   const Eigen::VectorXd start = model.coordinates(parameters, model.prior_mean());
   const BatchFit fit = study.quick_fit(study.scan_near(start, study.tuning_shared_with(of)).w, study.spread_beyond(of));
-  Study::Rows rows = study.rows(fit.w);
-  const auto added = static_cast<double>(model.free_parameters().size()) - known;
-  return BesideSteps{std::move(rows.error), added * std::log(rows.count())};
+  const Study::Rows rows = study.rows(fit.w);
+  const double price = static_cast<double>(model.free_parameters().size() - known) * std::log(rows.count());
+  return {rows.error.squaredNorm() + price, cost_beside(rows.error, mesh_change) + price};
 }
 
 }  // namespace
@@ -176,21 +172,22 @@ Refit refit(const Fitted& base, const std::vector<Addition>& additions, const Ei
   return out;
 }
 
-void allow_for_steps(const Fitted& base, const Eigen::VectorXd& mesh_change, Refit& refit) {
-  refit.allows_for_steps = true;
-  const int known = static_cast<int>(base.study->model().free_parameters().size()) + refit.added_parameters;
-  const std::optional<BesideSteps> found = beside_steps(base, refit.proposals, refit.parameters, known);
-  if (!found || refit.way->of_simulation) return;
-  refit.cost_beside_steps = std::min(refit.cost_beside_steps, found->error.squaredNorm() + found->price);
-  refit.cost_beside_numerics = std::min(refit.cost_beside_numerics, cost_beside(found->error, mesh_change) + found->price);
+void Refit::allow_for(const CostBesideSteps& left) {
+  cost_beside_steps = std::min(cost, left.cost);
+  cost_beside_numerics = std::min(cost_beside_numerics, left.beside_mesh);
 }
 
-double cost_beside_steps(const Fitted& base) {
+CostBesideSteps cost_beside_steps(const Fitted& base, const Refit& refit, const Eigen::VectorXd& mesh_change) {
+  const std::size_t known = base.study->model().free_parameters().size() + static_cast<std::size_t>(refit.added_parameters);
+  return beside_steps(base, refit.proposals, refit.parameters, known, mesh_change);
+}
+
+CostBesideSteps cost_beside_steps(const Fitted& base) {
   const Model& model = base.study->model();
-  const auto known = static_cast<int>(model.free_parameters().size());
-  const std::optional<BesideSteps> found = beside_steps(base, {}, model.values(base.fit.w), known);
-  const double cost = base.rows.error.squaredNorm();
-  return found ? std::min(cost, found->error.squaredNorm() + found->price) : cost;
+  CostBesideSteps left = beside_steps(base, {}, model.values(base.fit.w), model.free_parameters().size(),
+                                      Eigen::VectorXd::Zero(base.rows.error.size()));
+  left.cost = std::min(left.cost, base.rows.error.squaredNorm());
+  return left;
 }
 
 }  // namespace tissue_stiffness

@@ -68,7 +68,6 @@ class Search {
   void refit_from_beginning();
   void refit_pairs();
   double left_beside_steps();
-  bool steps_explain();
   void refit_steps();
   void compare_beside_steps();
   void compare_on_finer_mesh();
@@ -86,9 +85,8 @@ class Search {
   bool worth_full_runs(const Ranked& r) const {
     return r.best->linear || r.score.explained * look_.cost > kPromise * look_.structured();
   }
-  bool leaves_more_than_noise() const {
-    return refits_.empty() || refits_.front().cost_beside_steps > kExplained * kExplained * look_.unavoidable();
-  }
+  bool is_noise(double cost) const { return cost <= kExplained * kExplained * look_.unavoidable(); }
+  bool leaves_more_than_noise() const { return refits_.empty() || !is_noise(refits_.front().cost_beside_steps); }
   /// An error that may be noise is more than that, as far as the recording's own time steps are not to blame, and nothing
   /// explains it.
   bool puzzles();
@@ -354,13 +352,8 @@ void Search::refit_pairs() {
 }
 
 double Search::left_beside_steps() {
-  if (!left_) left_ = cost_beside_steps(look_.base);
+  if (!left_) left_ = cost_beside_steps(look_.base).cost;
   return *left_;
-}
-
-bool Search::steps_explain() {
-  const double gain = look_.cost - left_beside_steps();
-  return gain > kClose * look_.structured() || gain > look_.cost - refits_.front().cost;
 }
 
 // Alone: nothing has to be missing beside them.
@@ -373,21 +366,26 @@ void Search::refit_steps() {
 }
 
 // A recording may be simulated itself: what its time steps do decides between twins, and may be all that an effect leaves.
+// Believed only where an explanation leaves noise beside them: what is wrong otherwise is not theirs.
 void Search::compare_beside_steps() {
   if (refits_.empty() || refits_.front().way->of_simulation) return;
-  std::vector<Refit*> leaders, others;
+  std::vector<Refit*> leaders;
   for (Refit& r : refits_) {
     const bool close = look_.cost - r.cost > kClose * (look_.cost - refits_.front().cost);
     if (r.way->linear && close && leaders.size() < kLeaders) leaders.push_back(&r);
   }
-  if (leaders.size() < 2 && !leaves_more_than_noise()) return;
-  if (steps_explain()) return refit_steps();
-  for (Refit* r : leaders) {
-    if (!r->allows_for_steps) others.push_back(r);
-  }
+  const auto compared = [](const Refit* r) { return r->compared_beside_steps; };
+  if ((leaders.size() < 2 && !leaves_more_than_noise()) || std::all_of(leaders.begin(), leaders.end(), compared)) return;
+  if (left_beside_steps() < refits_.front().cost) return refit_steps();
+  std::vector<CostBesideSteps> left(leaders.size());
   try_each(
-      others.size(), [&](std::size_t i) { return "beside time steps: " + others[i]->effects.front(); },
-      [&](std::size_t i) { allow_for_steps(look_.base, look_.finer.change, *others[i]); });
+      leaders.size(), [&](std::size_t i) { return "beside time steps: " + leaders[i]->effects.front(); },
+      [&](std::size_t i) { left[i] = cost_beside_steps(look_.base, *leaders[i], look_.finer.change); });
+  const bool noise = std::any_of(left.begin(), left.end(), [&](const CostBesideSteps& l) { return is_noise(l.cost); });
+  for (std::size_t i = 0; i < leaders.size(); ++i) {
+    leaders[i]->compared_beside_steps = true;
+    if (noise) leaders[i]->allow_for(left[i]);
+  }
   sort_refits();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -52,6 +53,13 @@ struct RankedPair {
 /// effect may be missing is scored.
 std::vector<RankedPair> rank_pairs(const Scorer& scorer, const std::vector<Candidate>& candidates);
 
+/// Sum of squared errors over sigma of a model fitted with what a simulated recording has of its time steps besides
+/// (entries_of_simulation), and what the further parameters are worth after Schwarz; infinite where there are none.
+struct CostBesideSteps {
+  double cost = std::numeric_limits<double>::infinity();
+  double beside_mesh = std::numeric_limits<double>::infinity();  ///< of what no share of the mesh's change explains either
+};
+
 /// A fit of the base model with one or two proposals more.
 struct Refit {
   const Candidate* way = nullptr;  ///< of the first effect
@@ -64,11 +72,13 @@ struct Refit {
   double p_value = 1.0;                              ///< of predicting the held-out frames no better
   double fitted = 0.0;                               ///< cost of the training frames and the prior
   double cost = 0.0;                                 ///< sum of squared errors over sigma, all frames
-  double cost_beside_steps = 0.0;                    ///< the same, or what allow_for_steps has found
-  double cost_beside_numerics = 0.0;                 ///< of what no share of the mesh's change explains either
-  bool allows_for_steps = false;
+  double cost_beside_steps = 0.0;                    ///< the same, or what is left beside a simulation's time steps
+  double cost_beside_numerics = 0.0;                 ///< of the latter what no share of the mesh's change explains
+  bool compared_beside_steps = false;
   int added_parameters = 0;
   std::shared_ptr<Fitted> model;  ///< null where it was only run quickly, and of all but the best
+
+  void allow_for(const CostBesideSteps& left);
 };
 
 /// Fits the training frames by simulation, from the base's fit and the proposals' own starts: in full, but where
@@ -77,12 +87,8 @@ struct Refit {
 /// advantage. `rival`: what another refit was `fitted` with; where this one is no better it need not be the best.
 Refit refit(const Fitted& base, const std::vector<Addition>& additions, const Eigen::VectorXd& mesh_change, double rival);
 
-/// Fits the refit's model once more with what a simulated recording has of its time steps besides (entries_of_simulation),
-/// and lowers its two costs beside numerics to what is left then, but for what the further parameters are worth after
-/// Schwarz. For linear refits.
-void allow_for_steps(const Fitted& base, const Eigen::VectorXd& mesh_change, Refit& refit);
-
-/// The same of the base: what is left of its sum of squared errors.
-double cost_beside_steps(const Fitted& base);
+/// Of a linear refit's model, and of the base.
+CostBesideSteps cost_beside_steps(const Fitted& base, const Refit& refit, const Eigen::VectorXd& mesh_change);
+CostBesideSteps cost_beside_steps(const Fitted& base);
 
 }  // namespace tissue_stiffness
