@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "tissue_stiffness/diagnosis/refit_list.hpp"
 #include "tissue_stiffness/diagnosis/refit_search.hpp"
 #include "tissue_stiffness/types/error.hpp"
 

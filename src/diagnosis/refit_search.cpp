@@ -1,19 +1,13 @@
 #include "tissue_stiffness/diagnosis/refit_search.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <map>
-#include <mutex>
 #include <optional>
 #include <set>
 #include <utility>
 
-#include "tissue_stiffness/diagnosis/finding.hpp"
-#include "tissue_stiffness/effects/registry.hpp"
-#include "tissue_stiffness/types/error.hpp"
+#include "tissue_stiffness/diagnosis/refit_list.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -29,35 +23,31 @@ constexpr std::size_t kOthers = 4;     // and more, when those leave more than n
 constexpr std::size_t kPairs = 3;      // and pairs
 constexpr double kPromise = 0.2;       // of the structured part
 constexpr double kClean = 1.1;         // rms in sigmas that a refit with no rival leaves
-constexpr double kMeshCounts = 0.2;    // rms of its error [sigma] from which leaders are compared on a finer one
-constexpr std::size_t kLeaders = 4;    // that are
 constexpr double kSeen = 0.5;          // of what a refit explains: a tangent that sees less is none
 constexpr double kFaithful = 0.9;      // and one that sees as much tells what others would explain
-constexpr double kClose = 0.9;         // of what the best refit explains: as good, but for the numerics
 constexpr double kVisible = 0.02;      // of the noise's sum of squares: more than a slightly wrong one
 constexpr double kChance = 3.0;        // standard deviations of that sum
 constexpr std::ptrdiff_t kSimple = 2;  // parameters of what is fitted to the beginning where the error may be noise
-constexpr double kReach = 1.05;        // times the best cost so far: fewer parameters may make up for less than that
 constexpr double kRival = 0.5;         // of a leader's evidence by tangents: less is no rival
 
 /// The search, stage by stage.
 class Search {
  public:
-  Search(const FirstLook& look, const DiagnosisOptions& options) : look_(look), options_(options) {}
+  Search(const FirstLook& look, const DiagnosisOptions& options) : look_(look), refits_(look, options) {}
 
   std::vector<Refit> operator()(const std::vector<std::string>& wanted) {
     refit_singles(wanted);
-    if (!wanted.empty() || look_.numerics()) return std::move(refits_);
-    compare_beside_steps();
-    if (look_.noise() && !puzzles()) return std::move(refits_);
+    if (!wanted.empty() || look_.numerics()) return refits_.take();
+    refits_.compare_beside_steps();
+    if (look_.noise() && !puzzles()) return refits_.take();
     if (unsettled() || (faint() && look_.first)) refit_others();  // the first look's set is told
     if (unsettled()) refit_other_kinds();
     if (unsettled()) refit_rest();
-    if ((unsettled() && !explained()) || tangents_mislead() || quiet()) refit_from_beginning();
-    if (leaves_more_than_noise() && !explained()) refit_pairs();
-    compare_beside_steps();
-    compare_on_finer_mesh();
-    return std::move(refits_);
+    if ((unsettled() && !refits_.explains()) || tangents_mislead() || quiet()) refit_from_beginning();
+    if (refits_.leaves_more_than_noise() && !refits_.explains()) refit_pairs();
+    refits_.compare_beside_steps();
+    refits_.compare_on_finer_mesh();
+    return refits_.take();
   }
 
  private:
@@ -67,39 +57,23 @@ class Search {
   void refit_rest();
   void refit_from_beginning();
   void refit_pairs();
-  double left_beside_steps();
-  void refit_steps();
-  void compare_beside_steps();
-  void compare_on_finer_mesh();
   void add_other_way(const Ranked& r, std::vector<std::vector<Addition>>& list) const;
   std::vector<const Candidate*> different_ways() const;
-  void refit_all(std::vector<std::vector<Addition>> list);
-  void try_each(std::size_t count, const std::function<std::string(std::size_t)>& name,
-                const std::function<void(std::size_t)>& work) const;
-  void sort_refits();
-  void drop_worse_ways();
-  bool refitted(const std::string& effect) const {
-    return std::any_of(refits_.begin(), refits_.end(), [&](const Refit& r) { return r.effects.front() == effect; });
-  }
   /// Runs in full take long: none for an effect whose tangent explains next to nothing.
   bool worth_full_runs(const Ranked& r) const {
     return r.best->linear || r.score.explained * look_.cost > kPromise * look_.structured();
   }
-  bool is_noise(double cost) const { return cost <= kExplained * kExplained * look_.unavoidable(); }
-  bool leaves_more_than_noise() const { return refits_.empty() || !is_noise(refits_.front().cost_beside_steps); }
   /// An error that may be noise is more than that, as far as the recording's own time steps are not to blame, and nothing
   /// explains it.
   bool puzzles();
-  bool unsettled() { return leaves_more_than_noise() || puzzles(); }
+  bool unsettled() { return refits_.leaves_more_than_noise() || puzzles(); }
   /// The best refit explains what its tangent did not see, and not all of it: its twins may not have been seen either.
   bool tangents_mislead() const;
-  bool mesh_counts() const { return look_.floor > kMeshCounts; }
   /// Smaller than the noise, several effects may explain the error, and others than were declared: the modulus has taken
   /// most of it, and the tangents were taken there.
   bool faint() const { return look_.structured() < look_.rows; }
   /// All the more, where the mesh's error is much beside it.
-  bool quiet() const { return !refits_.empty() && mesh_counts() && faint(); }
-  bool explained() const { return !refits_.empty() && look_.explained_by(refits_.front()); }
+  bool quiet() const { return !refits_.empty() && refits_.mesh_counts() && faint(); }
   /// Share of what the best refit explains that its tangent saw, too.
   double seen_of_best() const;
   /// Not where the best refit explains the error, as its tangent said, and the tangents of all that this effect would be
@@ -110,92 +84,30 @@ class Search {
   }
 
   const FirstLook& look_;
-  const DiagnosisOptions& options_;
-  std::vector<Refit> refits_;
-  std::optional<double> left_;  ///< of the base's sum of squared errors beside time steps
+  RefitList refits_;
 };
 
-// Parameters that are fitted besides the base's.
-std::ptrdiff_t parameters_of(const std::vector<Addition>& additions) {
-  ModelSettings alone;
-  for (const Addition& a : additions) add_effect(alone, a.way->proposal.refine);
-  std::ptrdiff_t count = 0;
-  for (const EffectSettings& effect : alone.effects) {
-    const std::vector<Quantity> quantities = read_parameters(effect);
-    count += std::count_if(quantities.begin(), quantities.end(), [](const Quantity& q) { return q.estimated(); });
-  }
-  return count;
-}
-
 bool Search::tangents_mislead() const {
-  if (refits_.empty() || refits_.front().cost_beside_steps < kClean * kClean * look_.rows) return false;
+  if (refits_.empty() || refits_.best().cost_beside_steps < kClean * kClean * look_.rows) return false;
   return seen_of_best() < kSeen;
 }
 
 bool Search::puzzles() {
-  if (!look_.noise() || explained()) return false;
+  if (!look_.noise() || refits_.explains()) return false;
   const double visible = std::max(kVisible, kChance * std::sqrt(2.0 / look_.rows));
   const auto is_more = [&](double cost) { return cost > look_.unavoidable() + visible * look_.rows; };
-  return is_more(look_.cost) && is_more(left_beside_steps());
+  return is_more(look_.cost) && is_more(refits_.left_beside_steps());
 }
 
 double Search::seen_of_best() const {
-  const Refit& best = refits_.front();
+  const Refit& best = refits_.best();
   return ranked(best.effects.front()).score.explained * look_.cost / (look_.cost - best.cost);
 }
 
 bool Search::may_win(const Ranked& r) const {
-  if (!explained() || faint() || seen_of_best() < kFaithful) return true;
+  if (!refits_.explains() || faint() || seen_of_best() < kFaithful) return true;
   const bool scanned = parameters_of({{r.best, {}}}) > r.score.amplitude.size();  // a better place may be in between
-  return scanned || r.evidence > kRival * ranked(refits_.front().effects.front()).evidence;
-}
-
-std::string names_of(const std::vector<Addition>& additions) {
-  std::string names;
-  for (const Addition& a : additions) names += (names.empty() ? "" : " and ") + a.way->effect;
-  return names;
-}
-
-// Each on a core of its own; what a model that cannot be run would find is left out.
-void Search::try_each(std::size_t count, const std::function<std::string(std::size_t)>& name,
-                      const std::function<void(std::size_t)>& work) const {
-  std::mutex telling;
-  std::size_t over = 0;
-  const auto try_one = [&](std::size_t i) {
-    {
-      const std::lock_guard<std::mutex> lock(telling);
-      options_.progress(name(i), over, count);
-    }
-    try {
-      work(i);
-    } catch (const NumericalError&) {
-      look_.base.study->recording()
-          .checkpoint();  // a study that was ended; else a model that cannot be run explains nothing
-    }
-    const std::lock_guard<std::mutex> lock(telling);
-    ++over;
-  };
-  tbb::parallel_for(std::size_t{0}, count, try_one, tbb::simple_partitioner());
-}
-
-void Search::refit_all(std::vector<std::vector<Addition>> list) {
-  double rival = no_rival;
-  for (const Refit& r : refits_) {
-    if (r.way->linear) rival = std::min(rival, kReach * r.fitted);
-  }
-  // The longest fits first: the last one to end keeps one core busy only.
-  std::vector<std::pair<std::ptrdiff_t, std::vector<Addition>>> trials;
-  for (std::vector<Addition>& additions : list) trials.emplace_back(parameters_of(additions), std::move(additions));
-  std::stable_sort(trials.begin(), trials.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-  std::vector<std::optional<Refit>> done(trials.size());
-  try_each(
-      trials.size(), [&](std::size_t i) { return "refit with " + names_of(trials[i].second); },
-      [&](std::size_t i) { done[i] = refit(look_.base, trials[i].second, look_.finer.change, rival); });
-  for (std::optional<Refit>& refit : done) {
-    if (refit) refits_.push_back(std::move(*refit));
-  }
-  sort_refits();
-  for (std::size_t i = 1; i < refits_.size(); ++i) refits_[i].model.reset();
+  return scanned || r.evidence > kRival * ranked(refits_.best().effects.front()).evidence;
 }
 
 void Search::refit_singles(const std::vector<std::string>& wanted) {
@@ -220,9 +132,9 @@ void Search::refit_singles(const std::vector<std::string>& wanted) {
   } else if (!leaders.empty()) {  // the first alone: what falls behind it need not be fitted to the end
     ++next;
   }
-  refit_all({leaders.begin(), next});
-  if (!told || leaves_more_than_noise()) refit_all({next, leaders.end()});
-  if (leaves_more_than_noise()) refit_all(others);
+  refits_.add({leaders.begin(), next});
+  if (!told || refits_.leaves_more_than_noise()) refits_.add({next, leaders.end()});
+  if (refits_.leaves_more_than_noise()) refits_.add(others);
 }
 
 // What correlated errors, too, could have made; and other ways of the leading effects.
@@ -234,7 +146,7 @@ void Search::refit_others() {
     if (r.promising && !r.declared && worth_full_runs(r) && others++ < kOthers && may_win(r))
       list.push_back({{r.best, r.score.amplitude}});
   }
-  refit_all(list);
+  refits_.add(list);
 }
 
 // Of the leading effects also the best of the ways that look different: tangents choose badly between directions.
@@ -255,8 +167,8 @@ void Search::add_other_way(const Ranked& r, std::vector<std::vector<Addition>>& 
 // The leading refits in other directions, or on other regions, from the rhythm (or what else is scanned) that they found.
 void Search::refit_other_kinds() {
   std::vector<std::vector<Addition>> list;
-  for (std::size_t i = 0; i < std::min(kKindsOf, refits_.size()); ++i) {
-    const Refit& leader = refits_[i];
+  for (std::size_t i = 0; i < std::min(kKindsOf, refits_.all().size()); ++i) {
+    const Refit& leader = refits_.all()[i];
     if (leader.effects.size() > 1 || leader.way->proposal.kind.empty()) continue;
     for (const Candidate& candidate : look_.candidates) {
       if (candidate.effect == leader.way->effect && candidate.proposal.is_other_kind_of(leader.way->proposal)) {
@@ -264,25 +176,17 @@ void Search::refit_other_kinds() {
       }
     }
   }
-  refit_all(list);
-}
-
-// One refit an effect, the best.
-void Search::drop_worse_ways() {
-  for (auto refit = refits_.begin(); refit != refits_.end();) {
-    const bool known = std::any_of(refits_.begin(), refit, [&](const Refit& r) { return r.effects == refit->effects; });
-    refit = known ? refits_.erase(refit) : refit + 1;
-  }
+  refits_.add(list);
 }
 
 // What tangents at the end leave may still be a single effect's.
 void Search::refit_rest() {
   std::vector<std::vector<Addition>> list;
   for (const Ranked& r : look_.ranked) {
-    if (r.best->linear && r.evidence > kSameEvidence && !refitted(r.effect) && may_win(r))
+    if (r.best->linear && r.evidence > kSameEvidence && !refits_.holds(r.effect) && may_win(r))
       list.push_back({{r.best, r.score.amplitude}});
   }
-  refit_all(list);
+  refits_.add(list);
 }
 
 // Where phases have drifted apart a tangent says little: what is unexplained may be any effect's, of any direction and
@@ -290,7 +194,7 @@ void Search::refit_rest() {
 void Search::refit_from_beginning() {
   const std::vector<const Candidate*> ways = different_ways();
   std::vector<std::optional<BeginningFit>> fits(ways.size());
-  try_each(
+  refits_.try_each(
       ways.size(), [&](std::size_t i) { return "beginning with " + ways[i]->effect; },
       [&](std::size_t i) { fits[i] = fit_beginning(look_.base, *ways[i]); });
   std::vector<std::size_t> order;
@@ -305,7 +209,7 @@ void Search::refit_from_beginning() {
     if (list.size() < kBegun && taken[ways[i]->effect]++ < kBegunOf)
       list.push_back({{ways[i], {}, fits[i]->parameters, true}});
   }
-  refit_all(list);
+  refits_.add(list);
 }
 
 // Of each effect and kind the most evident ways that look different from one another, as the recording begins.
@@ -344,82 +248,14 @@ void Search::refit_pairs() {
     if (pair.gain < kSameEvidence || !pair.first.way->linear || !pair.second.way->linear) continue;
     for (const Addition* member : {&pair.first, &pair.second}) {  // a pair has to beat its better half
       const std::string& effect = member->way->effect;
-      if (!refitted(effect) && alone.insert(effect).second) list.push_back({*member});
+      if (!refits_.holds(effect) && alone.insert(effect).second) list.push_back({*member});
     }
     list.push_back({pair.first, pair.second});
   }
-  refit_all(list);
-}
-
-double Search::left_beside_steps() {
-  if (!left_) left_ = cost_beside_steps(look_.base).cost;
-  return *left_;
-}
-
-// Alone: nothing has to be missing beside them.
-void Search::refit_steps() {
-  std::vector<std::vector<Addition>> list;
-  for (const Ranked& r : look_.ranked) {
-    if (r.best->of_simulation && !refitted(r.effect)) list.push_back({{r.best, r.score.amplitude}});
-  }
-  refit_all(list);
-}
-
-// A recording may be simulated itself: what its time steps do decides between twins, and may be all that an effect leaves.
-// Believed only where an explanation leaves noise beside them: what is wrong otherwise is not theirs.
-void Search::compare_beside_steps() {
-  if (refits_.empty() || refits_.front().way->of_simulation) return;
-  std::vector<Refit*> leaders;
-  for (Refit& r : refits_) {
-    const bool close = look_.cost - r.cost > kClose * (look_.cost - refits_.front().cost);
-    if (r.way->linear && close && leaders.size() < kLeaders) leaders.push_back(&r);
-  }
-  const auto compared = [](const Refit* r) { return r->compared_beside_steps; };
-  if ((leaders.size() < 2 && !leaves_more_than_noise()) || std::all_of(leaders.begin(), leaders.end(), compared)) return;
-  if (left_beside_steps() < refits_.front().cost) return refit_steps();
-  std::vector<CostBesideSteps> left(leaders.size());
-  try_each(
-      leaders.size(), [&](std::size_t i) { return "beside time steps: " + leaders[i]->effects.front(); },
-      [&](std::size_t i) { left[i] = cost_beside_steps(look_.base, *leaders[i], look_.finer.change); });
-  const bool noise = std::any_of(left.begin(), left.end(), [&](const CostBesideSteps& l) { return is_noise(l.cost); });
-  for (std::size_t i = 0; i < leaders.size(); ++i) {
-    leaders[i]->compared_beside_steps = true;
-    if (noise) leaders[i]->allow_for(left[i]);
-  }
-  sort_refits();
-}
-
-// Where the mesh's error is much of what the leaders leave, the one that imitates it best would win.
-void Search::compare_on_finer_mesh() {
-  if (refits_.size() < 2 || !mesh_counts()) return;
-  std::vector<Refit*> leaders;
-  for (Refit& r : refits_) {
-    if (leaders.size() < kLeaders && r.way->linear) leaders.push_back(&r);
-  }
-  try_each(
-      leaders.size(), [&](std::size_t i) { return "on a finer mesh: " + leaders[i]->effects.front(); },
-      [&](std::size_t i) {  // a fit that ends in another minimum there speaks against nothing
-        double& cost = leaders[i]->cost_beside_numerics;
-        cost = std::min(cost, cost_on_finer_mesh(look_.base, *leaders[i], look_.finer.study.get()));
-      });
-  sort_refits();
-}
-
-void Search::sort_refits() {
-  double lowest = look_.cost;
-  for (const Refit& r : refits_) lowest = std::min(lowest, r.cost_beside_numerics);
-  const double variance = std::max(1.0, lowest / look_.rows);
-  std::stable_sort(refits_.begin(), refits_.end(), [&](const Refit& a, const Refit& b) {
-    return evidence(a, look_.rows, variance) > evidence(b, look_.rows, variance);
-  });
-  drop_worse_ways();
+  refits_.add(list);
 }
 
 }  // namespace
-
-double evidence(const Refit& refit, double rows, double variance) {
-  return -0.5 * refit.cost_beside_numerics / variance - 0.5 * refit.added_parameters * std::log(rows);
-}
 
 std::vector<Refit> search_refits(const FirstLook& look, const std::vector<std::string>& wanted,
                                  const DiagnosisOptions& options) {

@@ -13,9 +13,4 @@ namespace tissue_stiffness {
 std::vector<Refit> search_refits(const FirstLook& look, const std::vector<std::string>& wanted,
                                  const DiagnosisOptions& options);
 
-constexpr double kSameEvidence = 5.0;  // log evidence within which refits are not told apart
-
-/// Evidence of a refit after Schwarz, errors counted as large as `variance` [sigma^2].
-double evidence(const Refit& refit, double rows, double variance);
-
 }  // namespace tissue_stiffness
