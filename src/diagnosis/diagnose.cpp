@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "tissue_stiffness/diagnosis/finding.hpp"
+#include "tissue_stiffness/diagnosis/first_look.hpp"
 #include "tissue_stiffness/diagnosis/fit_entries.hpp"
 #include "tissue_stiffness/diagnosis/missing_force.hpp"
 #include "tissue_stiffness/diagnosis/residual_views.hpp"

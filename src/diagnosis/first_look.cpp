@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "tissue_stiffness/diagnosis/finding.hpp"
-
 namespace tissue_stiffness {
 namespace {
 

@@ -7,7 +7,6 @@
 #include <mutex>
 #include <utility>
 
-#include "tissue_stiffness/diagnosis/finding.hpp"
 #include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/types/error.hpp"
 

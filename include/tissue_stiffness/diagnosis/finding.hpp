@@ -26,14 +26,6 @@ struct Finding {
 Finding look(const Fitted& base, const std::vector<std::string>& wanted, const DiagnosisOptions& options,
              const FinerMesh& finer = {}, const Library& library = {});
 
-/// rms over what has to be left, of a fit that need not be bettered.
-constexpr double kExplained = 1.02;
-
-/// Mean square [sigma^2] of noise, and of what the mesh itself does, whose rms is `floor` [sigma].
-constexpr double unavoidable_mean_square(double floor) {
-  return 1.0 + floor * floor;
-}
-
 /// Held-out frames agree that the refit is better than the base.
 bool proven(const Fitted& base, const Refit& refit);
 

@@ -10,6 +10,14 @@
 
 namespace tissue_stiffness {
 
+/// rms over what has to be left, of a fit that need not be bettered.
+constexpr double kExplained = 1.02;
+
+/// Mean square [sigma^2] of noise, and of what the mesh itself does, whose rms is `floor` [sigma].
+constexpr double unavoidable_mean_square(double floor) {
+  return 1.0 + floor * floor;
+}
+
 /// What a fitted model's error shows before anything is refitted: the library, ranked by its tangents, and the mesh's part.
 struct FirstLook {
   /// `earlier`: what an earlier look at the same recording found of a finer mesh; its change is found out now where it is
