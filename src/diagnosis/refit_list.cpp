@@ -109,7 +109,7 @@ void RefitList::add_steps() {
 }
 
 void RefitList::compare_beside_steps() {
-  if (refits_.empty() || best().way->of_simulation) return;
+  if (refits_.empty() || best().way->of_simulation || look_.base.study->model().nonlinear()) return;
   std::vector<Refit*> leaders;
   for (Refit& r : refits_) {
     const bool close = look_.cost - r.cost > kClose * (look_.cost - best().cost);

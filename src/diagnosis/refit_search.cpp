@@ -93,7 +93,8 @@ bool Search::tangents_mislead() const {
 }
 
 bool Search::puzzles() {
-  if (!look_.noise() || refits_.explains()) return false;
+  const bool slow = look_.base.study->model().nonlinear();  // every fit more takes full runs
+  if (!look_.noise() || slow || refits_.explains()) return false;
   const double visible = std::max(kVisible, kChance * std::sqrt(2.0 / look_.rows));
   const auto is_more = [&](double cost) { return cost > look_.unavoidable() + visible * look_.rows; };
   return is_more(look_.cost) && is_more(refits_.left_beside_steps());
