@@ -284,6 +284,7 @@ def main():
     parser.add_argument('--jobs', type=int, default=os.cpu_count())
     parser.add_argument('--output')
     parser.add_argument('--resume', action='store_true', help='keep the draws that are in doc/hidden_effects.json already: of the same search')
+    parser.add_argument('--page-only', action='store_true', help='write the page from those draws, without new ones')
     arguments = parser.parse_args()
     arguments.output = arguments.output or os.path.join(arguments.root, 'output', 'hidden_effects')
     for tool in ('simulate', 'diagnose'):
@@ -293,10 +294,10 @@ def main():
     kept = os.path.join(doc, 'hidden_effects.json')
     planned = {task[1]: task for task in tasks(arguments)}
     rows = []
-    if arguments.resume and os.path.exists(kept):
+    if (arguments.resume or arguments.page_only) and os.path.exists(kept):
         with open(kept) as file:
             rows = [row for row in json.load(file) if row['number'] in planned]
-    done = {row['number'] for row in rows}
+    done = planned if arguments.page_only else {row['number'] for row in rows}
     with multiprocessing.Pool(arguments.jobs) as pool:
         for row in pool.imap_unordered(draw, [task for number, task in planned.items() if number not in done]):
             rows.append(row)
