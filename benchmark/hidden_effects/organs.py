@@ -8,30 +8,31 @@ from meshes import revolved, write_obj
 from scenes import Scene, elasticity, faces, wrench
 
 DENSITY = 1060.0
-POISSON = 0.45
 INNER, OUTER, BASE = (0.02, 0.05), (0.03, 0.06), 0.02  # m: radius and half length of the ventricle's walls; height of its base
 
 
-def arch(direction, amplitude, onset, duration, sharpness):
-    return {'active_contraction': {'direction': direction, 'axis': [0, 0, 1], 'center': [0, 0, 0], 'amplitude': amplitude,
-                                   'period': 0.8, 'onset': onset, 'duration': duration, 'sharpness': sharpness}}
+def around(**more):
+    return dict(direction='circumferential', axis=[0, 0, 1], center=[0, 0, 0], **more)
+
+
+def arch(amplitude, onset, duration):
+    return {'active_contraction': around(amplitude=amplitude, period=0.8, onset=onset, duration=duration, sharpness=2)}
 
 
 class Block(Scene):
     """A cube, held at one face, pushed on the middle of the other."""
 
     rate, noise = 60.0, 3e-4
+    own = ('stiff_inclusion', 'gravity')  # hidden otherwise than in other boxes
 
     def truth(self, modulus, hidden, s, load):
-        regions, effects = super().truth(modulus, 'none', s, load)
+        regions, effects = super().truth(modulus, 'none' if hidden in self.own else hidden, s, load)
         middle = [0.5 * length for length in self.size]
         if hidden == 'stiff_inclusion':  # the elements of a ball
             regions['ball'] = {'sphere': {'center': [middle[0] + 0.006, middle[1] + 0.01, middle[2] - 0.006], 'radius': 0.013}}
             effects.append(elasticity(modulus * s, region='ball'))
         elif hidden == 'gravity':
             effects.append({'gravity': {'acceleration': [-9.4 * s, 2.8 * s, 0.0]}})
-        else:
-            regions, effects = super().truth(modulus, hidden, s, load)
         return regions, effects
 
 
@@ -39,6 +40,7 @@ class Ventricle(Scene):
     """A thick half ellipsoid, held at its base."""
 
     rate, noise = 50.0, 3e-4
+    own = ('fibre_reinforcement', 'active_contraction', 'stiff_inclusion', 'elastic_support', 'foundation', 'gravity')
     edge, true_edge = 0.0105, 0.0075
 
     def __init__(self, name, modulus, loads):
@@ -69,13 +71,11 @@ class Ventricle(Scene):
         return [[float(x) for x in point] for point in self.surface(self.edge)[0][::2]]
 
     def truth(self, modulus, hidden, s, load):
-        regions, effects = super().truth(modulus, 'none', s, load)
+        regions, effects = super().truth(modulus, 'none' if hidden in self.own else hidden, s, load)
         if hidden == 'fibre_reinforcement':  # two families that cross where the library has one
-            effects += [{'fibre_reinforcement': {'direction': 'circumferential', 'axis': [0, 0, 1], 'center': [0, 0, 0],
-                                                 'angle': angle, 'modulus': 0.5 * s * modulus}} for angle in (-0.3, 0.3)]
+            effects += [{'fibre_reinforcement': around(angle=angle, modulus=0.5 * s * modulus)} for angle in (-0.3, 0.3)]
         elif hidden == 'active_contraction':  # quick to rise, slow to fall; the library's arch is as quick as slow
-            effects += [arch('circumferential', 0.05 * s * modulus, 0.1, 0.3, 2),
-                        arch('circumferential', 0.03 * s * modulus, 0.2, 0.4, 2)]
+            effects += [arch(0.05 * s * modulus, 0.1, 0.3), arch(0.03 * s * modulus, 0.2, 0.4)]
         elif hidden == 'stiff_inclusion':  # a part of the wall
             regions['scar'] = {'box': {'min': [0.01, -0.015, -0.03], 'max': [1, 0.015, -0.005]}}
             effects.append(elasticity(modulus * s, region='scar'))
@@ -85,8 +85,6 @@ class Ventricle(Scene):
             effects.append({'foundation': {'region': 'neighbour', 'stiffness': 3.0 * s * modulus}})
         elif hidden == 'gravity':
             effects.append({'gravity': {'acceleration': [0.0, 4.0 * s, -9.0 * s]}})
-        else:
-            regions, effects = super().truth(modulus, hidden, s, load)
         return regions, effects
 
 

@@ -172,9 +172,9 @@ Refit refit(const Fitted& base, const std::vector<Addition>& additions, const Ei
   return out;
 }
 
-void Refit::allow_for(const CostBesideSteps& left) {
-  cost_beside_steps = std::min(cost, left.cost);
-  cost_beside_numerics = std::min(cost_beside_numerics, left.beside_mesh);
+void Refit::allow_for_steps() {
+  cost_beside_steps = std::min(cost, beside_steps->cost);
+  cost_beside_numerics = std::min(cost_beside_numerics, beside_steps->beside_mesh);
 }
 
 CostBesideSteps cost_beside_steps(const Fitted& base, const Refit& refit, const Eigen::VectorXd& mesh_change) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <mutex>
 #include <utility>
 
@@ -115,17 +116,16 @@ void RefitList::compare_beside_steps() {
     const bool close = look_.cost - r.cost > kClose * (look_.cost - best().cost);
     if (r.way->linear && close && leaders.size() < kLeaders) leaders.push_back(&r);
   }
-  const auto compared = [](const Refit* r) { return r->compared_beside_steps; };
-  if ((leaders.size() < 2 && !leaves_more_than_noise()) || std::all_of(leaders.begin(), leaders.end(), compared)) return;
+  std::vector<Refit*> todo;
+  std::copy_if(leaders.begin(), leaders.end(), std::back_inserter(todo), [](const Refit* r) { return !r->beside_steps; });
+  if ((leaders.size() < 2 && !leaves_more_than_noise()) || todo.empty()) return;
   if (left_beside_steps() < best().cost) return add_steps();
-  std::vector<CostBesideSteps> left(leaders.size());
+  for (Refit* r : todo) r->beside_steps.emplace();
   try_each(
-      leaders.size(), [&](std::size_t i) { return "beside time steps: " + leaders[i]->effects.front(); },
-      [&](std::size_t i) { left[i] = cost_beside_steps(look_.base, *leaders[i], look_.finer.change); });
-  const bool noise = std::any_of(left.begin(), left.end(), [&](const CostBesideSteps& l) { return is_noise(l.cost); });
-  for (std::size_t i = 0; i < leaders.size(); ++i) {
-    leaders[i]->compared_beside_steps = true;
-    if (noise) leaders[i]->allow_for(left[i]);
+      todo.size(), [&](std::size_t i) { return "beside time steps: " + todo[i]->effects.front(); },
+      [&](std::size_t i) { *todo[i]->beside_steps = cost_beside_steps(look_.base, *todo[i], look_.finer.change); });
+  if (std::any_of(leaders.begin(), leaders.end(), [&](const Refit* r) { return is_noise(r->beside_steps->cost); })) {
+    for (Refit* r : leaders) r->allow_for_steps();
   }
   sort();
 }

@@ -3,6 +3,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -74,11 +75,12 @@ struct Refit {
   double cost = 0.0;                                 ///< sum of squared errors over sigma, all frames
   double cost_beside_steps = 0.0;                    ///< the same, or what is left beside a simulation's time steps
   double cost_beside_numerics = 0.0;                 ///< of the latter what no share of the mesh's change explains
-  bool compared_beside_steps = false;
+  std::optional<CostBesideSteps> beside_steps = {};  ///< what was found out; none before
   int added_parameters = 0;
   std::shared_ptr<Fitted> model;  ///< null where it was only run quickly, and of all but the best
 
-  void allow_for(const CostBesideSteps& left);
+  /// Lowers the two costs above to what was found out beside time steps.
+  void allow_for_steps();
 };
 
 /// Fits the training frames by simulation, from the base's fit and the proposals' own starts: in full, but where
