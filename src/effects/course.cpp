@@ -49,6 +49,10 @@ Course& Course::operator=(const Course& other) {
   offset_ = other.offset_;
   times_ = other.times_;
   values_ = other.values_;
+  corrected_ = other.corrected_;
+  basis_ = other.basis_;
+  coefficients_ = other.coefficients_;
+  tolerance_ = other.tolerance_;
   return *this;
 }
 
@@ -57,35 +61,75 @@ bool Course::empty() const {
   return times_.empty();
 }
 
+std::optional<double> Course::last() const {
+  const std::shared_lock<std::shared_mutex> lock(mutex_);
+  if (times_.empty()) return std::nullopt;
+  return times_.back() + offset_;
+}
+
 void Course::add(double time, const Eigen::VectorXd& value) {
   const std::unique_lock<std::shared_mutex> lock(mutex_);
   const auto at = std::lower_bound(times_.begin(), times_.end(), time);
-  const auto index = at - times_.begin();
+  const auto index = static_cast<std::size_t>(at - times_.begin());
   if (at != times_.end() && *at == time) {
-    values_[static_cast<std::size_t>(index)] = value;
-    return;
+    values_[index] = value;
+  } else {
+    times_.insert(at, time);
+    values_.insert(values_.begin() + static_cast<std::ptrdiff_t>(index), value);
+    if (!corrected_.empty()) corrected_.insert(corrected_.begin() + static_cast<std::ptrdiff_t>(index), value);
   }
-  times_.insert(at, time);
-  values_.insert(values_.begin() + index, value);
+  if (!corrected_.empty()) correct_sample(index);
+}
+
+double Course::interpolated(const std::vector<Eigen::VectorXd>& values, double time, int component) const {
+  if (times_.empty()) return 0.0;
+  time -= offset_;
+  const auto at = std::upper_bound(times_.begin(), times_.end(), time);
+  if (at == times_.begin()) return values.front()[component];
+  if (at == times_.end()) return values.back()[component];
+  const auto i = static_cast<std::size_t>(at - times_.begin());
+  const double s = (time - times_[i - 1]) / (times_[i] - times_[i - 1]);
+  return (1.0 - s) * values[i - 1][component] + s * values[i][component];
 }
 
 double Course::value(double time, int component) const {
   const std::shared_lock<std::shared_mutex> lock(mutex_);
-  if (times_.empty()) return 0.0;
-  time -= offset_;
-  const auto at = std::upper_bound(times_.begin(), times_.end(), time);
-  if (at == times_.begin()) return values_.front()[component];
-  if (at == times_.end()) return values_.back()[component];
-  const auto i = static_cast<std::size_t>(at - times_.begin());
-  const double s = (time - times_[i - 1]) / (times_[i] - times_[i - 1]);
-  return (1.0 - s) * values_[i - 1][component] + s * values_[i][component];
+  return interpolated(corrected_.empty() ? values_ : corrected_, time, component);
+}
+
+double Course::measured(double time, int component) const {
+  const std::shared_lock<std::shared_mutex> lock(mutex_);
+  return interpolated(values_, time, component);
+}
+
+// Callers hold the lock.
+void Course::correct_sample(std::size_t index) {
+  const auto measured = [this](double time) {
+    Eigen::VectorXd out(acting());
+    for (int i = 0; i < out.size(); ++i) out[i] = interpolated(values_, time, i);
+    return out;
+  };
+  corrected_[index] = values_[index];
+  corrected_[index].head(acting()) -= basis_.value(measured, times_[index] + offset_) * coefficients_;
+}
+
+void Course::correct(const LoadErrorBasis& basis, const Eigen::VectorXd& coefficients) {
+  const std::unique_lock<std::shared_mutex> lock(mutex_);
+  basis_ = basis;
+  coefficients_ = coefficients;
+  corrected_.clear();
+  if (coefficients.size() == 0) return;
+  corrected_ = values_;
+  for (std::size_t i = 0; i < values_.size(); ++i) correct_sample(i);
 }
 
 void Course::clear() {
   const std::unique_lock<std::shared_mutex> lock(mutex_);
+  corrected_.clear();
   if (from_file_) return;
   times_.clear();
   values_.clear();
+  corrected_.clear();
 }
 
 void Course::shift(double offset) {

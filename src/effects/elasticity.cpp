@@ -74,7 +74,7 @@ EffectSpec elasticity_spec() {
   spec.formula = "linear: sigma = lambda tr(eps) I + 2 mu eps; neo_hookean: P = mu (F - F^-T) + lambda ln J F^-T";
   spec.source = "Yang & Lin 2016, eq. 4, second term; Bonet & Wood 2008, eq. 6.29";
   spec.parameters = {{"young_modulus", "E", "Pa", 1.0, 1e12, ParameterSpec::Default::required, 0.0, NAN, 1},
-                     {"poisson_ratio", "nu", "-", -0.9, 0.4999, ParameterSpec::Default::required, 0.0, NAN, 1}};
+                     {"poisson_ratio", "nu", "-", -0.9, 0.4999, ParameterSpec::Default::required, 0.0, NAN, 1, 0.01}};
   spec.keys = {{"law", "linear | neo_hookean"}, {"region", "tetrahedra it fills; without it the whole body"}};
   return spec;
 }

@@ -27,7 +27,7 @@ EffectSpec gravity_spec() {
   spec.summary = "uniform gravity on every mass of the model";
   spec.formula = "M g";
   spec.source = "Yang & Lin 2016, eq. 4, third term";
-  spec.parameters = {{"acceleration", "g", "m/s^2", -1e3, 1e3, ParameterSpec::Default::required, 0.0, 0.0, 3}};
+  spec.parameters = {{"acceleration", "g", "m/s^2", -1e3, 1e3, ParameterSpec::Default::required, 0.0, 0.0, 3, 0.1}};
   spec.proposals = propose;
   return spec;
 }

@@ -16,11 +16,13 @@ std::shared_ptr<Course> load_course(const Value& arguments, LoadInput::Kind kind
     throw InputError(arguments.path(), arguments.has("topic") ? "topic and course" : "neither topic nor course",
                      "one of the two");
   }
+  const LoadTolerance tolerance = read_load_tolerance(arguments, kind == LoadInput::Kind::wrench);
   if (arguments.has("course")) {
     auto& course = context.courses["file:" + arguments.at("course").at("file").as_text()];
     if (course == nullptr || course->components() != components) {
       course = load_csv(arguments.at("course"), components, context);
     }
+    course->set_tolerance(tolerance);
     return course;
   }
   const std::string topic = arguments.at("topic").as_text();
@@ -32,6 +34,7 @@ std::shared_ptr<Course> load_course(const Value& arguments, LoadInput::Kind kind
   } else if (known->kind != kind) {
     throw InputError(arguments.at("topic").path(), topic, "one type of message a topic");
   }
+  context.courses[topic]->set_tolerance(tolerance);
   return context.courses[topic];
 }
 

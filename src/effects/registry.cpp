@@ -1,6 +1,7 @@
 #include "tissue_stiffness/effects/registry.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace tissue_stiffness {
@@ -30,22 +31,28 @@ Quantity default_value(const ParameterSpec& spec) {
   return {Quantity::Kind::known, spec.value, 0.0};
 }
 
-// {mean: [x, y, z], std: s}: the same spread along every axis.
-void read_normal_vector(const Value& value, const ParameterSpec& spec, std::vector<Quantity>& out) {
-  const std::string allowed = "{mean: [x, y, z], std} in " + spec.unit;
+// {mean: [x, y, z], std: s} or {value: [x, y, z], tolerance: s}: the same spread along every axis.
+void read_vector_with_spread(const Value& value, const ParameterSpec& spec, std::vector<Quantity>& out) {
+  const bool known = value.has("value");
+  const std::string middle = known ? "value" : "mean", spread = known ? "tolerance" : "std";
+  const std::string allowed = "{mean: [x, y, z], std} or {value: [x, y, z], tolerance} in " + spec.unit;
   for (const std::string& key : value.keys()) {
-    if (key != "mean" && key != "std") throw InputError(value.path(), value.shown(), allowed);
+    if (key != middle && key != spread) throw InputError(value.path(), value.shown(), allowed);
   }
-  const std::vector<Value>& mean = value.at("mean").items();
-  if (static_cast<int>(mean.size()) != spec.components) throw InputError(value.path(), value.shown(), allowed);
-  const double std = value.at("std").as_number(std::numeric_limits<double>::min(), 1e300, spec.unit);
-  for (const Value& item : mean) {
-    out.push_back({Quantity::Kind::normal, item.as_number(spec.lower, spec.upper, spec.unit), std});
+  const std::vector<Value>& items = value.at(middle).items();
+  if (static_cast<int>(items.size()) != spec.components) throw InputError(value.path(), value.shown(), allowed);
+  const double least = known ? 0.0 : std::numeric_limits<double>::min();
+  const double std = value.at(spread).as_number(least, 1e300, spec.unit);
+  for (const Value& item : items) {
+    Quantity quantity{known ? Quantity::Kind::known : Quantity::Kind::normal,
+                      item.as_number(spec.lower, spec.upper, spec.unit), known ? 0.0 : std};
+    if (known) quantity.tolerance = std;
+    out.push_back(quantity);
   }
 }
 
 void read_vector(const Value& value, const ParameterSpec& spec, std::vector<Quantity>& out) {
-  if (value.type() == Value::Type::map) return read_normal_vector(value, spec, out);
+  if (value.type() == Value::Type::map) return read_vector_with_spread(value, spec, out);
   const std::vector<Value>& items = value.items();
   if (static_cast<int>(items.size()) != spec.components) {
     throw InputError(value.path(), value.shown(), "[x, y, z] in " + spec.unit);
@@ -81,6 +88,10 @@ std::vector<Quantity> read_parameters(const EffectSettings& settings) {
       read_vector(value, spec, out);
     } else {
       out.push_back(value.as_quantity(spec.lower, spec.upper, spec.unit));
+    }
+    for (auto quantity = out.end() - spec.components; quantity != out.end(); ++quantity) {
+      if (quantity->tolerance < 0.0)
+        quantity->tolerance = spec.tolerance + spec.tolerance_share * std::abs(quantity->value);
     }
   }
   return out;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 
 #include "tissue_stiffness/estimation/compare.hpp"
 #include "tissue_stiffness/estimation/ensemble.hpp"
@@ -158,6 +160,19 @@ void Scheme::reset() {
   displacement_.setZero();
   prediction_ = {};
   forget();
+}
+
+std::string Scheme::stale_load(double time) const {
+  const double longest = model_->settings().stale_after;
+  for (const LoadInput& input : model_->load_inputs()) {
+    const std::optional<double> last = model_->courses().at(input.topic)->last();
+    const double since = time - last.value_or(start());
+    if (since <= longest) continue;
+    std::ostringstream text;
+    text << "no load has come on " << input.topic << (last ? " for " : " in ") << std::setprecision(3) << since << " s";
+    return text.str();
+  }
+  return "";
 }
 
 Prediction Scheme::at_rest(const Frame& frame) const {

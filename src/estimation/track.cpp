@@ -125,6 +125,12 @@ bool Track::wants_look(std::size_t count) const {
   return revisit || basis_is_due(count);
 }
 
+void Track::rerun(const std::vector<Frame>& frames, const Eigen::VectorXd& w) {
+  const FitProblem run = problem(frames, [] {});
+  replay(run, w, filter_.spread());
+  settle(run);
+}
+
 bool Track::look(const std::vector<Frame>& frames, const Checkpoint& checkpoint) {
   try {
     return look_at(frames, checkpoint);

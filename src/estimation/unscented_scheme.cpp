@@ -2,28 +2,38 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <future>
 
 #include "tissue_stiffness/estimation/aside.hpp"
 #include "tissue_stiffness/estimation/change_watch.hpp"
 #include "tissue_stiffness/estimation/compare.hpp"
 #include "tissue_stiffness/estimation/initial_velocity.hpp"
+#include "tissue_stiffness/estimation/input_study.hpp"
 #include "tissue_stiffness/estimation/mesh_error.hpp"
 #include "tissue_stiffness/estimation/past.hpp"
 #include "tissue_stiffness/estimation/posterior.hpp"
 #include "tissue_stiffness/estimation/revisit.hpp"
 #include "tissue_stiffness/estimation/scheme.hpp"
+#include "tissue_stiffness/estimation/settling.hpp"
 #include "tissue_stiffness/estimation/stopwatch.hpp"
 #include "tissue_stiffness/estimation/validity.hpp"
+#include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
-constexpr int kVelocityFrames = 4;          // frames that the initial velocity is read from
-constexpr std::size_t kFirstMeshStudy = 4;  // frames
-constexpr double kReplayGrowth = 1.5;       // of a replay between looks back: nobody reads its estimates on the way
-constexpr double kConverged = 0.05;         // relative standard deviation
-constexpr double kInvalidSigmas = 10.0;     // rms error over noise at which the model says nothing about the body
+constexpr int kVelocityFrames = 4;           // frames that the initial velocity is read from
+constexpr std::size_t kFirstMeshStudy = 4;   // frames
+constexpr double kReplayGrowth = 1.5;        // of a replay between looks back: nobody reads its estimates on the way
+constexpr double kInputGrowth = 1.5;         // of the recording between studies of the inputs' errors
+constexpr double kMoved = 0.2;               // standard deviations: what a corrected load has to move the estimate by
+constexpr double kLearnt = 0.5;              // of the prior's standard deviation: what a settled estimate may have left
+constexpr double kWidest = 0.2;              // relative standard deviation of an estimate that is called converged
+constexpr double kFinerLeaves = 16.0 / 9.0;  // of the mean square that the finer mesh changes: at second order, the whole
+constexpr std::size_t kFirstInputs = 4;      // frames before the first study of the inputs' errors
+constexpr double kFullSigmas = 1.5;          // rms error over noise that passes where the misfit's shape is not tested
+constexpr double kInvalidSigmas = 10.0;      // rms error over noise at which the model says nothing about the body
 
 class UnscentedScheme : public Scheme {
  public:
@@ -49,7 +59,7 @@ class UnscentedScheme : public Scheme {
     return compare_free_run(past_.all_frames(frames_), {start()}, past_.theta(), visit, past_.turns(theta));
   }
   std::optional<double> basis_error() const override { return track_->basis_error(); }
-  Eigen::MatrixXd parameter_covariance() const override { return track_->filter().covariance(); }
+  Eigen::MatrixXd parameter_covariance() const override { return covariance(); }
 
  protected:
   StepResult process(const Frame& frame) override {
@@ -61,14 +71,15 @@ class UnscentedScheme : public Scheme {
 
   void stop() override { revisit_ = nullptr; }
 
-  bool looks_back() const override { return revisit_ != nullptr || study_.valid(); }
+  bool looks_back() const override { return revisit_ != nullptr || study_.valid() || input_work_.valid(); }
 
   std::optional<StepResult> take_look() override {
-    const bool looked = revisit_ && revisit_->finished(), studied = study_is_over();
+    const bool looked = revisit_ && revisit_->finished(), studied = is_over(study_) || is_over(input_work_);
     if (frames_.empty() || !(looked || studied)) return std::nullopt;
     if (looked) adopt(std::exchange(revisit_, nullptr)->take());
     const Frame frame = frames_.back();
     revisit();
+    study_inputs();
     study_mesh();
     StepResult result;
     publish(frame, track_->predict(frame), {}, result);
@@ -81,6 +92,12 @@ class UnscentedScheme : public Scheme {
     track_ = new_track();
     if (study_.valid()) study_.wait();
     study_ = {};
+    if (input_work_.valid()) input_work_.wait();
+    input_work_ = {};
+    inputs_.reset();
+    mesh_left_.reset();
+    settling_ = {};
+    last_inputs_ = 0;
     shift_.resize(0);
     failure_.clear();
     last_study_ = looked_back_ = 0;
@@ -129,6 +146,8 @@ class UnscentedScheme : public Scheme {
     watch.lap("update");
     if (revisit()) predicted = track_->predict(frame);
     watch.lap("revisit");
+    if (study_inputs()) predicted = track_->predict(frame);
+    watch.lap("input errors");
     study_mesh();
     watch.lap("mesh error");
     publish(frame, predicted, innovation, result);
@@ -216,40 +235,194 @@ class UnscentedScheme : public Scheme {
     result.misfit = compare(frame.time, prediction_, at_rest(frame).predicted, model_->mesh().node_count());
     result.misfit.nis = innovation.nis;
     result.misfit.dof = innovation.dof;
-    const Eigen::VectorXd shift = shift_.size() > 0 ? shift_ : Eigen::VectorXd::Zero(w.size());
-    const Eigen::VectorXd mean =
-        model_->nonlinear() ? w : Eigen::VectorXd(w - shift);  // its linear form's shift corrects nothing
-    estimate_ = summarise(model_->free_parameters(), mean, track_->covariance() + mesh_doubt(*model_, shift));
+    estimate_ = summarise(model_->free_parameters(), published_mean(), covariance());
     estimate_.time = frame.time;
+    estimate_.variance = variance_shares();
+    if (inputs_) estimate_.inputs = inputs_->inputs;
     validity_.add(result.misfit);
     watch_.add(result.misfit.rms_sigma * result.misfit.rms_sigma, filter);
-    estimate_.state = state(result.misfit);
+    settling_.add(published_mean(), covariance().diagonal().cwiseSqrt());
+    estimate_.state = state(result.misfit, estimate_.state_reason);
     result.estimate = estimate_;
   }
 
-  EstimateState state(const Misfit& misfit) const {
-    if (misfit.count == 0) return EstimateState::no_data;
-    if (watch_.suspicious() && !watch_.searched()) return EstimateState::drifting;
-    if (misfit.rms_sigma > kInvalidSigmas) return EstimateState::model_invalid;
-    for (std::size_t i = 0; i < estimate_.parameters.size(); ++i) {
-      const ParameterEstimate& p = estimate_.parameters[i];
-      const bool positive = model_->free_parameters()[i].prior.kind == Quantity::Kind::log_normal;
-      const double scale = positive ? std::abs(p.mean) : model_->free_parameters()[i].prior.spread;
-      if (p.std > kConverged * scale) return track_->start().motion ? EstimateState::drifting : EstimateState::converging;
-    }
-    return validity_.invalid() ? EstimateState::model_invalid : EstimateState::converged;
+  Eigen::VectorXd mesh_shift() const {
+    return shift_.size() > 0 ? shift_ : Eigen::VectorXd::Zero(track_->filter().mean().size());
   }
 
-  bool study_is_over() const {
-    return study_.valid() && study_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  // Of a nonlinear model the mesh's shift is that of its linear form, which corrects nothing.
+  Eigen::VectorXd published_mean() const {
+    Eigen::VectorXd mean = track_->filter().mean();
+    if (!model_->nonlinear()) mean -= mesh_shift();
+    if (inputs_) mean += inputs_->pose_shift;
+    return mean;
+  }
+
+  /// Covariance by where it comes from, in the filter's coordinates.
+  struct Parts {
+    Eigen::MatrixXd noise, mesh, loads, constants, model;
+  };
+  Parts covariance_parts() const {
+    const Eigen::MatrixXd noise = track_->covariance(), zero = Eigen::MatrixXd::Zero(noise.rows(), noise.cols());
+    Parts parts{noise, mesh_doubt(*model_, mesh_shift()), zero, zero, zero};
+    if (!inputs_) return parts;
+    parts.loads = inputs_->from_loads;
+    parts.constants = inputs_->from_constants;
+    // The misfit may lie along what the parameters do, with all rows and frames alike (Kennedy & O'Hagan 2001).
+    parts.model = misfit_test().discrepancy() * inputs_->rows * inputs_->from_noise;
+    return parts;
+  }
+
+  Eigen::MatrixXd covariance() const {
+    const Parts parts = covariance_parts();
+    return parts.noise + parts.mesh + parts.loads + parts.constants + parts.model;
+  }
+
+  std::vector<VarianceShares> variance_shares() const {
+    const Parts parts = covariance_parts();
+    const Eigen::VectorXd all = covariance().diagonal();
+    std::vector<VarianceShares> out;
+    for (Eigen::Index i = 0; i < all.size(); ++i) {
+      out.push_back({parts.noise(i, i) / all[i], parts.mesh(i, i) / all[i], parts.loads(i, i) / all[i],
+                     parts.constants(i, i) / all[i], parts.model(i, i) / all[i]});
+    }
+    return out;
+  }
+
+  MisfitTest misfit_test() const {
+    MisfitTest test = inputs_->test;
+    test.set_numerics(kFinerLeaves * mesh_left_.value_or(0.0));
+    return test;
+  }
+
+  // Indices of the parameters that a state speaks of: the moduli, or all where none is free.
+  std::vector<Eigen::Index> judged() const {
+    std::vector<Eigen::Index> moduli, all;
+    for (std::size_t i = 0; i < model_->free_parameters().size(); ++i) {
+      all.push_back(static_cast<Eigen::Index>(i));
+      if (is_young_modulus(model_->free_parameters()[i].name)) moduli.push_back(all.back());
+    }
+    return moduli.empty() ? all : moduli;
+  }
+
+  // Why the estimate is not precise enough to be called settled; empty: it is.
+  std::string unlearnt() const {
+    const Eigen::VectorXd std = covariance().diagonal().cwiseSqrt(), prior = model_->prior_std();
+    for (const Eigen::Index i : judged()) {
+      const FreeParameter& free = model_->free_parameters()[static_cast<std::size_t>(i)];
+      const bool positive = free.prior.kind == Quantity::Kind::log_normal;
+      if (std[i] > kLearnt * prior[i]) return free.name + " is hardly better known than its prior";
+      if (positive && std[i] > kWidest) return free.name + " is known to " + percent(std[i]) + " only";
+    }
+    return "";
+  }
+
+  static std::string percent(double share) { return std::to_string(static_cast<int>(std::lround(100.0 * share))) + " %"; }
+
+  EstimateState state(const Misfit& misfit, std::string& why) const {
+    if (misfit.count == 0) return why = "nothing was observed", EstimateState::no_data;
+    if (watch_.suspicious() && !watch_.searched()) {
+      return why = "the misfit has risen, as it does when a parameter changes", EstimateState::drifting;
+    }
+    if (misfit.rms_sigma > kInvalidSigmas || validity_.invalid()) {
+      return why = "no value of the parameters explains the motion", EstimateState::model_invalid;
+    }
+    if (why = stale_load(misfit.time); !why.empty()) return EstimateState::stale;
+    if (why = unlearnt(); !why.empty()) {
+      return track_->start().motion ? EstimateState::drifting : EstimateState::converging;
+    }
+    if (!inputs_) return why = "the errors of the inputs have not been studied yet", EstimateState::converging;
+    if (!settling_.settled())
+      return why = "the estimate still moves by more than its standard deviation", EstimateState::converging;
+    if (!inputs_->implausible.empty()) return why = inputs_->implausible, EstimateState::doubtful;
+    return inputs_->fitted ? state_of_misfit(why) : state_of_rms(misfit, why);
+  }
+
+  EstimateState state_of_misfit(std::string& why) const {
+    const MisfitTest test = misfit_test();
+    if (test.passes()) return why = "the misfit is noise", EstimateState::converged;
+    if (!mesh_left_ && unstudied_.empty() && failure_.empty() && !more_follow()) {
+      return why = "the error of the mesh has not been studied yet", EstimateState::converging;
+    }
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "along the body's lowest modes the misfit is %.2g times the noise's variance, %.1f standard deviations "
+                  "beyond what passes",
+                  1.0 + test.excess(), test.z());
+    return why = text, EstimateState::doubtful;
+  }
+
+  // A model that runs in full is judged by the size of its misfit alone.
+  EstimateState state_of_rms(const Misfit& misfit, std::string& why) const {
+    if (misfit.rms_sigma <= kFullSigmas) return why = "the misfit is about the noise", EstimateState::converged;
+    char text[100];
+    std::snprintf(text, sizeof text, "the misfit is %.2g times the noise", misfit.rms_sigma);
+    return why = text, EstimateState::doubtful;
+  }
+
+  static bool is_over(const std::future<void>& work) {
+    return work.valid() && work.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  }
+
+  // What errors of the inputs do to the estimate, asked anew whenever the recording has grown; in the background when a
+  // node runs. True if the runs changed.
+  bool study_inputs() {
+    bool moved = false;
+    if (is_over(input_work_)) {
+      try {
+        input_work_.get();
+        moved = take_inputs();
+      } catch (const std::exception&) {
+        // The last answer stays; more frames may settle the next.
+      }
+    }
+    if (input_work_.valid() || more_follow() || track_->start().motion || !complete_) return moved;
+    if (static_cast<double>(frames_.size()) <
+        std::max<double>(kFirstInputs, kInputGrowth * static_cast<double>(last_inputs_))) {
+      return moved;
+    }
+    last_inputs_ = frames_.size();
+    const AnchoredFilter& filter = track_->filter();
+    MeshError::Question question(*model_, frames_, filter.mean(), filter.spread(), model_->prior_std());
+    const auto work = [this, question = std::move(question)] {
+      if (input_study_ == nullptr) input_study_ = std::make_unique<InputStudy>(*model_);
+      studied_inputs_ = input_study_->study(question);
+    };
+    if (hurried()) {
+      input_work_ = aside(work);
+      return moved;
+    }
+    try {
+      work();
+      return take_inputs() || moved;
+    } catch (const NumericalError&) {
+      return moved;
+    }
+  }
+
+  // A load's estimated error is taken off where that moves the estimate.
+  bool take_inputs() {
+    inputs_ = std::move(studied_inputs_);
+    if (!inputs_->fitted) return false;
+    const Eigen::VectorXd std = track_->covariance().diagonal().cwiseSqrt();
+    const Eigen::VectorXd move = inputs_->w - inputs_->pose_shift - track_->filter().mean();
+    if (!(move.array().abs() > kMoved * std.array()).any()) return false;
+    stop();
+    for (const auto& [topic, correction] : inputs_->corrections) {
+      model_->courses().at(topic)->correct(correction.basis, correction.coefficients);
+    }
+    track_->rerun(frames_, inputs_->w - inputs_->pose_shift);
+    validity_.reset();
+    return true;
   }
 
   // What the mesh does to the estimate, asked anew whenever the recording has doubled; in the background when a node runs.
   void study_mesh() {
-    if (study_.valid() && (!background() || study_is_over())) {
+    if (study_.valid() && (!background() || is_over(study_))) {
       try {
         study_.get();
         shift_ = studied_.believed(track_->filter().misfit_scale());
+        mesh_left_ = studied_.left;
         failure_.clear();
       } catch (const std::exception& error) {
         failure_ = error.what();
@@ -289,7 +462,13 @@ class UnscentedScheme : public Scheme {
   MeshError::Answer studied_;                     ///< the same
   Eigen::VectorXd shift_;                         ///< estimate less truth because of the mesh; empty: not known yet
   std::size_t last_study_ = 0, looked_back_ = 0;  ///< frames that there were then
-  std::future<void> study_;                       ///< last: its thread uses the members above
+  std::optional<double> mesh_left_;               ///< mean square that the mesh leaves; empty: not known yet
+  std::unique_ptr<InputStudy> input_study_;       ///< only its own thread touches it
+  InputStudy::Answer studied_inputs_;             ///< the same
+  std::optional<InputStudy::Answer> inputs_;      ///< the last study's
+  std::size_t last_inputs_ = 0;                   ///< frames that there were then
+  Settling settling_;
+  std::future<void> study_, input_work_;  ///< last: their threads use the members above
 };
 
 }  // namespace

@@ -108,9 +108,13 @@ void Model::add_parameters(const EffectSettings& settings, Part& part) {
       known_.conservativeResize(index + 1);
       known_[index] = quantity->value;
       part.indices.push_back(index);
-      if (!quantity->estimated()) continue;
       const std::string suffix = spec.components > 1 ? std::string("_") + "xyz"[c] : "";
-      free_.push_back({settings.label + "." + spec.name + suffix, spec.unit, *quantity, spec.lower, spec.upper});
+      const std::string name = settings.label + "." + spec.name + suffix;
+      if (!quantity->estimated()) {
+        if (quantity->tolerance > 0.0) constants_.push_back({name, index, quantity->value, quantity->tolerance});
+        continue;
+      }
+      free_.push_back({name, spec.unit, *quantity, spec.lower, spec.upper});
       free_index_.push_back(index);
     }
   }

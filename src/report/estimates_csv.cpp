@@ -22,7 +22,7 @@ std::string header(const std::vector<ParameterEstimate>& parameters) {
       line += "," + field(p.name + "." + part + " [" + p.unit + "]");
     }
   }
-  return line + ",misfit_rms [m],misfit_rms [sigma],nis [-],nis_dof [-],outliers [-],reason";
+  return line + ",misfit_rms [m],misfit_rms [sigma],nis [-],nis_dof [-],outliers [-],reason,state_reason";
 }
 
 std::string row(const FrameRecord& frame, std::size_t parameter_count) {
@@ -36,7 +36,8 @@ std::string row(const FrameRecord& frame, std::size_t parameter_count) {
     for (const double value : {p.mean, p.std, p.lower95, p.upper95}) line += "," + exact_number(value);
   }
   for (const double value : {frame.misfit_rms, frame.misfit_sigma, frame.nis}) line += "," + exact_number(value);
-  return line + "," + std::to_string(frame.dof) + "," + std::to_string(frame.outliers) + "," + field(frame.reason);
+  return line + "," + std::to_string(frame.dof) + "," + std::to_string(frame.outliers) + "," + field(frame.reason) + "," +
+         field(frame.state_reason);
 }
 
 }  // namespace

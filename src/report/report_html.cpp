@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "tissue_stiffness/report/course.hpp"
+#include "tissue_stiffness/report/input_table.hpp"
 #include "tissue_stiffness/report/map_table.hpp"
 #include "tissue_stiffness/report/page.hpp"
 #include "tissue_stiffness/report/text.hpp"
@@ -17,9 +18,13 @@ struct StateWords {
 StateWords words(EstimateState state) {
   switch (state) {
     case EstimateState::converged:
-      return {"converged", "good", "More frames of this kind would change little."};
+      return {"converged", "good", "The interval has settled, and the misfit passes its test."};
     case EstimateState::converging:
-      return {"converging", "warn", "The interval is still shrinking: more frames would narrow it."};
+      return {"converging", "warn", "The estimate has not settled, or too little is known."};
+    case EstimateState::doubtful:
+      return {"doubtful", "warn", "The estimate has settled, but the misfit or an input does not pass: do not rely on it."};
+    case EstimateState::stale:
+      return {"stale", "warn", "Measurements or loads have stopped: the value is the last one."};
     case EstimateState::drifting:
       return {"drifting", "warn", "The estimate keeps moving by more than its interval: the model may lack an effect."};
     case EstimateState::model_invalid:
@@ -69,7 +74,9 @@ std::string answer(const Results& results) {
     text += "<p>" + identifiability_badge(found->second) + " " + escape_html(found->second.reason) + "</p>";
   }
   if (results.parameters.empty()) text += "<p>The model has no unknown parameter.</p>";
-  const std::string badge_line = "<p>" + badge(state.colour, state.badge) + " " + state.sentence + "</p>";
+  const std::string badge_line =
+      "<p>" + badge(state.colour, state.badge) + " " + state.sentence +
+      (results.state_reason.empty() ? "" : " Reason: " + escape_html(results.state_reason) + ".") + "</p>";
   return section("answer", "", badge_line + text);
 }
 
@@ -205,9 +212,10 @@ std::string report_html(const Results& results, const Showing& showing) {
   page.heading = "Tissue stiffness";
   page.subheading = short_path(results.model) + " · " + short_path(results.recording);
   page.body = answer(results) + facts(results) + courses(results) + player(showing) + misfit(results) +
-              parameter_table(results) + (results.map ? map_table(*results.map) : "") + skipped_table(results) +
-              choices(results) + section("model", "", file_details("Model file", results.model_text, "", true)) +
-              timing_table(results) + colophon(results.command_line, results.versions);
+              parameter_table(results) + input_section(results) + (results.map ? map_table(*results.map) : "") +
+              skipped_table(results) + choices(results) +
+              section("model", "", file_details("Model file", results.model_text, "", true)) + timing_table(results) +
+              colophon(results.command_line, results.versions);
   page.data = "{\"results\":" + results_json(results) + ",\"course\":" + course_json(results, showing.first_stamp) +
               ",\"showing\":" + showing_json(showing) + "}";
   return page.html();

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tissue_stiffness/report/input_table.hpp"
 #include "tissue_stiffness/report/write_results.hpp"
 
 namespace tissue_stiffness {
@@ -17,6 +18,27 @@ json parameter_json(const ParameterEstimate& p) {
           {"mean", number(p.mean)},
           {"std", number(p.std)},
           {"interval95", json::array({number(p.lower95), number(p.upper95)})}};
+}
+
+json shares_json(const VarianceShares& s) {
+  return {{"noise", number(s.noise)},
+          {"mesh", number(s.mesh)},
+          {"loads", number(s.loads)},
+          {"constants", number(s.constants)},
+          {"model", number(s.model)}};
+}
+
+json inputs_json(const std::vector<InputUncertainty>& inputs) {
+  json out = json::array();
+  for (const InputUncertainty& i : inputs) {
+    out.push_back({{"input", i.input},
+                   {"error", i.error},
+                   {"unit", i.unit},
+                   {"tolerance", number(i.tolerance)},
+                   {"found", number(i.mean)},
+                   {"left", number(i.std)}});
+  }
+  return out;
 }
 
 json map_json(const StiffnessMap& map) {
@@ -44,7 +66,11 @@ json map_json(const StiffnessMap& map) {
 
 std::string results_json(const Results& results) {
   json parameters = json::object(), identifiable = json::object(), versions = json::object();
-  for (const ParameterEstimate& p : results.parameters) parameters[p.name] = parameter_json(p);
+  for (std::size_t i = 0; i < results.parameters.size(); ++i) {
+    const ParameterEstimate& p = results.parameters[i];
+    parameters[p.name] = parameter_json(p);
+    if (i < results.variance.size()) parameters[p.name]["variance_from"] = shares_json(results.variance[i]);
+  }
   for (const auto& [name, record] : results.identifiable) {
     identifiable[name] = {{"verdict", record.verdict}, {"reason", record.reason}};
   }
@@ -57,7 +83,10 @@ std::string results_json(const Results& results) {
       {"model", results.model},
       {"recording", results.recording},
       {"state", to_string(results.state)},
+      {"state_reason", results.state_reason},
       {"parameters", parameters},
+      {"inputs", inputs_json(results.inputs)},
+      {"inputs_summary", inputs_line(results)},
       {"identifiable", identifiable},
       {"frames", results.used()},
       {"skipped", skipped},

@@ -22,6 +22,7 @@ std::vector<KeySpec> mesh_keys() {
                 "tetrahedra (.vtk, .msh, .node beside .ele) or a closed surface (.stl, .ply, .obj), from the model "
                 "file's folder"),
       number_key("mesh.scale", "", kPositive, kInfinity, 1, "metres a unit of the file"),
+      number_key("mesh.scale_tolerance", "", 0, 1, 0.005, "by which every length of the mesh may be off, 1 sigma"),
       number_key("mesh.max_edge_length", "m", kPositive, kInfinity, 0, edge),
       plain_key("mesh.revolve", Kind::map, "",
                 "the body that the first contour makes, turned about an axis through its middle"),
@@ -70,6 +71,12 @@ std::vector<KeySpec> region_keys() {
   };
 }
 
+std::vector<KeySpec> pose_keys(const std::string& path) {
+  return {number_key(path + ".rotation_tolerance", "rad", 0, 1, 0.003, "of the sensor's pose about each axis, 1 sigma"),
+          number_key(path + ".offset_tolerance", "m", 0, kInfinity, std::numeric_limits<double>::quiet_NaN(),
+                     "of the sensor's pose along each axis, 1 sigma; the noise when absent")};
+}
+
 std::vector<KeySpec> observation_keys() {
   std::vector<KeySpec> keys{required_key("observations", Kind::list, "", "what is measured, one sensor an entry")};
   for (const char* kind : {"vertices", "markers", "points"}) {
@@ -81,6 +88,8 @@ std::vector<KeySpec> observation_keys() {
     keys.push_back(plain_key(path, Kind::map, "", what));
     keys.push_back(required_key(path + ".topic", Kind::text, "", "of the cloud"));
     keys.push_back(positive(path + ".noise", "m", "1 sigma of a coordinate"));
+    const std::vector<KeySpec> pose = pose_keys(path);
+    keys.insert(keys.end(), pose.begin(), pose.end());
     if (kind[0] == 'm') {
       keys.push_back(required_key(path + ".rest", Kind::list, "m", "where the markers are at rest, [x, y, z] each"));
     }
@@ -92,8 +101,8 @@ std::vector<KeySpec> observation_keys() {
        required_key(contour + ".image", Kind::text, "", "topic of the images, sensor_msgs/Image"),
        required_key(contour + ".camera_info", Kind::text, "",
                     "topic of the calibration, sensor_msgs/CameraInfo; for a slice fx and fy are pixels a metre"),
-       positive(contour + ".noise", "m", "1 sigma along the outline's normal"),
-       plain_key(contour + ".segmentation", Kind::map, "", "how the outline is found"),
+       positive(contour + ".noise", "m", "1 sigma along the outline's normal"), pose_keys(contour)[0],
+       pose_keys(contour)[1], plain_key(contour + ".segmentation", Kind::map, "", "how the outline is found"),
        choice_key(contour + ".segmentation.kind", {"silhouette", "cavity"}, true,
                   "the body against a darker background, or a dark pool inside a bright wall (B-mode)"),
        plain_key(contour + ".segmentation.seed", Kind::numbers, "pixel",
@@ -114,6 +123,8 @@ std::vector<KeySpec> run_keys() {
       required_key("initial.velocity", Kind::numbers, "m/s", "[x, y, z] of the whole body, or `from_frames`"),
       choice_key("estimator", {"unscented", "paper"}, false,
                  "the default, or the scheme of Yang & Lin 2016 as it was published, to compare with"),
+      number_key("stale_after", "s", kPositive, kInfinity, 2,
+                 "without a measurement or a load for so long the state is `stale`"),
       integer_key("window", 100, 1000000, 4000,
                   "frames that are kept to be looked at again; when they are too many, the older half becomes the prior"),
       plain_key("map", Kind::map, "",

@@ -94,6 +94,7 @@ MeshSettings read_mesh(const Value& map, const std::string& directory) {
     mesh.scale = read_number(map, key("mesh.scale"));
     mesh.max_edge_length = read_number(map, key("mesh.max_edge_length"));
   }
+  mesh.scale_tolerance = read_number(map, key("mesh.scale_tolerance"));
   mesh.order = read_integer(map, key("mesh.order"));
   mesh.faceted = read_choice(map, key("mesh.boundary")) == "faceted";
   mesh.discretisation_error = read_boolean(map, key("mesh.discretisation_error"));

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <limits>
 
 #include "tissue_stiffness/settings/key_spec.hpp"
@@ -68,7 +69,11 @@ ObservationSettings read_observation(const Value& entry) {
     observation.topic = read_text(map, key("observations[]." + keys.front() + ".topic"));
   }
   if (observation.kind == Kind::markers) observation.rest = read_rest(map.at("rest"));
-  observation.noise = read_number(map, key("observations[]." + keys.front() + ".noise"));
+  const std::string path = "observations[]." + keys.front();
+  observation.noise = read_number(map, key(path + ".noise"));
+  observation.rotation = read_number(map, key(path + ".rotation_tolerance"));
+  const double offset = read_number(map, key(path + ".offset_tolerance"));
+  observation.offset = std::isnan(offset) ? observation.noise : offset;
   return observation;
 }
 

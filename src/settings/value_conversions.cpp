@@ -86,8 +86,8 @@ Eigen::Vector3d Value::as_vector3(const std::string& unit) const {
 }
 
 Quantity Value::as_quantity(double lower, double upper, const std::string& unit) const {
-  const std::string allowed =
-      range_text(lower, upper, unit) + ", {prior, factor} or {mean, std}, with `drift` when it changes";
+  const std::string allowed = range_text(lower, upper, unit) +
+                              ", {prior, factor} or {mean, std}, with `drift` when it changes, or {value, tolerance}";
   read_ = true;
   Quantity quantity;
   if (type_ == Type::map && has("prior")) {
@@ -96,6 +96,10 @@ Quantity Value::as_quantity(double lower, double upper, const std::string& unit)
     quantity.value = at("prior").as_number(std::max(lower, smallest), upper, unit);
     quantity.spread = at("factor").as_number(1.0, infinity, "");
     if (quantity.spread <= 1.0) throw InputError(at("factor").path(), at("factor").shown(), "a number > 1");
+  } else if (type_ == Type::map && has("value")) {
+    require_keys(*this, "value", "tolerance", allowed);
+    quantity.value = at("value").as_number(lower, upper, unit);
+    quantity.tolerance = at("tolerance").as_number(0.0, infinity, unit);
   } else if (type_ == Type::map) {
     require_keys(*this, "mean", "std", allowed);
     quantity.kind = Quantity::Kind::normal;

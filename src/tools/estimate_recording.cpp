@@ -36,6 +36,7 @@ FrameRecord record_of(const Instant& instant, const StepResult& step) {
   record.used = step.used;
   record.reason = step.reason;
   record.state = step.estimate.state;
+  record.state_reason = step.estimate.state_reason;
   record.parameters = step.estimate.parameters;
   if (!step.used) return record;
   record.misfit_rms = step.misfit.rms;
@@ -100,6 +101,9 @@ class Run {
     Results& results = run_.results;
     results.parameters = estimator_.estimate().parameters;
     results.state = estimator_.estimate().state;
+    results.state_reason = estimator_.estimate().state_reason;
+    results.variance = estimator_.estimate().variance;
+    results.inputs = estimator_.estimate().inputs;
     for (const auto& [name, found] : estimator_.identifiability()) {
       results.identifiable[name] = {found.verdict, found.reason};
     }

@@ -4,6 +4,7 @@
 #include <ostream>
 #include <vector>
 
+#include "tissue_stiffness/report/input_table.hpp"
 #include "tissue_stiffness/report/text.hpp"
 #include "tissue_stiffness/tools/estimate_recording.hpp"
 
@@ -71,7 +72,7 @@ void print_map(const StiffnessMap& map, std::ostream& out) {
 
 void print_stages(const EstimationRun& run, const Paint& paint, std::ostream& out) {
   out << paint.bold(formatted("%-12s %12s %12s %12s", "stage", "median [ms]", "p99 [ms]", "total [s]")) << "\n";
-  for (const char* stage : {"segment", "predict", "observe", "update", "revisit", "mesh error"}) {
+  for (const char* stage : {"segment", "predict", "observe", "update", "revisit", "input errors", "mesh error"}) {
     const auto samples = run.stage_samples.find(stage);
     if (samples == run.stage_samples.end()) continue;
     double sum = 0.0;
@@ -86,7 +87,12 @@ void print_stages(const EstimationRun& run, const Paint& paint, std::ostream& ou
 void print_summary(const EstimationRun& run, const Paint& paint, std::ostream& out) {
   const Results& results = run.results;
   print_parameters(results, paint, out);
-  out << "state         " << painted(results.state, paint) << "\n";
+  for (std::size_t i = 0; i < results.variance.size() && i < results.parameters.size(); ++i) {
+    const std::string name = results.variance.size() > 1 ? results.parameters[i].name + ": " : "";
+    out << "variance from " << name << variance_line(results.variance[i]) << "\n";
+  }
+  out << "inputs        " << inputs_line(results) << "\n";
+  out << "state         " << painted(results.state, paint) << ": " << results.state_reason << "\n";
   print_line(out, "frames        %d used, %d skipped, %d late messages; %.3g frames/s", results.used(), results.skipped(),
              run.late, static_cast<double>(results.frames.size()) / run.seconds);
   print_line(out, "rms error     %s mm, %.3g of the noise; %.3g %% of the motion",

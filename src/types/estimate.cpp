@@ -10,6 +10,10 @@ std::string to_string(EstimateState state) {
       return "converging";
     case EstimateState::converged:
       return "converged";
+    case EstimateState::doubtful:
+      return "doubtful";
+    case EstimateState::stale:
+      return "stale";
     case EstimateState::drifting:
       return "drifting";
     case EstimateState::model_invalid:

@@ -3,9 +3,12 @@
 #include <Eigen/Core>
 #include <map>
 #include <memory>
+#include <optional>
 #include <shared_mutex>
 #include <string>
 #include <vector>
+
+#include "tissue_stiffness/effects/load_error.hpp"
 
 namespace tissue_stiffness {
 
@@ -23,7 +26,19 @@ class Course {
 
   /// Samples may come late, but not twice at one time: the later value wins.
   void add(double time, const Eigen::VectorXd& value);
+  /// With the correction, where there is one.
   double value(double time, int component) const;
+  /// As it was measured.
+  double measured(double time, int component) const;
+  /// Takes the error that `basis` and its coefficients describe off every sample, and off those that are to come: the
+  /// estimated load is measured - B(t) coefficients. Without coefficients the load is as measured.
+  void correct(const LoadErrorBasis& basis, const Eigen::VectorXd& coefficients);
+  /// Components of a force or pressure that act: 3 of a wrench, 1 of a pressure.
+  int acting() const { return components_ < 3 ? components_ : 3; }
+  const LoadTolerance& tolerance() const { return tolerance_; }
+  void set_tolerance(const LoadTolerance& tolerance) { tolerance_ = tolerance; }
+  /// Time of the last sample [s]; empty before the first.
+  std::optional<double> last() const;
   void clear();
   bool empty() const;
   int components() const { return components_; }
@@ -32,12 +47,19 @@ class Course {
   bool from_file() const { return from_file_; }
 
  private:
+  double interpolated(const std::vector<Eigen::VectorXd>& values, double time, int component) const;
+  void correct_sample(std::size_t index);
+
+  LoadTolerance tolerance_;
   mutable std::shared_mutex mutex_;  ///< of everything below
   int components_;
   bool from_file_ = false;
   double offset_ = 0.0;
   std::vector<double> times_;
-  std::vector<Eigen::VectorXd> values_;
+  std::vector<Eigen::VectorXd> values_;     ///< as measured
+  std::vector<Eigen::VectorXd> corrected_;  ///< empty: nothing is corrected
+  LoadErrorBasis basis_;
+  Eigen::VectorXd coefficients_;
 };
 
 /// Courses by topic, shared by effects that listen to the same one.

@@ -27,6 +27,8 @@ struct ParameterSpec {
   double value = 0.0;   ///< when the key is absent and optional
   double absent = 0.0;  ///< value at which the model without the effect comes back; NaN where there is none
   int components = 1;   ///< 3: a vector [x, y, z], parameters name_x, name_y, name_z
+  /// 1 sigma by which a declared number may be off where the model file says nothing of it; of a share: of its size.
+  double tolerance = 0.0, tolerance_share = 0.0;
 };
 
 /// What an effect is, in words and numbers.

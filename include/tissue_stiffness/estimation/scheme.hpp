@@ -59,6 +59,8 @@ class Scheme {
 
   double start() const { return first_stamp_.value_or(0.0) + model_->settings().time.start; }
   Prediction at_rest(const Frame& frame) const;
+  /// Says which load has not come for longer than `stale_after` before `time` [s]; empty: none.
+  std::string stale_load(double time) const;
   /// The free run at `theta` over the frames, compared with each.
   std::vector<Misfit> compare_free_run(const std::vector<Frame>& frames, const RunStart& start,
                                        const Eigen::VectorXd& theta, const FreeFrameVisitor& visit,

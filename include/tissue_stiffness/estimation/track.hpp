@@ -51,6 +51,9 @@ class Track {
   /// Weighted sum of the sigma points' displacements, 3n [m].
   void combine(const Eigen::VectorXd& weights, Eigen::Ref<Eigen::VectorXd> sum) const { ensemble_->combine(weights, sum); }
 
+  /// Runs the frames again, under loads that are others now, around the filter coordinates w. Throws NumericalError as runs
+  /// do.
+  void rerun(const std::vector<Frame>& frames, const Eigen::VectorXd& w);
   /// Whether `look` would do anything after `count` frames.
   bool wants_look(std::size_t count) const;
   /// Moves the sigma points until nothing moves, looks for a better minimum, for missing physics and at the basis, each

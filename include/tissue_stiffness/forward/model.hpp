@@ -30,6 +30,14 @@ struct FreeParameter {
   double prior_std() const;
 };
 
+/// A number that the model file declares, and by how much it may be off.
+struct UncertainConstant {
+  std::string name;  ///< label.parameter
+  int index = 0;     ///< in theta
+  double value = 0.0;
+  double std = 0.0;  ///< its tolerance, 1 sigma [the parameter's unit]
+};
+
 /// The sum of effects on a mesh: M a + C v + K u + relaxing and nonlinear forces = loads. Parameters come as theta, the
 /// values of every parameter of every effect in order, initial velocity last.
 class Model {
@@ -49,6 +57,8 @@ class Model {
   const Eigen::VectorXd& rest() const { return rest_; }
   const std::map<std::string, Region>& regions() const { return body_->regions; }
   const std::vector<FreeParameter>& free_parameters() const { return free_; }
+  /// Declared numbers with a tolerance.
+  const std::vector<UncertainConstant>& uncertain_constants() const { return constants_; }
   const std::vector<LoadInput>& load_inputs() const { return inputs_; }
   CourseTable& courses() { return courses_; }
   const CourseTable& courses() const { return courses_; }
@@ -175,6 +185,7 @@ class Model {
   std::vector<LoadInput> inputs_;
   std::vector<Part> parts_;
   std::vector<FreeParameter> free_;
+  std::vector<UncertainConstant> constants_;
   std::vector<int> free_index_;  ///< of each free parameter in theta
   Eigen::VectorXd known_;        ///< theta with free parameters at their prior
   std::vector<int> holders_;     ///< how many `fixed` effects hold each node

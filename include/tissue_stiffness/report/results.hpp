@@ -24,6 +24,7 @@ struct FrameRecord {
   bool used = true;
   std::string reason;  ///< why the frame was skipped
   EstimateState state = EstimateState::no_data;
+  std::string state_reason;                   ///< why it is so
   std::vector<ParameterEstimate> parameters;  ///< the posterior after this frame, in the order of Results::parameters
   double misfit_rms = std::numeric_limits<double>::quiet_NaN();    ///< [m]
   double misfit_sigma = std::numeric_limits<double>::quiet_NaN();  ///< rms of error / sigma [-]
@@ -38,6 +39,9 @@ struct Results {
   std::string recording;                      ///< name of the recording
   std::vector<ParameterEstimate> parameters;  ///< final
   EstimateState state = EstimateState::no_data;
+  std::string state_reason;                                          ///< why it is so
+  std::vector<VarianceShares> variance;                              ///< of each parameter; empty: not known
+  std::vector<InputUncertainty> inputs;                              ///< errors that the interval counts
   std::map<std::string, IdentifiabilityRecord> identifiable;         ///< by parameter name
   double rms_error = std::numeric_limits<double>::quiet_NaN();       ///< of the free run at the final estimate [m]
   double relative_error = std::numeric_limits<double>::quiet_NaN();  ///< rms error / rms motion [-]

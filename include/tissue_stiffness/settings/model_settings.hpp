@@ -16,6 +16,7 @@ struct MeshSettings {
   Source source = Source::file;
   std::string file;                  ///< absolute, or relative to the model file's folder (resolved by the reader)
   double scale = 1.0;                ///< file unit -> m
+  double scale_tolerance = 0.0;      ///< by which every length of the mesh may be off, 1 sigma [-]
   double max_edge_length = 0.0;      ///< [m]; 0: as the surface is
   int order = 2;                     ///< 2: 10-node tetrahedra, 1: 4-node
   bool faceted = false;              ///< the body has the mesh's facets; else they stand for a smooth surface
@@ -66,6 +67,8 @@ struct ObservationSettings {
   std::string topic;        ///< point cloud topic, or the image topic of a contour
   std::string camera_info;  ///< contour only
   double noise = 0.0;       ///< 1-sigma [m]
+  double rotation = 0.0;    ///< tolerance of the sensor's pose, 1 sigma about each axis [rad]
+  double offset = 0.0;      ///< the same along each axis [m]
   Eigen::Matrix3Xd rest;    ///< markers: rest positions [m]
   SegmentationSettings segmentation;
   Projection projection = Projection::silhouette;
@@ -102,6 +105,7 @@ struct ModelSettings {
   std::vector<ObservationSettings> observations;
   TimeSettings time;
   InitialSettings initial;
+  double stale_after = 2.0;  ///< without a measurement or a load for so long the estimate is stale [s]
   int window = 4000;  ///< frames kept to be looked at again; half of them become the prior of the others when it is full
   EstimatorKind estimator = EstimatorKind::unscented;  ///< key `estimator: unscented | paper`
   std::optional<MapSettings> map;                      ///< empty: one modulus an elasticity, no map

@@ -9,14 +9,16 @@
 namespace tissue_stiffness {
 
 /// A number of the model file: known, or estimated with a prior. `{prior: m, factor: f}` is log-normal with median m and
-/// 1-sigma factor f > 1; `{mean: m, std: s}` is normal. With `drift: d` beside them it may change while the body moves,
-/// like a random walk: after t seconds the log of the former, the value of the latter, has moved by d sqrt(t) (1 sigma).
+/// 1-sigma factor f > 1; `{mean: m, std: s}` is normal. `{value: v, tolerance: s}` is known to s (1 sigma). With `drift: d`
+/// beside them it may change while the body moves, like a random walk: after t seconds the log of the former, the value of
+/// the latter, has moved by d sqrt(t) (1 sigma).
 struct Quantity {
   enum class Kind { known, log_normal, normal };
   Kind kind = Kind::known;
-  double value = 0.0;   ///< known value, median, or mean
-  double spread = 0.0;  ///< factor (log_normal) or standard deviation (normal)
-  double drift = 0.0;   ///< [1/sqrt(s)] (log_normal) or [unit/sqrt(s)] (normal); 0: constant
+  double value = 0.0;       ///< known value, median, or mean
+  double spread = 0.0;      ///< factor (log_normal) or standard deviation (normal)
+  double drift = 0.0;       ///< [1/sqrt(s)] (log_normal) or [unit/sqrt(s)] (normal); 0: constant
+  double tolerance = -1.0;  ///< of a known value: 1 sigma by which it may be off; below 0: what the key's spec says
 
   bool estimated() const { return kind != Kind::known; }
 };

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tissue_stiffness/effects/load_error.hpp"
+#include "tissue_stiffness/estimation/mesh_error.hpp"
+#include "tissue_stiffness/estimation/misfit_test.hpp"
+#include "tissue_stiffness/types/estimate.hpp"
+
+namespace tissue_stiffness {
+
+/// What uncertain inputs do to the parameters. The errors of the measured loads and of the sensors' poses are nuisance
+/// parameters eta ~ N(0, I), fitted with the model's parameters w to all frames (Gauss-Newton) and marginalised; declared
+/// constants are considered: they keep their values, and their tolerances widen the covariance by what they do to the
+/// estimate (Schmidt 1966; Jazwinski 1970, sec. 8.4). Of a nonlinear model the linear form runs, and nothing is fitted.
+class InputStudy {
+ public:
+  explicit InputStudy(const Model& model);
+  ~InputStudy();
+  InputStudy(const InputStudy&) = delete;
+  InputStudy& operator=(const InputStudy&) = delete;
+
+  using Question = MeshError::Question;
+
+  /// The estimated error of one load, to be taken off its course.
+  struct Correction {
+    LoadErrorBasis basis;
+    Eigen::VectorXd coefficients;
+  };
+  struct Answer {
+    Eigen::VectorXd w;               ///< most probable parameters beside the nuisance, filter coordinates
+    Eigen::VectorXd pose_shift;      ///< what of it the poses' errors make up; the loads' are in `corrections`
+    Eigen::MatrixXd from_noise;      ///< covariance of w were every input exact
+    Eigen::MatrixXd from_loads;      ///< what the loads' and poses' errors add to it
+    Eigen::MatrixXd from_constants;  ///< what the constants' tolerances add
+    std::map<std::string, Correction> corrections;  ///< by topic
+    std::vector<InputUncertainty> inputs;           ///< every error that was considered, for the reports
+    MisfitTest test;
+    std::string implausible;  ///< an input that would have to be off by far more than its tolerance; empty: none
+    double rows = 0.0;
+    bool fitted = false;  ///< false: a nonlinear model, whose w is the question's
+  };
+  /// Throws NumericalError when runs diverge.
+  Answer study(const Question& question);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace tissue_stiffness

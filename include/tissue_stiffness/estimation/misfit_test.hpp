@@ -1,0 +1,47 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+
+namespace tissue_stiffness {
+
+/// Posterior predictive test of a fit's residual. What physics misses moves the body along its lowest modes, which smooth
+/// sensor noise does not: the residual's weighted sum of squares is divided into the part along those modes and the rest.
+/// Without missing physics both have the same mean square a degree of freedom, whatever the noise's level; the rest's
+/// memory from frame to frame tells how many independent frames there are (Bartlett 1946).
+class MisfitTest {
+ public:
+  /// residual: m; precision: m, weight / variance; shapes: m x k, the modes as the sensors see them.
+  void add(const Eigen::VectorXd& residual, const Eigen::VectorXd& precision, const Eigen::MatrixXd& shapes);
+
+  /// Degrees of freedom that the fit took of the part along the modes.
+  void set_fitted(double dof) { fitted_ = dof; }
+  /// Mean square, in units of the noise's variance, that the mesh and the basis leave of each row.
+  void set_numerics(double mean_square) { numerics_ = mean_square; }
+
+  /// Mean square along the modes a degree of freedom beyond what noise and numerics leave [noise variances].
+  double excess() const;
+  /// Standard deviation of `excess` under noise alone.
+  double deviation() const;
+  /// (excess - tolerated) / deviation.
+  double z() const;
+  /// Passed while z <= bound.
+  bool passes() const { return z() <= bound; }
+  /// Mean square of what is unexplained, over all rows, in noise variances; 0 where it is no more than chance.
+  double discrepancy() const;
+  bool empty() const { return frames_ == 0; }
+
+  static constexpr double tolerated = 1.0;  ///< noise variances: unexplained motion below one frame's noise
+  static constexpr double bound = 3.0;      ///< standard deviations
+
+ private:
+  double noise_level() const;  ///< mean square of the rest a degree of freedom, at least the stated noise's
+
+  double along_ = 0.0, along_dof_ = 0.0, rest_ = 0.0, rest_dof_ = 0.0;
+  double product_ = 0.0, square_ = 0.0;  ///< of successive frames' rest, for its memory
+  double fitted_ = 0.0, numerics_ = 0.0, rows_ = 0.0;
+  int frames_ = 0;
+  Eigen::VectorXd last_;
+};
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "tissue_stiffness/effects/load_error.hpp"
+#include "tissue_stiffness/forward/modal_step.hpp"
+#include "tissue_stiffness/forward/reduced_model.hpp"
+
+namespace tissue_stiffness {
+
+/// Motion of a reduced model at rest under the columns of a load's error basis, each a load of its own: what one standard
+/// deviation of each error adds to the motion under the measured load.
+class LoadErrorResponse {
+ public:
+  /// At theta, from `start` [s] on. `course`: the measured load that the model's load terms refer to.
+  LoadErrorResponse(const ReducedModel& reduced, const Eigen::VectorXd& theta, double start,
+                    std::shared_ptr<const Course> course, const LoadErrorBasis& basis);
+
+  void advance(double time);
+  /// Displacement, 3n x columns, zero away from the reduced model's focus [m].
+  Eigen::MatrixXd displacements() const;
+
+ private:
+  Eigen::MatrixXd modal_forces(double time) const;
+
+  const ReducedModel& reduced_;
+  std::shared_ptr<const Course> course_;
+  const LoadErrorBasis& basis_;
+  double time_;
+  std::shared_ptr<const ReducedModes> modes_;
+  Eigen::MatrixXd patterns_;  ///< modal force of a unit load, modes x components
+  ModalStep step_;
+  Eigen::MatrixXd forces_;               ///< modes x columns
+  std::vector<Eigen::MatrixXd> states_;  ///< a column's displacement, velocity and branches each
+};
+
+}  // namespace tissue_stiffness

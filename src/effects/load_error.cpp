@@ -1,0 +1,133 @@
+#include "tissue_stiffness/effects/load_error.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr int kMostKnots = 40;      // of the noise: longer recordings have them further apart
+constexpr int kSamples = 200;       // of a load, to find its size and its rate
+constexpr double kRateSpan = 0.02;  // [s] over which a rate of change is read
+constexpr double kTurning = 0.1;    // of the rms rate: below it the hysteresis changes its sign gradually
+
+Eigen::VectorXd rate(const LoadErrorBasis::Load& load, double time) {
+  return (load(time + kRateSpan) - load(time - kRateSpan)) / (2.0 * kRateSpan);
+}
+
+}  // namespace
+
+bool LoadTolerance::exact() const {
+  for (const double std : {gain, bias, noise, delay, hysteresis, direction}) {
+    if (std != 0.0) return false;
+  }
+  return true;
+}
+
+std::vector<std::pair<std::string, std::string>> load_error_keys(const std::string& unit, bool has_direction) {
+  const std::string absolute = " [" + unit + "], 1 sigma; ";
+  std::vector<std::pair<std::string, std::string>> keys{
+      {"gain", "relative error of the sensor's scale, 1 sigma; 0.1 when absent, 0 when `scale` is estimated"},
+      {"bias", "constant offset of each component" + absolute + "10 % of the largest load when absent"},
+      {"noise", "slow noise of each component" + absolute + "2 % of the largest load when absent"},
+      {"correlation_time", "of the slow noise [s]; 0.5 when absent"},
+      {"delay", "how late the load is stamped [s], 1 sigma; 0.01 when absent"},
+      {"hysteresis",
+       "offset along the sign of the load's rate of change" + absolute + "3 % of the largest load when absent"}};
+  if (has_direction)
+    keys.emplace_back("direction", "rotation of the sensor about each axis [rad], 1 sigma; 0.05 when absent");
+  return keys;
+}
+
+LoadTolerance read_load_tolerance(const Value& arguments, bool has_direction) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  LoadTolerance out;
+  if (arguments.has("scale") && arguments.at("scale").type() == Value::Type::map) out.gain = 0.0;
+  out.gain = arguments.number_or("gain", out.gain, 0.0, 1.0, "-");
+  out.bias = arguments.number_or("bias", out.bias, 0.0, infinity, "");
+  out.noise = arguments.number_or("noise", out.noise, 0.0, infinity, "");
+  out.correlation_time =
+      arguments.number_or("correlation_time", out.correlation_time, std::numeric_limits<double>::min(), infinity, "s");
+  out.delay = arguments.number_or("delay", out.delay, 0.0, 10.0, "s");
+  out.hysteresis = arguments.number_or("hysteresis", out.hysteresis, 0.0, infinity, "");
+  out.direction = has_direction ? arguments.number_or("direction", out.direction, 0.0, 1.0, "rad") : 0.0;
+  return out;
+}
+
+LoadErrorBasis::LoadErrorBasis(const LoadTolerance& tolerance, const Load& measured, int components, double begin,
+                               double end)
+    : tolerance_(tolerance), components_(components), begin_(begin) {
+  double largest = 0.0, square = 0.0;
+  for (int k = 0; k <= kSamples; ++k) {
+    const double time = begin + (end - begin) * k / kSamples;
+    largest = std::max(largest, measured(time).norm());
+    square += rate(measured, time).squaredNorm();
+  }
+  rate_ = std::sqrt(square / (components * (kSamples + 1)));
+  for (double* std : {&tolerance_.bias, &tolerance_.noise, &tolerance_.hysteresis}) {
+    if (*std < 0.0) *std *= -largest;
+  }
+  add("gain", 1, tolerance_.gain, "-");
+  add("bias", components, tolerance_.bias, "");
+  add("delay", 1, tolerance_.delay, "s");
+  add("hysteresis", components, tolerance_.hysteresis, "");
+  if (components == 3) add("direction", 3, tolerance_.direction, "rad");
+  if (!(tolerance_.noise > 0.0)) return;
+  const double span = std::max(end - begin, 1e-6);
+  const int count = std::clamp(static_cast<int>(std::ceil(span / tolerance_.correlation_time)) + 1, 2, kMostKnots);
+  spacing_ = span / (count - 1);
+  Eigen::MatrixXd covariance(count, count);
+  for (int i = 0; i < count; ++i) {
+    for (int j = 0; j < count; ++j) covariance(i, j) = std::exp(-std::abs(i - j) * spacing_ / tolerance_.correlation_time);
+  }
+  knots_ = Eigen::MatrixXd(covariance.llt().matrixL());
+  add("noise", count * components, tolerance_.noise, "");
+}
+
+void LoadErrorBasis::add(const std::string& name, int count, double std, const std::string& unit) {
+  if (!(std > 0.0)) return;
+  groups_.push_back({name, size_, count, std, unit});
+  size_ += count;
+}
+
+// Beyond the last knot the noise is forgotten.
+Eigen::RowVectorXd LoadErrorBasis::hats(double time) const {
+  Eigen::RowVectorXd out = Eigen::RowVectorXd::Zero(knots_.rows());
+  const double at = (time - begin_) / spacing_, last = static_cast<double>(knots_.rows() - 1);
+  const double inside = std::clamp(at, 0.0, last);
+  const auto low = std::min(static_cast<Eigen::Index>(inside), knots_.rows() - 2);
+  const double share = inside - static_cast<double>(low);
+  out[low] = 1.0 - share;
+  out[low + 1] = share;
+  return out * std::exp(-std::abs(at - inside) * spacing_ / tolerance_.correlation_time);
+}
+
+Eigen::MatrixXd LoadErrorBasis::value(const Load& measured, double time) const {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(components_, size_);
+  const Eigen::VectorXd load = measured(time), slope = rate(measured, time);
+  for (const Group& group : groups_) {
+    auto block = out.middleCols(group.first, group.count);
+    if (group.name == "gain") {
+      block = group.std * load;
+    } else if (group.name == "bias") {
+      block.diagonal().setConstant(group.std);
+    } else if (group.name == "delay") {
+      block = -group.std * slope;
+    } else if (group.name == "hysteresis") {
+      const double turning = std::max(kTurning * rate_, std::numeric_limits<double>::min());
+      block.diagonal() = group.std * (slope.array() / turning).tanh().matrix();
+    } else if (group.name == "direction") {
+      const Eigen::Vector3d force = load;
+      for (int i = 0; i < 3; ++i) block.col(i) = group.std * Eigen::Vector3d::Unit(i).cross(force);
+    } else {
+      const Eigen::RowVectorXd row = group.std * hats(time) * knots_;
+      for (int i = 0; i < components_; ++i) block.block(i, i * knots_.rows(), 1, knots_.rows()) = row;
+    }
+  }
+  return out;
+}
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,63 @@
+#include "tissue_stiffness/estimation/misfit_test.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr double kMostMemory = 0.95;
+constexpr double kBeyondChance = 2.0;  // standard deviations from which on an excess is believed
+
+}  // namespace
+
+void MisfitTest::add(const Eigen::VectorXd& residual, const Eigen::VectorXd& precision, const Eigen::MatrixXd& shapes) {
+  const Eigen::VectorXd root = precision.cwiseSqrt();
+  const Eigen::VectorXd r = root.cwiseProduct(residual);
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(root.asDiagonal() * shapes);
+  const Eigen::Index rank = qr.rank();
+  Eigen::VectorXd rotated = r;
+  rotated.applyOnTheLeft(qr.householderQ().setLength(rank).adjoint());
+  const double along = rotated.head(rank).squaredNorm();
+  rotated.head(rank).setZero();
+  rotated.applyOnTheLeft(qr.householderQ().setLength(rank));
+  const double used = static_cast<double>((precision.array() > 0.0).count());
+  along_ += along;
+  along_dof_ += static_cast<double>(rank);
+  rest_ += rotated.squaredNorm();
+  rest_dof_ += used - static_cast<double>(rank);
+  rows_ += used;
+  if (last_.size() == rotated.size()) {
+    product_ += last_.dot(rotated);
+    square_ += 0.5 * (last_.squaredNorm() + rotated.squaredNorm());
+  }
+  last_ = rotated;
+  ++frames_;
+}
+
+double MisfitTest::noise_level() const {
+  return rest_dof_ > 0.0 ? std::max(1.0, rest_ / rest_dof_) : 1.0;
+}
+
+double MisfitTest::excess() const {
+  const double dof = std::max(1.0, along_dof_ - fitted_);
+  return along_ / dof - noise_level() - numerics_ * rows_ / std::max(1.0, along_dof_);
+}
+
+double MisfitTest::deviation() const {
+  const double memory = square_ > 0.0 ? std::clamp(product_ / square_, 0.0, kMostMemory) : 0.0;
+  const double repeated = (1.0 + memory * memory) / (1.0 - memory * memory);
+  return noise_level() * std::sqrt(2.0 * repeated / std::max(1.0, along_dof_ - fitted_));
+}
+
+double MisfitTest::z() const {
+  return frames_ > 0 ? (excess() - tolerated * noise_level()) / deviation() : 0.0;
+}
+
+double MisfitTest::discrepancy() const {
+  if (frames_ == 0 || excess() < kBeyondChance * deviation()) return 0.0;
+  return excess() * along_dof_ / std::max(1.0, rows_);
+}
+
+}  // namespace tissue_stiffness
