@@ -9,10 +9,11 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr int kMostKnots = 40;      // of the noise: longer recordings have them further apart
-constexpr int kSamples = 200;       // of a load, to find its size and its rate
-constexpr double kRateSpan = 0.02;  // [s] over which a rate of change is read
-constexpr double kTurning = 0.1;    // of the rms rate: below it the hysteresis changes its sign gradually
+constexpr double kKnotsPerTime = 12.0;  // of the noise, a correlation time: 3 % of its variance is faster
+constexpr int kMostKnots = 120;         // of the noise: longer recordings have them further apart
+constexpr int kSamples = 200;          // of a load, to find its size and its rate
+constexpr double kRateSpan = 0.02;     // [s] over which a rate of change is read
+constexpr double kTurning = 0.1;       // of the rms rate: below it the hysteresis changes its sign gradually
 
 Eigen::VectorXd rate(const LoadErrorBasis::Load& load, double time) {
   return (load(time + kRateSpan) - load(time - kRateSpan)) / (2.0 * kRateSpan);
@@ -77,7 +78,8 @@ LoadErrorBasis::LoadErrorBasis(const LoadTolerance& tolerance, const Load& measu
   if (components == 3) add("direction", 3, tolerance_.direction, "rad");
   if (!(tolerance_.noise > 0.0)) return;
   const double span = std::max(end - begin, 1e-6);
-  const int count = std::clamp(static_cast<int>(std::ceil(span / tolerance_.correlation_time)) + 1, 2, kMostKnots);
+  const int count =
+      std::clamp(static_cast<int>(std::ceil(kKnotsPerTime * span / tolerance_.correlation_time)) + 1, 2, kMostKnots);
   spacing_ = span / (count - 1);
   Eigen::MatrixXd covariance(count, count);
   for (int i = 0; i < count; ++i) {

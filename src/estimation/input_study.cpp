@@ -16,12 +16,14 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr std::size_t kMostFrames = 150;  // of a long recording, evenly spread
-constexpr int kMostIterations = 4;
+constexpr int kMostIterations = 6;
+constexpr double kNoise = 2.0;  // mean square over the noise's that no other start can better by much
 constexpr int kMostCuts = 3;
 constexpr double kSettled = 0.1;       // posterior standard deviations
 constexpr double kConstantStep = 0.5;  // of a tolerance, for its central difference
-constexpr int kModes = 12;             // along which missing physics is looked for
+constexpr Eigen::Index kModes = 12;    // along which missing physics is looked for
 constexpr double kPlausible = 3.0;     // standard deviations
+constexpr double kMisstated = 1.5;     // times its tolerance: what a stated number may be wrong by
 
 // Poisson's ratio is folded into one matrix while it is known; a model in which it is free keeps it apart.
 ModelSettings with_free_ratio(ModelSettings settings) {
@@ -94,11 +96,22 @@ struct Normal {
       : information(Eigen::MatrixXd::Zero(size, size)),
         gradient(Eigen::VectorXd::Zero(size)),
         constants(Eigen::MatrixXd::Zero(size, count)) {}
+
+  /// Counts every frame so many times: it stands for those that were left out.
+  void repeat(double times) {
+    information *= times;
+    gradient *= times;
+    constants *= times;
+    cost *= times;
+    rows *= times;
+  }
 };
 
+/// One frame, linearised. The columns of the loads' errors are `modes` times their modal amplitudes.
 struct Row {
   Eigen::VectorXd error, precision;
-  Eigen::MatrixXd z, constants, modes;
+  Eigen::MatrixXd parameters, constants, poses;  ///< d row / d each
+  Eigen::MatrixXd modes;                         ///< d row / d amplitude of each mode
 };
 
 }  // namespace
@@ -125,18 +138,22 @@ class InputFit {
     size_ = p_;
     for (const auto& [topic, course] : uncertain.courses()) add_load(topic, course);
     for (std::size_t i = 0; i < base.settings().observations.size(); ++i) add_pose(i);
+    inflation_ = Eigen::VectorXd::Ones(size_);
   }
 
   InputStudy::Answer run() {
     InputStudy::Answer answer;
     answer.fitted = !base_.nonlinear();
-    Eigen::VectorXd z = Eigen::VectorXd::Zero(size_);
-    z.head(p_) = q_.w;
-    Normal normal = linearise(z);
-    for (int k = 0; answer.fitted && k < kMostIterations; ++k) {
-      if (!improve(z, normal)) break;
+    Fit best = fit_from(q_.w, answer.fitted);
+    if (answer.fitted && scale(best.normal) > kNoise) {
+      Fit other = fit_from(prior_mean_, true);
+      const double s = std::min(scale(best.normal), scale(other.normal));
+      if (total(other.z, other.normal, s) < total(best.z, best.normal, s)) best = std::move(other);
     }
-    finish(z, normal, answer);
+    if (answer.fitted) test(best, answer);
+    tell_inputs(best.z, inverse(posterior_information(best.normal)), answer);
+    if (answer.fitted && size_ > p_) best = tempered_fit(answer);
+    finish(best, answer);
     return answer;
   }
 
@@ -205,7 +222,7 @@ class InputFit {
   }
 
   Row row(const Frame& frame, const std::vector<Eigen::VectorXd>& thetas, const Eigen::MatrixXd& u,
-          const std::vector<LoadErrorResponse>& responses, const Eigen::MatrixXd& shapes, const Eigen::VectorXd& z) {
+          const Eigen::MatrixXd& shapes, const Eigen::VectorXd& z) const {
     const auto predict = [&](std::size_t i) {
       return predict_frame(base_, operators_, frame, thetas[i], u.col(static_cast<Eigen::Index>(i)));
     };
@@ -214,12 +231,12 @@ class InputFit {
       return predict_along(base_, operators_, frame, thetas[0], u.col(0), there, motions);
     };
     const Eigen::Index rows = there.predicted.size();
-    Row out;
-    out.z = Eigen::MatrixXd::Zero(rows, size_);
     const auto np = static_cast<std::size_t>(p_), nc = constants_.size();
+    Row out;
+    out.parameters.resize(rows, p_);
     for (std::size_t i = 0; i < np; ++i) {
       const Eigen::VectorXd change = predict(1 + i).predicted - predict(1 + np + i).predicted;
-      out.z.col(static_cast<Eigen::Index>(i)) = change / (2.0 * q_.spread[static_cast<Eigen::Index>(i)]);
+      out.parameters.col(static_cast<Eigen::Index>(i)) = change / (2.0 * q_.spread[static_cast<Eigen::Index>(i)]);
     }
     out.constants.resize(rows, static_cast<Eigen::Index>(nc));
     for (std::size_t i = 0; i < nc; ++i) {
@@ -227,89 +244,133 @@ class InputFit {
       out.constants.col(static_cast<Eigen::Index>(i)) =
           (predict(high).predicted - predict(high + nc).predicted) / (2.0 * kConstantStep);
     }
-    // The measured load is too large by B eta: the motion under the true one is smaller.
-    for (std::size_t i = 0; i < loads_.size(); ++i) {
-      out.z.middleCols(loads_[i].first, loads_[i].basis.size()) = -along(responses[i].displacements());
-    }
-    Eigen::VectorXd posed = there.predicted;
-    if (!poses_.empty()) {
-      const Eigen::MatrixXd rigid = along(rigid_);
-      Eigen::Index first = 0;
-      for (const Observation& observation : frame.observations) {
-        const Eigen::Index count =
-            operators_[static_cast<std::size_t>(observation.source)]->predict(observation, u.col(0)).predicted.size();
-        for (const Pose& pose : poses_) {
-          if (pose.source != observation.source) continue;
-          out.z.block(first, pose.first, count, 3) = pose.offset * rigid.block(first, 0, count, 3);
-          out.z.block(first, pose.first + 3, count, 3) = pose.rotation * rigid.block(first, 3, count, 3);
-          posed.segment(first, count) += out.z.block(first, pose.first, count, 6) * z.segment(pose.first, 6);
-        }
-        first += count;
-      }
-    }
-    Prediction with_pose = there;
-    with_pose.predicted = posed;
-    out.error = there.measured - posed;
-    out.precision = row_weights(with_pose).cwiseQuotient(there.sigma.cwiseAbs2());
-    if (shapes.size() > 0) {
-      const Eigen::Index most = std::max<Eigen::Index>(1, rows / 4);
-      out.modes = along(shapes.leftCols(std::min(shapes.cols(), most)));
-    }
+    out.modes = along(shapes);
+    out.poses = pose_columns(frame, u.col(0), rows, along);
+    Prediction posed = there;
+    posed.predicted += out.poses * z.tail(out.poses.cols());
+    out.error = there.measured - posed.predicted;
+    out.precision = row_weights(posed).cwiseQuotient(there.sigma.cwiseAbs2());
     clean(out);
+    return out;
+  }
+
+  template <typename Along>
+  Eigen::MatrixXd pose_columns(const Frame& frame, const Eigen::VectorXd& u, Eigen::Index rows, const Along& along) const {
+    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(rows, 6 * static_cast<Eigen::Index>(poses_.size()));
+    if (poses_.empty()) return out;
+    const Eigen::MatrixXd rigid = along(rigid_);
+    Eigen::Index first = 0;
+    for (const Observation& observation : frame.observations) {
+      const auto& sensor = *operators_[static_cast<std::size_t>(observation.source)];
+      const Eigen::Index count = sensor.predict(observation, u).predicted.size();
+      for (std::size_t k = 0; k < poses_.size(); ++k) {
+        if (poses_[k].source != observation.source) continue;
+        const Eigen::Index column = 6 * static_cast<Eigen::Index>(k);
+        out.block(first, column, count, 3) = poses_[k].offset * rigid.block(first, 0, count, 3);
+        out.block(first, column + 3, count, 3) = poses_[k].rotation * rigid.block(first, 3, count, 3);
+      }
+      first += count;
+    }
     return out;
   }
 
   static void clean(Row& row) {
     for (Eigen::Index r = 0; r < row.error.size(); ++r) {
-      const bool good = std::isfinite(row.error[r]) && std::isfinite(row.precision[r]) && row.z.row(r).allFinite() &&
-                        row.constants.row(r).allFinite() && (row.modes.size() == 0 || row.modes.row(r).allFinite());
+      const bool good = std::isfinite(row.error[r]) && std::isfinite(row.precision[r]) &&
+                        row.parameters.row(r).allFinite() && row.constants.row(r).allFinite() &&
+                        row.poses.row(r).allFinite() && row.modes.row(r).allFinite();
       if (good) continue;
       row.error[r] = row.precision[r] = 0.0;
-      row.z.row(r).setZero();
-      row.constants.row(r).setZero();
-      if (row.modes.size() > 0) row.modes.row(r).setZero();
+      for (Eigen::MatrixXd* part : {&row.parameters, &row.constants, &row.poses, &row.modes}) part->row(r).setZero();
     }
   }
 
+  // Shows every frame, linearised at z, with the modal amplitudes of the loads' errors.
   template <typename Visit>
-  void each_row(const Eigen::VectorXd& z, bool with_modes, const Visit& visit) {
+  void each_row(const Eigen::VectorXd& z, const Visit& visit) {
     correct_loads(z);
     const std::vector<Eigen::VectorXd> thetas = points(z.head(p_));
     const auto all = runs_.start_all(thetas, q_.start);
     std::vector<LoadErrorResponse> responses;
     for (const Load& load : loads_) responses.emplace_back(runs_, thetas[0], q_.start, load.course, load.basis);
-    Eigen::MatrixXd shapes;
-    if (with_modes) {
-      const ReducedTrajectory at_rest(runs_, thetas[0], q_.start);
-      shapes = at_rest.mode_shapes(std::min(kModes, static_cast<int>(at_rest.modes()->square.size())));
-    }
+    const ReducedTrajectory at_rest(runs_, thetas[0], q_.start);
+    const Eigen::MatrixXd shapes = at_rest.mode_shapes(static_cast<int>(at_rest.modes()->square.size()));
     Eigen::MatrixXd u = Eigen::MatrixXd::Zero(base_.fem().dof_count(), static_cast<Eigen::Index>(thetas.size()));
+    Eigen::MatrixXd amplitudes(shapes.cols(), load_columns());
     for (const Frame* frame : frames_) {
       std::vector<double> times;
       for (const Eigen::VectorXd& theta : thetas) times.push_back(frame->time - base_.delay(theta));
       all->advance(times);
       all->displacements(u);
-      for (LoadErrorResponse& response : responses) response.advance(times[0]);
-      visit(row(*frame, thetas, u, responses, shapes, z));
+      for (std::size_t i = 0; i < loads_.size(); ++i) {
+        responses[i].advance(times[0]);
+        // The measured load is too large by B eta: the motion under the true one is smaller.
+        amplitudes.middleCols(loads_[i].first - p_, loads_[i].basis.size()) = -responses[i].amplitudes();
+      }
+      visit(row(*frame, thetas, u, shapes, z), amplitudes);
     }
   }
 
+  Eigen::Index load_columns() const { return size_ - p_ - 6 * static_cast<Eigen::Index>(poses_.size()); }
+
   Normal linearise(const Eigen::VectorXd& z) {
     Normal out(size_, static_cast<Eigen::Index>(constants_.size()));
-    each_row(z, false, [&](const Row& row) {
-      const Eigen::MatrixXd weighted = row.precision.asDiagonal() * row.z;
-      out.information += repeated_ * row.z.transpose() * weighted;
-      out.gradient += repeated_ * weighted.transpose() * row.error;
-      out.constants += repeated_ * weighted.transpose() * row.constants;
-      out.cost += repeated_ * row.error.dot(row.precision.cwiseProduct(row.error));
-      out.rows += repeated_ * static_cast<double>((row.precision.array() > 0.0).count());
+    const Eigen::Index l = load_columns(), c = size_ - p_ - l;
+    each_row(z, [&](const Row& row, const Eigen::MatrixXd& amplitudes) {
+      Eigen::MatrixXd own(row.error.size(), p_ + c);
+      own << row.parameters, row.poses;
+      const Eigen::MatrixXd weighted = row.precision.asDiagonal() * own, seen = row.precision.asDiagonal() * row.modes;
+      const Eigen::MatrixXd direct = weighted.transpose() * own;
+      const Eigen::MatrixXd across = (weighted.transpose() * row.modes) * amplitudes;
+      const Eigen::VectorXd pull = weighted.transpose() * row.error;
+      const Eigen::MatrixXd constants = weighted.transpose() * row.constants;
+      out.information.topLeftCorner(p_, p_) += direct.topLeftCorner(p_, p_);
+      out.information.topRightCorner(p_, c) += direct.topRightCorner(p_, c);
+      out.information.bottomRightCorner(c, c) += direct.bottomRightCorner(c, c);
+      out.information.block(0, p_, p_, l) += across.topRows(p_);
+      out.information.block(p_, p_ + l, l, c) += across.bottomRows(c).transpose();
+      out.information.block(p_, p_, l, l).noalias() +=
+          amplitudes.transpose() * ((seen.transpose() * row.modes) * amplitudes);
+      out.gradient.head(p_) += pull.head(p_);
+      out.gradient.tail(c) += pull.tail(c);
+      out.gradient.segment(p_, l) += amplitudes.transpose() * (seen.transpose() * row.error);
+      out.constants.topRows(p_) += constants.topRows(p_);
+      out.constants.bottomRows(c) += constants.bottomRows(c);
+      out.constants.middleRows(p_, l) += amplitudes.transpose() * (seen.transpose() * row.constants);
+      out.cost += row.error.dot(row.precision.cwiseProduct(row.error));
+      out.rows += static_cast<double>((row.precision.array() > 0.0).count());
     });
+    out.information.triangularView<Eigen::StrictlyLower>() = out.information.transpose();
+    out.repeat(repeated_);
     return out;
   }
 
-  double scale(const Normal& n) const { return std::max(1.0, n.cost / std::max(1.0, n.rows)); }
+  struct Fit {
+    Eigen::VectorXd z;
+    Normal normal;
+  };
+  Fit fit_from(const Eigen::VectorXd& w, bool iterate) {
+    Eigen::VectorXd z = Eigen::VectorXd::Zero(size_);
+    z.head(p_) = w;
+    Fit fit{z, linearise(z)};
+    for (int k = 0; iterate && k < kMostIterations && improve(fit.z, fit.normal); ++k) {
+    }
+    return fit;
+  }
+
+  // Where a load's course is uncertain, inertia alone tells the modulus, by a small part of the motion, which structure
+  // that the residual may hide imitates. So that structure is taken for one error that all rows share, and the data tell as
+  // much as a tempered likelihood has it (Miller & Dunson 2019). Inputs that are implausible count as wide as they would
+  // have to be.
+  Fit tempered_fit(const InputStudy::Answer& answer) {
+    const double hidden = std::max(0.0, answer.test.excess()) + answer.test.deviation();
+    temperature_ = 1.0 + hidden * answer.test.structured_dof() * repeated_;
+    return fit_from(q_.w, true);
+  }
+
+  double scale(const Normal& n) const { return temperature_ * std::max(1.0, n.cost / std::max(1.0, n.rows)); }
   Eigen::VectorXd prior() const {
-    Eigen::VectorXd out = Eigen::VectorXd::Ones(size_);
+    Eigen::VectorXd out = inflation_.cwiseAbs2().cwiseInverse();
     out.head(p_) = prior_information_;
     return out;
   }
@@ -345,34 +406,37 @@ class InputFit {
     return false;
   }
 
-  void finish(const Eigen::VectorXd& z, const Normal& normal, InputStudy::Answer& answer) {
-    const double s = scale(normal);
-    const Eigen::MatrixXd information = posterior_information(normal), posterior = inverse(information);
-    answer.w = z.head(p_);
-    answer.rows = normal.rows;
-    answer.from_noise = inverse(information.topLeftCorner(p_, p_));
-    answer.pose_shift = Eigen::VectorXd::Zero(p_);
-    for (const Pose& pose : poses_) {
-      answer.pose_shift -= answer.from_noise * information.block(0, pose.first, p_, 6) * z.segment(pose.first, 6);
-    }
+  void finish(const Fit& fit, InputStudy::Answer& answer) {
+    const double tempered = scale(fit.normal);
+    const Eigen::MatrixXd posterior = inverse(posterior_information(fit.normal));
+    Eigen::MatrixXd own = temperature_ / tempered * fit.normal.information.topLeftCorner(p_, p_);
+    own.diagonal() += prior_information_;
+    answer.w = fit.z.head(p_);
+    answer.rows = fit.normal.rows;
+    answer.from_noise = inverse(own);
     answer.from_loads = posterior.topLeftCorner(p_, p_) - answer.from_noise;
-    const Eigen::MatrixXd shifts = (posterior * normal.constants / s).topRows(p_);
-    answer.from_constants = shifts * shifts.transpose() + scale_shift(shifts, posterior, information);
-    if (answer.fitted) {
-      each_row(z, true, [&](const Row& row) {
-        if (row.modes.size() > 0) answer.test.add(row.error, row.precision, row.modes);
-      });
-      double fitted = static_cast<double>(p_);
-      for (Eigen::Index i = p_; i < size_; ++i) fitted += std::max(0.0, 1.0 - posterior(i, i));
-      answer.test.set_fitted(fitted / repeated_);
+    const Eigen::MatrixXd shifts = (posterior * fit.normal.constants / tempered).topRows(p_);
+    answer.from_constants = shifts * shifts.transpose() + scale_shift(shifts, posterior, fit.normal.information / tempered);
+    for (const Load& load : loads_) {
+      answer.corrections[load.topic] = {load.basis, fit.z.segment(load.first, load.basis.size())};
     }
-    tell_inputs(z, posterior, answer);
     correct_loads(Eigen::VectorXd::Zero(size_));
+  }
+
+  void test(const Fit& fit, InputStudy::Answer& answer) {
+    each_row(fit.z, [&](const Row& row, const Eigen::MatrixXd&) {
+      const Eigen::Index most = std::min<Eigen::Index>(kModes, std::max<Eigen::Index>(1, row.error.size() / 4));
+      answer.test.add(row.error, row.precision, row.modes.leftCols(std::min(most, row.modes.cols())));
+    });
+    const Eigen::MatrixXd left = inverse(posterior_information(fit.normal));
+    double fitted = static_cast<double>(p_);
+    for (Eigen::Index i = p_; i < size_; ++i) fitted += std::max(0.0, 1.0 - left(i, i));
+    answer.test.set_fitted(fitted);
   }
 
   // Lengths that are all too large by a share: K grows by it, a mass by its cube, the force of a pressure by its square.
   Eigen::MatrixXd scale_shift(const Eigen::MatrixXd& constant_shifts, const Eigen::MatrixXd& posterior,
-                              const Eigen::MatrixXd& information) const {
+                              const Eigen::MatrixXd& information) const {  // of the data alone
     const double tolerance = base_.settings().mesh.scale_tolerance;
     Eigen::VectorXd shift = Eigen::VectorXd::Zero(p_);
     for (Eigen::Index i = 0; i < p_; ++i) {
@@ -385,21 +449,21 @@ class InputFit {
     }
     for (const Load& load : loads_) {
       if (load.basis.components() != 1 || load.basis.groups().front().name != "gain") continue;
-      Eigen::VectorXd column = information.col(load.first);
-      column[load.first] -= 1.0;  // without the prior
-      shift -= 2.0 / load.basis.groups().front().std * (posterior * column).head(p_);
+      shift -= 2.0 / load.basis.groups().front().std * (posterior * information.col(load.first)).head(p_);
     }
     return tolerance * tolerance * shift * shift.transpose();
   }
 
-  void tell_inputs(const Eigen::VectorXd& z, const Eigen::MatrixXd& posterior, InputStudy::Answer& answer) const {
+  void tell_inputs(const Eigen::VectorXd& z, const Eigen::MatrixXd& posterior, InputStudy::Answer& answer) {
     for (const Load& load : loads_) {
       const std::string unit = load.basis.components() == 1 ? "Pa" : "N";
       for (const LoadErrorBasis::Group& group : load.basis.groups()) {
         tell(load.topic, group.name, group.unit.empty() ? unit : group.unit, group.std, load.first + group.first,
              group.count, z, posterior, answer);
       }
-      answer.corrections[load.topic] = {load.basis, z.segment(load.first, load.basis.size())};
+      // One sensor: what makes one of its errors implausible is believed of all.
+      const double widest = inflation_.segment(load.first, load.basis.size()).maxCoeff();
+      inflation_.segment(load.first, load.basis.size()).setConstant(widest);
     }
     for (const Pose& pose : poses_) {
       const std::string topic = base_.settings().observations[static_cast<std::size_t>(pose.source)].topic;
@@ -410,16 +474,17 @@ class InputFit {
   }
 
   // A group whose estimate is further from zero than its tolerance allows is implausible.
-  static void tell(const std::string& input, const std::string& error, const std::string& unit, double std,
-                   Eigen::Index first, Eigen::Index count, const Eigen::VectorXd& z, const Eigen::MatrixXd& posterior,
-                   InputStudy::Answer& answer) {
+  void tell(const std::string& input, const std::string& error, const std::string& unit, double std, Eigen::Index first,
+            Eigen::Index count, const Eigen::VectorXd& z, const Eigen::MatrixXd& posterior, InputStudy::Answer& answer) {
     const double n = static_cast<double>(count);
     const double square = z.segment(first, count).squaredNorm();
     const Eigen::VectorXd left = posterior.diagonal().segment(first, count).cwiseMin(1.0);
     const double learnt = (1.0 - left.array()).sum();
     answer.inputs.push_back({input, error, unit, std, std * std::sqrt(square / n), std * std::sqrt(left.mean())});
-    const double bound = count > 3 ? learnt + kPlausible * std::sqrt(2.0 * learnt) : kPlausible * kPlausible * learnt;
-    if (square <= std::max(bound, 1.0) || !answer.implausible.empty()) return;
+    const double chance = learnt + kPlausible * std::sqrt(2.0 * learnt);
+    if (square <= std::max({chance, kMisstated * kMisstated * learnt, 1.0})) return;
+    inflation_.segment(first, count).setConstant(std::sqrt(square / std::max(1.0, learnt)));
+    if (!answer.implausible.empty()) return;
     char text[200];
     std::snprintf(text, sizeof text, "the %s of %s would have to be %.3g %s, %.1f times its tolerance", error.c_str(),
                   input.c_str(), std * std::sqrt(square / n), unit.c_str(), std::sqrt(square / n));
@@ -434,11 +499,12 @@ class InputFit {
   const std::vector<UncertainConstant>& constants_;
   const Eigen::MatrixXd& rigid_;
   std::vector<const Frame*> frames_;
-  double repeated_ = 1.0;
+  double repeated_ = 1.0, temperature_ = 1.0;
   Eigen::Index p_ = 0, size_ = 0;
   Eigen::VectorXd prior_mean_, prior_information_;
   std::vector<Load> loads_;
   std::vector<Pose> poses_;
+  Eigen::VectorXd inflation_;  ///< of each nuisance beyond its tolerance; 1: plausible
 };
 
 InputStudy::InputStudy(const Model& model) : parts_(std::make_unique<Parts>(model)) {}

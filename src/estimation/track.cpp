@@ -25,8 +25,6 @@ constexpr std::size_t kEarly = 16;          // frames up to which the anchor may
 constexpr double kRevisitGrowth = 1.1;      // of the recording between moves of the anchor later
 constexpr double kScanMisfit = 4.0;         // mean square error over sigma that asks for a scan of the parameters
 constexpr int kScanPoints = 25;             // on either side of the prior's mean
-constexpr double kUnexplained = 0.1;        // of the motion's mean square: more, and a free run's fit is badly biased
-constexpr std::size_t kCorrectFrom = 16;    // frames before which a misfit is not taken for missing physics
 constexpr std::size_t kFirstBasisLook = 4;  // frames
 constexpr int kMostGrowths = 4;             // of the basis at once, by half each
 constexpr double kChangedSpread = 0.05;     // prior standard deviations, of the sigma points after a change
@@ -44,7 +42,6 @@ Track::Track(const Model& model, const Operators& operators, std::shared_ptr<For
 
 std::unique_ptr<Track> Track::twin() const {
   auto out = std::make_unique<Track>(model_, operators_, forward_, filter_, start_);
-  out->force_ = force_;
   out->doubt_ = doubt_;
   out->notes_ = notes_;
   return out;
@@ -68,23 +65,17 @@ void Track::expect(const Estimate& near) {
 void Track::begin() {
   ensemble_ = std::make_unique<Ensemble>(model_, *forward_, operators_);
   ensemble_->restart(filter_.sigma_points(), start_);
-  corrected_ = nullptr;
-  if (!force_) return;
-  corrected_ = std::make_unique<CorrectedRuns>(model_, *forward_, operators_, *force_);
-  corrected_->restart(filter_.sigma_points(), start_.time);
 }
 
-AnchoredFilter::Innovation Track::absorb(const Frame& frame, const Ensemble::Predicted& predicted) {
-  if (corrected_) return corrected_->absorb(frame, filter_);
+AnchoredFilter::Innovation Track::absorb(const Ensemble::Predicted& predicted) {
   Prediction now = predicted.central;
   now.predicted = filter_.predict(predicted.rows, filter_.mean());
   return filter_.update(now.measured, predicted.rows, now.sigma.cwiseAbs2(), row_weights(now));
 }
 
 AnchoredFilter::Innovation Track::absorb(const Frame& frame) {
-  if (corrected_) return corrected_->absorb(frame, filter_);
   ensemble_->advance(frame.time);
-  return absorb(frame, ensemble_->predict(frame));
+  return absorb(ensemble_->predict(frame));
 }
 
 Eigen::MatrixXd Track::covariance() const {
@@ -109,11 +100,7 @@ bool Track::settle_is_due(std::size_t count) const {
 
 // Linear models only, whose runs cost next to nothing.
 bool Track::scan_is_due(std::size_t count) const {
-  return !model_.nonlinear() && !force_ && count >= 2 * notes_.scanned && filter_.misfit_scale() >= kScanMisfit;
-}
-
-bool Track::correction_is_due(std::size_t count) const {
-  return !model_.nonlinear() && !start_.motion && count >= std::max(kCorrectFrom, 2 * notes_.corrected);
+  return !model_.nonlinear() && count >= 2 * notes_.scanned && filter_.misfit_scale() >= kScanMisfit;
 }
 
 bool Track::basis_is_due(std::size_t count) const {
@@ -121,7 +108,7 @@ bool Track::basis_is_due(std::size_t count) const {
 }
 
 bool Track::wants_look(std::size_t count) const {
-  const bool revisit = settle_is_due(count) && (stale() || scan_is_due(count) || correction_is_due(count));
+  const bool revisit = settle_is_due(count) && (stale() || scan_is_due(count));
   return revisit || basis_is_due(count);
 }
 
@@ -146,10 +133,6 @@ bool Track::look_at(const std::vector<Frame>& frames, const Checkpoint& checkpoi
   if (settle_is_due(count)) {
     moved = scan(run);
     moved = settle(run) || moved;
-    if (correct(run)) {
-      settle(run);
-      moved = true;
-    }
     if (moved) notes_.settled = count;
   }
   if (grow_basis(run)) {
@@ -181,8 +164,8 @@ std::unique_ptr<Track> Track::changed(const std::vector<Frame>& frames, const Ch
 
 std::unique_ptr<Track> Track::rolled(const std::vector<Frame>& frames, std::size_t first,
                                      const Checkpoint& checkpoint) const {
-  // Runs in full would never catch up with a camera, and corrected ones start at rest.
-  if (model_.nonlinear() || force_) return nullptr;
+  // Runs in full would never catch up with a camera.
+  if (model_.nonlinear()) return nullptr;
   const auto middle = frames.begin() + static_cast<std::ptrdiff_t>(first);
   const std::vector<Frame> early(frames.begin(), middle), later(middle, frames.end());
   try {
@@ -245,27 +228,6 @@ bool Track::scan(const FitProblem& problem) {
   return true;
 }
 
-// A free run that no parameters bring near the data lacks physics, and its best fit is biased. The parameters are then
-// read from runs corrected towards each frame, by as much as makes the data most likely. Decided anew whenever the
-// recording has doubled. True if the runs changed.
-bool Track::correct(const FitProblem& problem) {
-  if (!correction_is_due(problem.frames.size())) return false;
-  notes_.corrected = problem.frames.size();
-  const Eigen::VectorXd w = filter_.mean();
-  const FreeFit free = free_fit(problem, w);
-  const bool lacking = free.cost > kScanMisfit * free.rows && free.cost > kUnexplained * motion_cost(problem, w);
-  const auto correction = lacking ? choose_correction(problem, w) : std::nullopt;
-  if (!correction) {
-    if (!force_) return false;
-    force_.reset();
-    replay(problem, w, filter_.spread());
-    return true;
-  }
-  force_ = correction->force;
-  replay(problem, correction->w, (correction->step.array() > 0.0).select(correction->step, filter_.spread()));
-  return true;
-}
-
 // What the reduced basis leaves out, asked anew whenever the recording has doubled; the basis grows until it is a small
 // part of the noise. True if it grew.
 bool Track::grow_basis(const FitProblem& problem) {
@@ -295,7 +257,6 @@ void Track::replay(const FitProblem& problem, const Eigen::VectorXd& anchor, con
     problem.checkpoint();
     absorb(frame);
   }
-  if (corrected_) ensemble_->advance(problem.frames.back().time);
 }
 
 }  // namespace tissue_stiffness

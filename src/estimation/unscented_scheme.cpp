@@ -95,6 +95,7 @@ class UnscentedScheme : public Scheme {
     if (input_work_.valid()) input_work_.wait();
     input_work_ = {};
     inputs_.reset();
+    input_shift_.resize(0);
     mesh_left_.reset();
     settling_ = {};
     last_inputs_ = 0;
@@ -141,7 +142,7 @@ class UnscentedScheme : public Scheme {
     watch.lap("predict");
     Ensemble::Predicted predicted = track_->predict(frame);
     watch.lap("observe");
-    const AnchoredFilter::Innovation innovation = track_->absorb(frame, predicted);
+    const AnchoredFilter::Innovation innovation = track_->absorb(predicted);
     keep(frame);
     watch.lap("update");
     if (revisit()) predicted = track_->predict(frame);
@@ -179,7 +180,7 @@ class UnscentedScheme : public Scheme {
     if (std::optional<ChangeQuestion> again = past_.closer(frames_.size())) {
       return look_back(past_.track(), past_.frames_since_its_start(frames_), {std::move(again)});
     }
-    std::optional<ChangeQuestion> question = track_->corrected() ? std::nullopt : watch_.due();
+    std::optional<ChangeQuestion> question = watch_.due();
     const bool calm = !watch_.suspicious() || watch_.searched();
     const bool too_soon = replaying() && more_follow() &&
                           static_cast<double>(frames_.size()) < kReplayGrowth * static_cast<double>(looked_back_);
@@ -235,14 +236,20 @@ class UnscentedScheme : public Scheme {
     result.misfit = compare(frame.time, prediction_, at_rest(frame).predicted, model_->mesh().node_count());
     result.misfit.nis = innovation.nis;
     result.misfit.dof = innovation.dof;
-    estimate_ = summarise(model_->free_parameters(), published_mean(), covariance());
-    estimate_.time = frame.time;
-    estimate_.variance = variance_shares();
-    if (inputs_) estimate_.inputs = inputs_->inputs;
     validity_.add(result.misfit);
     watch_.add(result.misfit.rms_sigma * result.misfit.rms_sigma, filter);
+    unexplained_ = 0.0;
     settling_.add(published_mean(), covariance().diagonal().cwiseSqrt());
-    estimate_.state = state(result.misfit, estimate_.state_reason);
+    std::string why;
+    const EstimateState now = state(result.misfit, why);
+    // Beside a misfit that does not pass, no interval is tighter than that misfit allows.
+    if (now == EstimateState::doubtful || now == EstimateState::model_invalid) unexplained_ = validity_.excess();
+    estimate_ = summarise(model_->free_parameters(), published_mean(), covariance());
+    estimate_.time = frame.time;
+    estimate_.state = now;
+    estimate_.state_reason = std::move(why);
+    estimate_.variance = variance_shares();
+    if (inputs_) estimate_.inputs = inputs_->inputs;
     result.estimate = estimate_;
   }
 
@@ -254,7 +261,7 @@ class UnscentedScheme : public Scheme {
   Eigen::VectorXd published_mean() const {
     Eigen::VectorXd mean = track_->filter().mean();
     if (!model_->nonlinear()) mean -= mesh_shift();
-    if (inputs_) mean += inputs_->pose_shift;
+    if (input_shift_.size() > 0) mean += input_shift_;
     return mean;
   }
 
@@ -269,7 +276,7 @@ class UnscentedScheme : public Scheme {
     parts.loads = inputs_->from_loads;
     parts.constants = inputs_->from_constants;
     // The misfit may lie along what the parameters do, with all rows and frames alike (Kennedy & O'Hagan 2001).
-    parts.model = misfit_test().discrepancy() * inputs_->rows * inputs_->from_noise;
+    parts.model = std::max(misfit_test().discrepancy(), unexplained_) * inputs_->rows * inputs_->from_noise;
     return parts;
   }
 
@@ -400,20 +407,24 @@ class UnscentedScheme : public Scheme {
     }
   }
 
-  // A load's estimated error is taken off where that moves the estimate.
+  // A load's estimated error is taken off where that moves the estimate; what the runs under the corrected loads still
+  // leave to the fit's parameters is a shift.
   bool take_inputs() {
     inputs_ = std::move(studied_inputs_);
     if (!inputs_->fitted) return false;
     const Eigen::VectorXd std = track_->covariance().diagonal().cwiseSqrt();
-    const Eigen::VectorXd move = inputs_->w - inputs_->pose_shift - track_->filter().mean();
-    if (!(move.array().abs() > kMoved * std.array()).any()) return false;
-    stop();
-    for (const auto& [topic, correction] : inputs_->corrections) {
-      model_->courses().at(topic)->correct(correction.basis, correction.coefficients);
+    const Eigen::VectorXd move = inputs_->w - track_->filter().mean();
+    const bool moved = !inputs_->corrections.empty() && (move.array().abs() > kMoved * std.array()).any();
+    if (moved) {
+      stop();
+      for (const auto& [topic, correction] : inputs_->corrections) {
+        model_->courses().at(topic)->correct(correction.basis, correction.coefficients);
+      }
+      track_->rerun(frames_, inputs_->w);
+      validity_.reset();
     }
-    track_->rerun(frames_, inputs_->w - inputs_->pose_shift);
-    validity_.reset();
-    return true;
+    input_shift_ = inputs_->w - track_->filter().mean();
+    return moved;
   }
 
   // What the mesh does to the estimate, asked anew whenever the recording has doubled; in the background when a node runs.
@@ -466,8 +477,10 @@ class UnscentedScheme : public Scheme {
   std::unique_ptr<InputStudy> input_study_;       ///< only its own thread touches it
   InputStudy::Answer studied_inputs_;             ///< the same
   std::optional<InputStudy::Answer> inputs_;      ///< the last study's
+  Eigen::VectorXd input_shift_;                   ///< to the fit beside the inputs' errors; empty: not known yet
   std::size_t last_inputs_ = 0;                   ///< frames that there were then
   Settling settling_;
+  double unexplained_ = 0.0;              ///< mean square that does not pass, in noise variances
   std::future<void> study_, input_work_;  ///< last: their threads use the members above
 };
 

@@ -65,12 +65,10 @@ void LoadErrorResponse::advance(double time) {
   }
 }
 
-Eigen::MatrixXd LoadErrorResponse::displacements() const {
+Eigen::MatrixXd LoadErrorResponse::amplitudes() const {
   Eigen::MatrixXd modal(modes_->square.size(), static_cast<Eigen::Index>(states_.size()));
   for (std::size_t j = 0; j < states_.size(); ++j) modal.col(static_cast<Eigen::Index>(j)) = states_[j].col(0);
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(reduced_.basis().rows(), modal.cols());
-  reduced_.displacements(modes_->shapes * modal, out);
-  return out;
+  return modal;
 }
 
 }  // namespace tissue_stiffness

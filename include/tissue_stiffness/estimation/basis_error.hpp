@@ -1,6 +1,6 @@
 #pragma once
 
-#include "tissue_stiffness/estimation/choose_correction.hpp"
+#include "tissue_stiffness/estimation/fit_problem.hpp"
 #include "tissue_stiffness/forward/reduced_model.hpp"
 
 namespace tissue_stiffness {

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <limits>
 
-#include "tissue_stiffness/estimation/choose_correction.hpp"
+#include "tissue_stiffness/estimation/fit_problem.hpp"
 #include "tissue_stiffness/filter/anchored_filter.hpp"
 
 namespace tissue_stiffness {

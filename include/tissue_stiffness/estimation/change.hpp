@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "tissue_stiffness/estimation/choose_correction.hpp"
+#include "tissue_stiffness/estimation/fit_problem.hpp"
 
 namespace tissue_stiffness {
 

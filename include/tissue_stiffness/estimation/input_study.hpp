@@ -32,11 +32,10 @@ class InputStudy {
     Eigen::VectorXd coefficients;
   };
   struct Answer {
-    Eigen::VectorXd w;               ///< most probable parameters beside the nuisance, filter coordinates
-    Eigen::VectorXd pose_shift;      ///< what of it the poses' errors make up; the loads' are in `corrections`
-    Eigen::MatrixXd from_noise;      ///< covariance of w were every input exact
-    Eigen::MatrixXd from_loads;      ///< what the loads' and poses' errors add to it
-    Eigen::MatrixXd from_constants;  ///< what the constants' tolerances add
+    Eigen::VectorXd w;                              ///< most probable parameters beside the nuisance, filter coordinates
+    Eigen::MatrixXd from_noise;                     ///< covariance of w were every input exact
+    Eigen::MatrixXd from_loads;                     ///< what the loads' and poses' errors add to it
+    Eigen::MatrixXd from_constants;                 ///< what the constants' tolerances add
     std::map<std::string, Correction> corrections;  ///< by topic
     std::vector<InputUncertainty> inputs;           ///< every error that was considered, for the reports
     MisfitTest test;

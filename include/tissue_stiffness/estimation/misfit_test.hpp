@@ -29,6 +29,8 @@ class MisfitTest {
   bool passes() const { return z() <= bound; }
   /// Mean square of what is unexplained, over all rows, in noise variances; 0 where it is no more than chance.
   double discrepancy() const;
+  /// Degrees of freedom along the modes.
+  double structured_dof() const { return along_dof_; }
   bool empty() const { return frames_ == 0; }
 
   static constexpr double tolerated = 1.0;  ///< noise variances: unexplained motion below one frame's noise

@@ -7,9 +7,8 @@
 #include <vector>
 
 #include "tissue_stiffness/estimation/change.hpp"
-#include "tissue_stiffness/estimation/choose_correction.hpp"
-#include "tissue_stiffness/estimation/corrected_runs.hpp"
 #include "tissue_stiffness/estimation/ensemble.hpp"
+#include "tissue_stiffness/estimation/fit_problem.hpp"
 #include "tissue_stiffness/filter/anchored_filter.hpp"
 #include "tissue_stiffness/types/estimate.hpp"
 
@@ -35,8 +34,6 @@ class Track {
   Eigen::VectorXd theta(const Eigen::VectorXd& w) const { return model_.theta(w); }
   /// What the reduced basis leaves out of the surface's motion [m] (basis_error.hpp), as of the last look at it.
   std::optional<double> basis_error() const { return notes_.basis_error; }
-  /// The runs are corrected towards the frames, because the model lacks physics.
-  bool corrected() const { return corrected_ != nullptr; }
 
   bool begun() const { return ensemble_ != nullptr; }
   /// Lays the sigma points of a track that has not begun around an estimate that other means have found.
@@ -45,7 +42,7 @@ class Track {
   void advance(double time) { ensemble_->advance(time); }
   Ensemble::Predicted predict(const Frame& frame) const { return ensemble_->predict(frame); }
   /// Feeds the filter with a frame that was predicted.
-  AnchoredFilter::Innovation absorb(const Frame& frame, const Ensemble::Predicted& predicted);
+  AnchoredFilter::Innovation absorb(const Ensemble::Predicted& predicted);
   /// Advance, predict and absorb.
   AnchoredFilter::Innovation absorb(const Frame& frame);
   /// Weighted sum of the sigma points' displacements, 3n [m].
@@ -56,7 +53,7 @@ class Track {
   void rerun(const std::vector<Frame>& frames, const Eigen::VectorXd& w);
   /// Whether `look` would do anything after `count` frames.
   bool wants_look(std::size_t count) const;
-  /// Moves the sigma points until nothing moves, looks for a better minimum, for missing physics and at the basis, each
+  /// Moves the sigma points until nothing moves, looks for a better minimum and at the basis, each
   /// when its time has come. True if the runs changed: they are then at the last frame. False, too, when runs on the way
   /// diverge or the checkpoint throws a NumericalError: this track must then not be used.
   bool look(const std::vector<Frame>& frames, const Checkpoint& checkpoint);
@@ -66,7 +63,7 @@ class Track {
   std::unique_ptr<Track> changed(const std::vector<Frame>& frames, const ChangeQuestion& question,
                                  const Checkpoint& checkpoint, std::size_t& first) const;
   /// The same track without its first `first` frames, at the last frame: they are its prior, and its start the motion after
-  /// them. Null for a nonlinear model and for corrected runs, and when a run diverges or the checkpoint throws a
+  /// them. Null for a nonlinear model, and when a run diverges or the checkpoint throws a
   /// NumericalError.
   std::unique_ptr<Track> rolled(const std::vector<Frame>& frames, std::size_t first, const Checkpoint& checkpoint) const;
   /// Of a twin whose look changed nothing: not to be repeated.
@@ -78,19 +75,17 @@ class Track {
   bool stale() const;
   bool settle_is_due(std::size_t count) const;
   bool scan_is_due(std::size_t count) const;
-  bool correction_is_due(std::size_t count) const;
   bool basis_is_due(std::size_t count) const;
   bool settle(const FitProblem& problem);
   void move_anchor(const FitProblem& problem);
   bool scan(const FitProblem& problem);
-  bool correct(const FitProblem& problem);
   bool grow_basis(const FitProblem& problem);
   void replay(const FitProblem& problem, const Eigen::VectorXd& anchor, const Eigen::VectorXd& spread);
   FitProblem problem(const std::vector<Frame>& frames, const Checkpoint& checkpoint) const;
 
   /// What was looked at when, in frames.
   struct Notes {
-    std::size_t settled = 0, scanned = 1, corrected = 0, basis = 0;
+    std::size_t settled = 0, scanned = 1, basis = 0;
     std::optional<double> basis_error;  ///< [m]
     bool basis_exhausted = false;       ///< more vectors do not help
     Eigen::VectorXd basis_shift;        ///< what the basis does to the parameters; empty: not known yet
@@ -102,9 +97,7 @@ class Track {
   RunStart start_;
   AnchoredFilter filter_;
   std::unique_ptr<Ensemble> ensemble_;
-  std::optional<double> force_;               ///< that corrects the runs (StateCorrection)
-  std::unique_ptr<CorrectedRuns> corrected_;  ///< beside the free ones
-  Eigen::VectorXd doubt_;                     ///< from a change that began it; empty: from rest
+  Eigen::VectorXd doubt_;  ///< from a change that began it; empty: from rest
   Notes notes_;
 };
 

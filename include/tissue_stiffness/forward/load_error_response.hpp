@@ -19,8 +19,8 @@ class LoadErrorResponse {
                     std::shared_ptr<const Course> course, const LoadErrorBasis& basis);
 
   void advance(double time);
-  /// Displacement, 3n x columns, zero away from the reduced model's focus [m].
-  Eigen::MatrixXd displacements() const;
+  /// Amplitudes of the reduced model's modes at theta, modes x columns.
+  Eigen::MatrixXd amplitudes() const;
 
  private:
   Eigen::MatrixXd modal_forces(double time) const;
