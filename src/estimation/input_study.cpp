@@ -136,8 +136,10 @@ class InputFit {
     prior_mean_ = base.prior_mean();
     prior_information_ = q.prior_std.cwiseAbs2().cwiseInverse();
     size_ = p_;
-    for (const auto& [topic, course] : uncertain.courses()) add_load(topic, course);
-    for (std::size_t i = 0; i < base.settings().observations.size(); ++i) add_pose(i);
+    if (!base.settings().exact_inputs) {
+      for (const auto& [topic, course] : uncertain.courses()) add_load(topic, course);
+      for (std::size_t i = 0; i < base.settings().observations.size(); ++i) add_pose(i);
+    }
     inflation_ = Eigen::VectorXd::Ones(size_);
   }
 
@@ -437,7 +439,7 @@ class InputFit {
   // Lengths that are all too large by a share: K grows by it, a mass by its cube, the force of a pressure by its square.
   Eigen::MatrixXd scale_shift(const Eigen::MatrixXd& constant_shifts, const Eigen::MatrixXd& posterior,
                               const Eigen::MatrixXd& information) const {  // of the data alone
-    const double tolerance = base_.settings().mesh.scale_tolerance;
+    const double tolerance = base_.settings().exact_inputs ? 0.0 : base_.settings().mesh.scale_tolerance;
     Eigen::VectorXd shift = Eigen::VectorXd::Zero(p_);
     for (Eigen::Index i = 0; i < p_; ++i) {
       if (is_young_modulus(base_.free_parameters()[static_cast<std::size_t>(i)].name)) shift[i] -= 1.0;

@@ -208,6 +208,8 @@ class UnscentedScheme : public Scheme {
     } else if (task.change) {
       past_.turn(*track_, *outcome.track, outcome.first, *task.change, frames_);
       validity_.reset();
+      if (inputs_) inputs_->fitted = false;  // its fit was one without a change
+      input_shift_.resize(0);
       if (!task.change->near) watch_.go_on();
     }
     track_ = std::move(outcome.track);

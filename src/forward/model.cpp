@@ -111,7 +111,8 @@ void Model::add_parameters(const EffectSettings& settings, Part& part) {
       const std::string suffix = spec.components > 1 ? std::string("_") + "xyz"[c] : "";
       const std::string name = settings.label + "." + spec.name + suffix;
       if (!quantity->estimated()) {
-        if (quantity->tolerance > 0.0) constants_.push_back({name, index, quantity->value, quantity->tolerance});
+        if (quantity->tolerance > 0.0 && !settings_.exact_inputs)
+          constants_.push_back({name, index, quantity->value, quantity->tolerance});
         continue;
       }
       free_.push_back({name, spec.unit, *quantity, spec.lower, spec.upper});

@@ -3,6 +3,7 @@
 #include <ros/ros.h>
 
 #include <algorithm>
+#include <chrono>
 #include <sstream>
 
 #include "tissue_stiffness/estimation/patch_model.hpp"
@@ -116,7 +117,10 @@ void EstimatorNode::work() {
     if (take_changes()) {
       diagnostics_.set("frames waiting", std::to_string(queue_.waiting() + 1));  // this one included
       process(*work);
-      if (work->observations.empty()) catch_up();
+      if (work->observations.empty()) {
+        catch_up();
+        mark_stale();
+      }
       diagnostics_.set("frames waiting", std::to_string(queue_.waiting()));
       diagnostics_.set("looking back", estimator_->looks_back() ? "yes" : "no");
     }
@@ -220,6 +224,8 @@ void EstimatorNode::process(const FrameQueue::Work& work) {
   outputs_.publish(*estimator_, result, frame, work.stamp);
   last_ = std::move(frame);
   last_stamp_ = work.stamp;
+  arrival_ = std::chrono::steady_clock::now();
+  stale_ = false;
 }
 
 // When a recording is over, the last look at it is not.
@@ -229,6 +235,32 @@ void EstimatorNode::catch_up() {
   if (!result) return;
   diagnostics_.set("estimate", shown(result->estimate));
   outputs_.publish(*estimator_, *result, *last_, last_stamp_);
+  show_state(result->estimate);
+}
+
+// The last estimate stays, marked, when no frame has come for longer than the model allows, by the wall clock: a recording
+// that has ended stops a simulated clock, too.
+void EstimatorNode::mark_stale() {
+  if (!last_ || stale_) return;
+  const double since = std::chrono::duration<double>(std::chrono::steady_clock::now() - arrival_).count();
+  if (since < running_.stale_after || estimator_->looks_back()) return;
+  stale_ = true;
+  Estimate estimate = estimator_->estimate();
+  std::ostringstream why;
+  why << "no measurement has come for " << running_.stale_after << " s; the state was " << to_string(estimate.state);
+  if (!estimate.state_reason.empty()) why << " (" << estimate.state_reason << ")";
+  estimate.state = EstimateState::stale;
+  estimate.state_reason = why.str();
+  outputs_.publish(estimate, last_stamp_);
+  show_state(estimate);
+}
+
+void EstimatorNode::show_state(const Estimate& estimate) {
+  using State = EstimateState;
+  const bool good =
+      estimate.state == State::no_data || estimate.state == State::converging || estimate.state == State::converged;
+  const std::string why = estimate.state_reason.empty() ? "" : ": " + estimate.state_reason;
+  diagnostics_.state(good ? DiagnosticStatus::OK : DiagnosticStatus::WARN, to_string(estimate.state) + why);
 }
 
 void EstimatorNode::report(const StepResult& result) {
@@ -243,9 +275,7 @@ void EstimatorNode::report(const StepResult& result) {
   diagnostics_.set("estimate", shown(result.estimate));
   if (const auto error = estimator_->basis_error()) diagnostics_.set("basis error [m]", std::to_string(*error));
   for (const auto& [stage, seconds] : result.seconds) diagnostics_.time(stage, seconds);
-  const EstimateState state = result.estimate.state;
-  const bool good = state != EstimateState::model_invalid && state != EstimateState::drifting;
-  diagnostics_.state(good ? DiagnosticStatus::OK : DiagnosticStatus::WARN, to_string(state));
+  show_state(result.estimate);
 }
 
 }  // namespace tissue_stiffness

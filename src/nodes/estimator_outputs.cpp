@@ -45,6 +45,13 @@ void EstimatorOutputs::publish(const Estimator& estimator, const StepResult& res
   publish_outline(estimator, frame, header);
 }
 
+void EstimatorOutputs::publish(const Estimate& estimate, const ros::Time& stamp) const {
+  std_msgs::Header header;
+  header.stamp = stamp;
+  header.frame_id = model_frame_;
+  stiffness_.publish(to_message(estimate, header));
+}
+
 void EstimatorOutputs::publish_outline(const Estimator& estimator, const Frame& frame,
                                        const std_msgs::Header& header) const {
   for (const Observation& observation : frame.observations) {

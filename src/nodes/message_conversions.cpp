@@ -129,6 +129,7 @@ StiffnessEstimate to_message(const Estimate& estimate, const std_msgs::Header& h
   StiffnessEstimate out;
   out.header = header;
   out.state = to_string(estimate.state);
+  out.state_reason = estimate.state_reason;
   for (const ParameterEstimate& parameter : estimate.parameters) {
     out.names.push_back(parameter.name);
     out.units.push_back(parameter.unit);

@@ -129,6 +129,8 @@ Badge PanelState::state() const {
   static const std::map<std::string, Badge> badges{{"no_data", {"no data", 0x7a8088}},
                                                    {"converging", {"converging", 0x2f74c0}},
                                                    {"converged", {"converged", 0x2a8f57}},
+                                                   {"doubtful", {"doubtful", 0xc77700}},
+                                                   {"stale", {"stale", 0x7a8088}},
                                                    {"drifting", {"drifting", 0xc77700}},
                                                    {"model_invalid", {"model invalid", 0xc0392b}}};
   if (!estimated_) return badges.at("no_data");

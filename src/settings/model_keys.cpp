@@ -123,6 +123,8 @@ std::vector<KeySpec> run_keys() {
       required_key("initial.velocity", Kind::numbers, "m/s", "[x, y, z] of the whole body, or `from_frames`"),
       choice_key("estimator", {"unscented", "paper"}, false,
                  "the default, or the scheme of Yang & Lin 2016 as it was published, to compare with"),
+      choice_key("inputs", {"uncertain", "exact"}, false,
+                 "whether the interval counts what loads, poses and constants may be off, or takes them as exact"),
       number_key("stale_after", "s", kPositive, kInfinity, 2,
                  "without a measurement or a load for so long the state is `stale`"),
       integer_key("window", 100, 1000000, 4000,

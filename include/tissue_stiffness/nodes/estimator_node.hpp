@@ -4,6 +4,7 @@
 #include <std_srvs/Trigger.h>
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <memory>
 #include <mutex>
@@ -56,6 +57,8 @@ class EstimatorNode {
   void start_lap(const ros::Time& first_stamp);
   void process(const FrameQueue::Work& work);
   void catch_up();
+  void mark_stale();
+  void show_state(const Estimate& estimate);
   void report(const StepResult& result);
 
   const ModelSettings settings_;  ///< as given
@@ -70,6 +73,8 @@ class EstimatorNode {
   std::unique_ptr<Estimator> estimator_;
   std::optional<Frame> last_;  ///< used
   ros::Time last_stamp_;
+  std::chrono::steady_clock::time_point arrival_;  ///< of the last frame that was used
+  bool stale_ = false;                             ///< said so since then
 
   std::mutex changes_mutex_;
   std::condition_variable mesh_arrived_;

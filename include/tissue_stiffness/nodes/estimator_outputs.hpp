@@ -22,6 +22,8 @@ class EstimatorOutputs {
 
   /// After each frame that was used. What nobody listens to is not made.
   void publish(const Estimator& estimator, const StepResult& result, const Frame& frame, const ros::Time& stamp) const;
+  /// The estimate alone, when no frame came with it.
+  void publish(const Estimate& estimate, const ros::Time& stamp) const;
 
  private:
   void publish_outline(const Estimator& estimator, const Frame& frame, const std_msgs::Header& header) const;

@@ -105,7 +105,8 @@ struct ModelSettings {
   std::vector<ObservationSettings> observations;
   TimeSettings time;
   InitialSettings initial;
-  double stale_after = 2.0;  ///< without a measurement or a load for so long the estimate is stale [s]
+  bool exact_inputs = false;  ///< every load, pose and constant is taken as exact, whatever its tolerance
+  double stale_after = 2.0;   ///< without a measurement or a load for so long the estimate is stale [s]
   int window = 4000;  ///< frames kept to be looked at again; half of them become the prior of the others when it is full
   EstimatorKind estimator = EstimatorKind::unscented;  ///< key `estimator: unscented | paper`
   std::optional<MapSettings> map;                      ///< empty: one modulus an elasticity, no map

@@ -1,0 +1,129 @@
+// Errors of loads, poses and constants: found where the data tell them, and in the interval where they do not.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "bar.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr double kTruth = 20e3;
+using Change = std::function<void(LoadSample&)>;
+
+ModelSettings pushed(const std::string& load_keys = "", const std::string& density = "1000") {
+  ModelSettings model =
+      box_settings({"inertia: {density: " + density + "}", modulus(prior(30e3, 3)), "fixed: {region: clamp}",
+                    "viscous_damping: {beta: 4.0e-3}", "traction: {region: tip, topic: /wrench" + load_keys + "}"});
+  model.exact_inputs = false;
+  return model;
+}
+
+LoadSample wrench(double time) {
+  LoadSample sample{"/wrench", time, Eigen::VectorXd::Zero(6)};
+  sample.value[1] = 4e-3 * std::sin(6.0 * time);
+  sample.value[2] = -6e-3 * (1.0 - std::cos(4.0 * time));
+  return sample;
+}
+
+// The estimate after 60 frames of a bar, whose wrench is recorded with `error`.
+StepResult estimated(const ModelSettings& model, const Change& error) {
+  const TetMesh mesh = bar_mesh();
+  ModelSettings truth = model;
+  Experiment bar(truth, mesh, {kTruth});
+  Estimator estimator(model, mesh);
+  estimator.set_first_stamp(0.0);
+  for (int k = 0; k < 260; ++k) {
+    LoadSample sample = wrench(0.005 * k);
+    bar.add_load(sample);
+    error(sample);
+    estimator.add_load(sample);
+  }
+  return step_through(estimator, see_all(bar, bar.film(0.0, kFilmed, 60), kNoise, 7));
+}
+
+const InputUncertainty& find(const Estimate& estimate, const std::string& error) {
+  for (const InputUncertainty& input : estimate.inputs) {
+    if (input.error == error) return input;
+  }
+  throw std::logic_error("no " + error);
+}
+
+TEST(InputStudy, HoldsTheTruthWhateverTheWrenchDoesWithinItsTolerance) {
+  const std::vector<std::pair<std::string, Change>> errors{
+      {"none", [](LoadSample&) {}},
+      {"gain", [](LoadSample& s) { s.value *= 1.1; }},
+      {"bias", [](LoadSample& s) { s.value[2] += 1.5e-3; }},
+      {"direction", [](LoadSample& s) { s.value[1] -= 0.05 * s.value[2]; }}};
+  for (const auto& [name, error] : errors) {
+    const StepResult last = estimated(pushed(), error);
+    const ParameterEstimate& p = last.estimate.parameters.front();
+    std::printf("%s: %.0f Pa (%.0f to %.0f), %s: %s\n", name.c_str(), p.mean, p.lower95, p.upper95,
+                to_string(last.estimate.state).c_str(), last.estimate.state_reason.c_str());
+    EXPECT_TRUE(holds(p, kTruth)) << name;
+    EXPECT_EQ(last.estimate.state, EstimateState::converged) << name << ": " << last.estimate.state_reason;
+  }
+}
+
+TEST(InputStudy, FindsABiasWithItsSign) {
+  const double exact = find(estimated(pushed(), [](LoadSample&) {}).estimate, "bias").mean;
+  const StepResult last = estimated(pushed(), [](LoadSample& s) { s.value[2] += 1.5e-3; });
+  const InputUncertainty& bias = find(last.estimate, "bias");
+  EXPECT_GT(bias.mean, 4.0 * exact);
+  EXPECT_NEAR(bias.mean * std::sqrt(3.0), 1.5e-3, 5e-4);
+  EXPECT_LT(bias.std, 0.7 * bias.tolerance);
+}
+
+TEST(InputStudy, CallsABiasFarBeyondItsToleranceDoubtful) {
+  const StepResult last = estimated(pushed(", bias: 1.0e-5, noise: 0"), [](LoadSample& s) { s.value[2] += 3e-3; });
+  EXPECT_NE(last.estimate.state, EstimateState::converged) << last.estimate.state_reason;
+  EXPECT_FALSE(last.estimate.state_reason.empty());
+}
+
+TEST(InputStudy, CountsTheToleranceOfAConstant) {
+  const auto std_with = [](const std::string& density) {
+    const StepResult last = estimated(
+        pushed(", gain: 0, bias: 0, noise: 0, delay: 0, hysteresis: 0, direction: 0", density), [](LoadSample&) {});
+    return last.estimate.parameters.front().std;
+  };
+  const double exact = std_with("{value: 1000, tolerance: 0}"), uncertain = std_with("{value: 1000, tolerance: 300}");
+  EXPECT_GT(uncertain, 1.1 * exact);
+}
+
+TEST(InputStudy, SharesOfTheVarianceAddUpToOne) {
+  const StepResult last = estimated(pushed(), [](LoadSample&) {});
+  ASSERT_EQ(last.estimate.variance.size(), 1U);
+  const VarianceShares& s = last.estimate.variance.front();
+  EXPECT_NEAR(s.noise + s.mesh + s.loads + s.constants + s.model, 1.0, 1e-9);
+  EXPECT_GT(s.loads, 0.05);
+}
+
+TEST(InputStudy, WithExactInputsAddsNothing) {
+  ModelSettings exact = pushed();
+  exact.exact_inputs = true;
+  const StepResult last = estimated(exact, [](LoadSample&) {});
+  EXPECT_TRUE(last.estimate.inputs.empty());
+  EXPECT_EQ(last.estimate.variance.front().loads, 0.0);
+  EXPECT_EQ(last.estimate.variance.front().constants, 0.0);
+  EXPECT_TRUE(holds(last.estimate.parameters.front(), kTruth));
+}
+
+TEST(State, IsStaleWhileALoadStaysAway) {
+  ModelSettings model = pushed();
+  model.stale_after = 0.5;
+  const TetMesh mesh = bar_mesh();
+  Experiment bar(model, mesh, {kTruth});
+  Estimator estimator(model, mesh);
+  estimator.set_first_stamp(0.0);
+  for (int k = 0; k < 60; ++k) {  // to 0.3 s
+    bar.add_load(wrench(0.005 * k));
+    estimator.add_load(wrench(0.005 * k));
+  }
+  const StepResult last = step_through(estimator, see_all(bar, bar.film(0.0, kFilmed, 60), kNoise, 7));
+  EXPECT_EQ(last.estimate.state, EstimateState::stale);
+  EXPECT_NE(last.estimate.state_reason.find("/wrench"), std::string::npos) << last.estimate.state_reason;
+}
+
+}  // namespace
+}  // namespace tissue_stiffness
