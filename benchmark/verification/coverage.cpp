@@ -35,7 +35,7 @@ ModelSettings settings(double prior) {
       "- fixed: {region: clamp}\n"
       "- gravity: {acceleration: [0, 1, -3]}\n"
       "observations: [{vertices: {topic: /vertices, noise: " +
-      std::to_string(kNoise) + "}}]\n";
+      std::to_string(kNoise) + "}}]\ninputs: exact\n";
   return read_model(parse_yaml(text, "bar"), "");
 }
 

@@ -126,6 +126,7 @@ class PaperScheme : public Scheme {
     estimate_ = summarise(model_->free_parameters(), filter_.mean(), filter_.covariance());
     estimate_.time = frame.time;
     estimate_.state = EstimateState::converging;
+    estimate_.state_reason = "the paper's estimator does not test its misfit";
     result.estimate = estimate_;
   }
 

@@ -245,7 +245,7 @@ class UnscentedScheme : public Scheme {
     std::string why;
     const EstimateState now = state(result.misfit, why);
     // Beside a misfit that does not pass, no interval is tighter than that misfit allows.
-    if (now == EstimateState::doubtful || now == EstimateState::model_invalid) unexplained_ = validity_.excess();
+    if (now == EstimateState::doubtful || now == EstimateState::model_invalid) unexplained_ = std::max(0.0, validity_.excess() - of_mesh());
     estimate_ = summarise(model_->free_parameters(), published_mean(), covariance());
     estimate_.time = frame.time;
     estimate_.state = now;
@@ -300,9 +300,12 @@ class UnscentedScheme : public Scheme {
 
   MisfitTest misfit_test() const {
     MisfitTest test = inputs_->test;
-    test.set_numerics(kFinerLeaves * mesh_left_.value_or(0.0));
+    test.set_numerics(of_mesh());
     return test;
   }
+
+  /// Mean square over the noise's that the mesh may leave.
+  double of_mesh() const { return kFinerLeaves * mesh_left_.value_or(0.0); }
 
   // Indices of the parameters that a state speaks of: the moduli, or all where none is free.
   std::vector<Eigen::Index> judged() const {
@@ -341,8 +344,8 @@ class UnscentedScheme : public Scheme {
       return track_->start().motion ? EstimateState::drifting : EstimateState::converging;
     }
     if (!inputs_) return why = "the errors of the inputs have not been studied yet", EstimateState::converging;
-    if (!settling_.settled())
-      return why = "the estimate still moves by more than its standard deviation", EstimateState::converging;
+    if (left_study()) return why = "the errors of the inputs are studied anew", EstimateState::converging;
+    if (!settling_.settled()) return why = "the estimate still moves out of its own interval", EstimateState::converging;
     if (!inputs_->implausible.empty()) return why = inputs_->implausible, EstimateState::doubtful;
     return inputs_->fitted ? state_of_misfit(why) : state_of_rms(misfit, why);
   }
@@ -363,7 +366,7 @@ class UnscentedScheme : public Scheme {
 
   // A model that runs in full is judged by the size of its misfit alone.
   EstimateState state_of_rms(const Misfit& misfit, std::string& why) const {
-    if (misfit.rms_sigma <= kFullSigmas) return why = "the misfit is about the noise", EstimateState::converged;
+    if (std::pow(misfit.rms_sigma, 2) <= std::pow(kFullSigmas, 2) + of_mesh()) return why = "the misfit is about the noise", EstimateState::converged;
     char text[100];
     std::snprintf(text, sizeof text, "the misfit is %.2g times the noise", misfit.rms_sigma);
     return why = text, EstimateState::doubtful;
@@ -386,10 +389,9 @@ class UnscentedScheme : public Scheme {
       }
     }
     if (input_work_.valid() || more_follow() || track_->start().motion || !complete_) return moved;
-    if (static_cast<double>(frames_.size()) <
-        std::max<double>(kFirstInputs, kInputGrowth * static_cast<double>(last_inputs_))) {
-      return moved;
-    }
+    const bool grown = static_cast<double>(frames_.size()) >=
+                       std::max<double>(kFirstInputs, kInputGrowth * static_cast<double>(last_inputs_));
+    if (!grown && !(left_study() && frames_.size() > last_inputs_)) return moved;
     last_inputs_ = frames_.size();
     const AnchoredFilter& filter = track_->filter();
     MeshError::Question question(*model_, frames_, filter.mean(), filter.spread(), model_->prior_std());
@@ -415,7 +417,7 @@ class UnscentedScheme : public Scheme {
     inputs_ = std::move(studied_inputs_);
     if (!inputs_->fitted) return false;
     const Eigen::VectorXd std = track_->covariance().diagonal().cwiseSqrt();
-    const Eigen::VectorXd move = inputs_->w - track_->filter().mean();
+    const Eigen::VectorXd move = inputs_->w - inputs_->asked;
     const bool moved = !inputs_->corrections.empty() && (move.array().abs() > kMoved * std.array()).any();
     if (moved) {
       stop();
@@ -425,8 +427,16 @@ class UnscentedScheme : public Scheme {
       track_->rerun(frames_, inputs_->w);
       validity_.reset();
     }
-    input_shift_ = inputs_->w - track_->filter().mean();
+    studied_at_ = moved ? track_->filter().mean() : inputs_->asked;
+    input_shift_ = inputs_->w - studied_at_;
     return moved;
+  }
+
+  // Whether the runs have left the place where the inputs were studied.
+  bool left_study() const {
+    if (!inputs_ || !inputs_->fitted || input_shift_.size() == 0) return false;
+    const Eigen::ArrayXd way = track_->filter().mean() - studied_at_;
+    return (way.abs() > covariance().diagonal().array().sqrt()).any();
   }
 
   // What the mesh does to the estimate, asked anew whenever the recording has doubled; in the background when a node runs.
@@ -480,6 +490,7 @@ class UnscentedScheme : public Scheme {
   InputStudy::Answer studied_inputs_;             ///< the same
   std::optional<InputStudy::Answer> inputs_;      ///< the last study's
   Eigen::VectorXd input_shift_;                   ///< to the fit beside the inputs' errors; empty: not known yet
+  Eigen::VectorXd studied_at_;                    ///< the filter's mean that the shift is from
   std::size_t last_inputs_ = 0;                   ///< frames that there were then
   Settling settling_;
   double unexplained_ = 0.0;              ///< mean square that does not pass, in noise variances

@@ -131,7 +131,7 @@ Badge PanelState::state() const {
                                                    {"converged", {"converged", 0x2a8f57}},
                                                    {"doubtful", {"doubtful", 0xc77700}},
                                                    {"stale", {"stale", 0x7a8088}},
-                                                   {"drifting", {"drifting", 0xc77700}},
+                                                   {"drifting", {"drifting", 0x7b4fb5}},
                                                    {"model_invalid", {"model invalid", 0xc0392b}}};
   if (!estimated_) return badges.at("no_data");
   const auto found = badges.find(estimate_.state);

@@ -114,6 +114,8 @@ void StiffnessPanel::build_header() {
   below->addWidget(interval_ = name_it(new QLabel(this), "interval"), 1);
   below->addWidget(misfit_ = name_it(new QLabel(this), "misfit"));
   layout->addLayout(below);
+  layout->addWidget(state_reason_ = name_it(new QLabel(this), "state_reason"));
+  state_reason_->setWordWrap(true);
 }
 
 void StiffnessPanel::build_buttons() {
@@ -191,6 +193,7 @@ void StiffnessPanel::show_estimate() {
   interval_->setText(text(state_.interval()));
   misfit_->setText(text(state_.misfit()));
   show_badge(*state_badge_, state_.state());
+  state_reason_->setText(text(state_.state_reason()));
   modulus_view_->show_curve(state_.modulus_curve(), text(state_.modulus_unit()));
   misfit_view_->show_curve(state_.misfit_curve(), "mm", state_.noise_floor());
 }

@@ -61,7 +61,8 @@ std::string example(const EffectSpec& spec, const ParameterSpec& parameter) {
 
 // Keys that an effect can do without say so.
 bool optional(const std::string& meaning) {
-  return meaning.find("without it") != std::string::npos || meaning.find("instead of") != std::string::npos;
+  const auto says = [&](const char* words) { return meaning.find(words) != std::string::npos; };
+  return says("without it") || says("instead of") || says("when absent");
 }
 
 bool optional(const ParameterSpec& parameter) {

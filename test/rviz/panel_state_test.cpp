@@ -85,12 +85,21 @@ TEST(PanelState, AModelWithoutParametersIsNoData) {
 
 TEST(PanelState, StatesHaveColoursOfTheirOwn) {
   std::vector<unsigned> colours;
-  for (const char* name : {"no_data", "converging", "converged", "drifting", "model_invalid"}) {
+  for (const char* name : {"converging", "converged", "doubtful", "stale", "drifting", "model_invalid"}) {
     PanelState state;
     state.take(estimate(1.0, 12e3, 100.0, name));
     for (const unsigned other : colours) EXPECT_NE(state.state().colour, other) << name;
     colours.push_back(state.state().colour);
   }
+}
+
+TEST(PanelState, SaysWhyTheStateIsSo) {
+  PanelState state;
+  EXPECT_EQ(state.state_reason(), "");
+  StiffnessEstimate message = estimate(1.0, 12e3, 100.0, "doubtful");
+  message.state_reason = "the bias of /tool/wrench is implausible";
+  state.take(message);
+  EXPECT_EQ(state.state_reason(), message.state_reason);
 }
 
 TEST(PanelState, OneCurveHasOneUnit) {

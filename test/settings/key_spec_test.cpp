@@ -12,7 +12,7 @@ namespace {
 
 // Together they have every key.
 const char* const kModels[] = {
-    R"(mesh: {file: mesh.stl, scale: 0.001, max_edge_length: 0.01, order: 1, boundary: faceted, discretisation_error: false}
+    R"(mesh: {file: mesh.stl, scale: 0.001, scale_tolerance: 0.01, max_edge_length: 0.01, order: 1, boundary: faceted, discretisation_error: false}
 regions:
   clamp: {box: {min: [0, 0, 0], max: [1, 1, 0]}}
   ball: {sphere: {center: [0, 0, 1], radius: 0.5}}
@@ -21,15 +21,17 @@ regions:
   some: {vertices: [3, 1, 2]}
 effects: [inertia: {density: 1060}]
 observations:
-- vertices: {topic: /v, noise: 3e-4}
-- markers: {topic: /m, noise: 1e-4, rest: [[1, 2, 3]]}
-- points: {topic: /p, noise: 1e-3}
-- contour: {image: /i, camera_info: /c, segmentation: {kind: cavity, seed: [1, 2]}, projection: slice, noise: 6e-4, region: egg}
+- vertices: {topic: /v, noise: 3e-4, rotation_tolerance: 0.01, offset_tolerance: 1e-3}
+- markers: {topic: /m, noise: 1e-4, rotation_tolerance: 0.01, offset_tolerance: 1e-3, rest: [[1, 2, 3]]}
+- points: {topic: /p, noise: 1e-3, rotation_tolerance: 0.01, offset_tolerance: 1e-3}
+- contour: {image: /i, rotation_tolerance: 0.01, offset_tolerance: 1e-3, camera_info: /c, segmentation: {kind: cavity, seed: [1, 2]}, projection: slice, noise: 6e-4, region: egg}
 time: {start: 0.09, step: 0.004}
 initial: {velocity: [0, 0, -4]}
 estimator: paper
 map: {cells: 8, length: 0.02, factor: 3}
 window: 200
+inputs: exact
+stale_after: 1
 )",
     R"(mesh: {revolve: {contour: first, axis: [0, 0, 1], max_edge_length: 0.01}}
 effects: [inertia: {density: 1060}]

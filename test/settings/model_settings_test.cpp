@@ -128,7 +128,7 @@ struct Malformed {
 
 TEST(ModelSettings, RefusesWhatIsWrongAndSaysWhere) {
   const std::vector<Malformed> table = {
-      {"", "colour: red", {"model.yaml:23: colour", "unknown key `colour`", "effects, estimator, initial, map, mesh"}},
+      {"", "colour: red", {"model.yaml:23: colour", "unknown key `colour`", "effects, estimator, initial, inputs, map"}},
       {"estimator: paper", "estimatr: paper", {"model.yaml:22: estimatr", "did you mean `estimator`?"}},
       {"estimator: paper", "estimator: kalman", {"model.yaml:22: estimator", "`kalman`", "unscented, paper"}},
       {"", "map: {cells: 8}", {"model.yaml:23: map", "no key `length`"}},
@@ -163,7 +163,7 @@ TEST(ModelSettings, RefusesWhatIsWrongAndSaysWhere) {
       {"topic: /v, noise: 3e-4", "topic: /v", {"model.yaml:16: observations[0].vertices", "no key `noise`"}},
       {"topic: /v, noise: 3e-4", "noise: 3e-4", {"model.yaml:16: observations[0].vertices", "no key `topic`"}},
       {"noise: 3e-4", "noise: 0", {"model.yaml:16: observations[0].vertices.noise", "found 0", "> 0 [m]"}},
-      {"noise: 3e-4", "noise: 3e-4, rest: []", {"observations[0].vertices.rest", "unknown key `rest`", "noise, topic"}},
+      {"noise: 3e-4", "noise: 3e-4, rest: []", {"observations[0].vertices.rest", "unknown key `rest`", "noise, offset_tolerance"}},
       {"- vertices:", "- vertexes:", {"model.yaml:16: observations[0].vertexes", "did you mean `vertices`?", "contour"}},
       {"rest: [[1, 2, 3], [4, 5, 6]]", "rest: []", {"observations[1].markers.rest", "an empty list"}},
       {"[4, 5, 6]", "[4, 5]", {"model.yaml:17: observations[1].markers.rest[1]", "[4, 5]", "three numbers"}},

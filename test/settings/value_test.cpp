@@ -86,7 +86,7 @@ TEST(Value, ConversionsSayWhatIsAllowed) {
   EXPECT_EQ(read("-1", quantity), "m.yaml:1: x: found -1; allowed: a number > 0 [Pa]");
   EXPECT_EQ(read("[1]", quantity),
             "m.yaml:1: x: found [1]; allowed: a number > 0 [Pa], {prior, factor} or {mean, std}, "
-            "with `drift` when it changes");
+            "with `drift` when it changes, or {value, tolerance}");
   expect_contains(read("{prior: 1}", quantity), {"m.yaml:1: x: found {prior: 1}", "{prior, factor}"});
   expect_contains(read("{prior: 1, std: 1}", quantity), {"found {prior: 1, std: 1}", "{mean, std}"});
   expect_contains(read("{}", quantity), {"found {}", "{mean, std}"});

@@ -32,6 +32,7 @@ class InputStudy {
     Eigen::VectorXd coefficients;
   };
   struct Answer {
+    Eigen::VectorXd asked;                          ///< the question's parameters
     Eigen::VectorXd w;                              ///< most probable parameters beside the nuisance, filter coordinates
     Eigen::MatrixXd from_noise;                     ///< covariance of w were every input exact
     Eigen::MatrixXd from_loads;                     ///< what the loads' and poses' errors add to it

@@ -5,8 +5,8 @@
 
 namespace tissue_stiffness {
 
-/// Whether an estimate has settled: over the last third of the frames, eight at least, it stayed within one standard
-/// deviation of where it is now.
+/// Whether an estimate has settled: it lies within the 95 % intervals that were published over the last third of the
+/// frames, eight at least.
 class Settling {
  public:
   /// Mean and standard deviations after a frame, filter coordinates.
@@ -14,9 +14,11 @@ class Settling {
   bool settled() const;
 
  private:
+  struct Published {
+    Eigen::VectorXd mean, std;
+  };
   std::size_t frames_ = 0;
-  std::deque<Eigen::VectorXd> means_;  ///< the last ones, oldest first
-  Eigen::VectorXd std_;
+  std::deque<Published> published_;  ///< the last ones, oldest first
 };
 
 }  // namespace tissue_stiffness

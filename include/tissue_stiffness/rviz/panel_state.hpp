@@ -47,6 +47,8 @@ class PanelState {
   /// Name of the quantity above, "Young's modulus".
   std::string quantity() const;
   Badge state() const;
+  /// Why the state is so, a sentence; empty before the first frame.
+  std::string state_reason() const { return estimated_ ? estimate_.state_reason : ""; }
   /// "misfit 0.210 mm, 1.02 sigma"; empty before the first frame.
   std::string misfit() const;
   Badge verdict() const;

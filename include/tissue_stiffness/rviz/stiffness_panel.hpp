@@ -62,7 +62,8 @@ class StiffnessPanel : public rviz::Panel {
   bool estimate_changed_ = true, effects_changed_ = true, waiting_ = false;
   unsigned connection_ = 0;
 
-  QLabel *quantity_ = nullptr, *headline_ = nullptr, *interval_ = nullptr, *misfit_ = nullptr, *state_badge_ = nullptr;
+  QLabel *quantity_ = nullptr, *headline_ = nullptr, *interval_ = nullptr, *misfit_ = nullptr, *state_badge_ = nullptr,
+         *state_reason_ = nullptr;
   QLabel *verdict_badge_ = nullptr, *summary_ = nullptr, *status_ = nullptr;
   CurveView *modulus_view_ = nullptr, *misfit_view_ = nullptr;
   QTreeWidget* effects_ = nullptr;

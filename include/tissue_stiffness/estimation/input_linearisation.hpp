@@ -1,0 +1,101 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tissue_stiffness/effects/load_error.hpp"
+#include "tissue_stiffness/forward/observation_operator.hpp"
+#include "tissue_stiffness/estimation/mesh_error.hpp"
+#include "tissue_stiffness/forward/reduced_model.hpp"
+
+namespace tissue_stiffness {
+
+/// The models that a study of the inputs runs, kept from one study to the next.
+struct InputModels {
+  Model base;       ///< the estimator's, for its parameters
+  Model uncertain;  ///< with the constants that have a tolerance kept apart
+  std::unique_ptr<ReducedModel> runs;
+  std::vector<std::unique_ptr<ObservationOperator>> operators;
+  std::vector<UncertainConstant> constants;
+  Eigen::MatrixXd rigid;  ///< translations and rotations of the body, 3n x 6
+
+  explicit InputModels(const Model& model);
+};
+
+/// Normal equations of the rows r = y - h(z), z = [w; eta]: p parameters, then the inputs' errors in units of their
+/// tolerances; summed over the frames, with the noise's precision R^-1.
+struct NormalEquations {
+  Eigen::MatrixXd information;  ///< Z^T R^-1 Z
+  Eigen::VectorXd gradient;     ///< Z^T R^-1 r
+  Eigen::MatrixXd constants;    ///< Z^T R^-1 C, a column of C for one tolerance of each constant
+  double cost = 0.0;            ///< r^T R^-1 r
+  double rows = 0.0;
+
+  NormalEquations(Eigen::Index size, Eigen::Index constant_count);
+  /// Counts every frame so many times: it stands for those that were left out.
+  void repeat(double times);
+};
+
+/// A recording's rows as functions of the parameters, the loads' and poses' errors and the constants, linearised. The runs
+/// start anew for each point, from rest or the initial velocity.
+class InputLinearisation {
+ public:
+  /// One frame. The columns of the loads' errors are `modes` times their modal amplitudes.
+  struct Row {
+    Eigen::VectorXd error, precision;
+    Eigen::MatrixXd parameters, constants, poses;  ///< d row / d each
+    Eigen::MatrixXd modes;                         ///< d row / d amplitude of each mode
+  };
+  struct Load {
+    std::string topic;
+    std::shared_ptr<Course> course;
+    LoadErrorBasis basis;
+    Eigen::Index first;  ///< of its columns in z
+  };
+  struct Pose {
+    int source;
+    double rotation, offset;  ///< tolerances [rad], [m]
+    Eigen::Index first;
+  };
+  using Visitor = std::function<void(const Row&, const Eigen::MatrixXd& amplitudes)>;
+
+  InputLinearisation(const MeshError::Question& question, InputModels& models);
+  /// Leaves the courses of the loads as they were measured.
+  ~InputLinearisation();
+  InputLinearisation(const InputLinearisation&) = delete;
+  InputLinearisation& operator=(const InputLinearisation&) = delete;
+
+  Eigen::Index parameter_count() const { return p_; }
+  Eigen::Index size() const { return size_; }
+  double repeated() const { return repeated_; }  ///< recorded frames for each that is used
+  const std::vector<Load>& loads() const { return loads_; }
+  const std::vector<Pose>& poses() const { return poses_; }
+
+  /// Throws NumericalError when runs diverge.
+  NormalEquations at(const Eigen::VectorXd& z);
+  /// Visits every used frame in the order of time.
+  void each_row(const Eigen::VectorXd& z, const Visitor& visit);
+
+ private:
+  void add_load(const std::string& topic, const std::shared_ptr<Course>& course);
+  void add_pose(std::size_t source);
+  void correct_loads(const Eigen::VectorXd& z);
+  std::vector<Eigen::VectorXd> points(const Eigen::VectorXd& w) const;
+  Row row(const Frame& frame, const std::vector<Eigen::VectorXd>& thetas, const Eigen::MatrixXd& u,
+          const Eigen::MatrixXd& shapes, const Eigen::VectorXd& z) const;
+  Eigen::MatrixXd pose_columns(const Frame& frame, const Eigen::VectorXd& u, const Eigen::MatrixXd& rigid) const;
+  Eigen::Index load_columns() const { return size_ - p_ - 6 * static_cast<Eigen::Index>(poses_.size()); }
+
+  const MeshError::Question& q_;
+  InputModels& models_;
+  std::vector<const Frame*> frames_;
+  double repeated_ = 1.0;
+  Eigen::Index p_ = 0, size_ = 0;
+  std::vector<Load> loads_;
+  std::vector<Pose> poses_;
+};
+
+}  // namespace tissue_stiffness

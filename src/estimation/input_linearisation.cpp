@@ -1,0 +1,262 @@
+#include "tissue_stiffness/estimation/input_linearisation.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "tissue_stiffness/estimation/compare.hpp"
+#include "tissue_stiffness/estimation/ensemble.hpp"
+#include "tissue_stiffness/forward/load_error_response.hpp"
+#include "tissue_stiffness/forward/reduced_trajectory.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr std::size_t kMostFrames = 150;  // of a long recording, evenly spread
+constexpr double kConstantStep = 0.5;     // of a tolerance, for its central difference
+
+// Poisson's ratio is folded into one matrix while it is known; a model in which it is free keeps it apart.
+ModelSettings with_free_ratio(ModelSettings settings) {
+  for (EffectSettings& effect : settings.effects) {
+    if (effect.name != "elasticity") continue;
+    const Quantity ratio = read_parameters(effect)[1];
+    if (ratio.estimated() || !(ratio.tolerance > 0.0)) continue;
+    std::vector<std::pair<std::string, Value>> entries;
+    const std::string path = effect.arguments.path();
+    for (const std::string& key : effect.arguments.keys()) {
+      entries.emplace_back(key, key != "poisson_ratio" ? effect.arguments.at(key)
+                                                       : Value::map({{"mean", Value::number(ratio.value, path)},
+                                                                     {"std", Value::number(ratio.tolerance, path)}},
+                                                                    path));
+    }
+    effect.arguments = Value::map(std::move(entries), path);
+  }
+  return settings;
+}
+
+// Rigid translation along and rotation about each axis through the body's middle, 3n x 6.
+Eigen::MatrixXd rigid_motions(const TetMesh& mesh) {
+  const Eigen::Vector3d middle = mesh.nodes.rowwise().mean();
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(mesh.nodes.size(), 6);
+  for (Eigen::Index a = 0; a < mesh.nodes.cols(); ++a) {
+    for (int i = 0; i < 3; ++i) {
+      out(3 * a + i, i) = 1.0;
+      out.block<3, 1>(3 * a, 3 + i) = Eigen::Vector3d::Unit(i).cross(mesh.nodes.col(a) - middle);
+    }
+  }
+  return out;
+}
+
+// Takes out what the sensor or the model has no number for.
+void clean(InputLinearisation::Row& row) {
+  for (Eigen::Index r = 0; r < row.error.size(); ++r) {
+    const bool good = std::isfinite(row.error[r]) && std::isfinite(row.precision[r]) && row.parameters.row(r).allFinite() &&
+                      row.constants.row(r).allFinite() && row.poses.row(r).allFinite() && row.modes.row(r).allFinite();
+    if (good) continue;
+    row.error[r] = row.precision[r] = 0.0;
+    for (Eigen::MatrixXd* part : {&row.parameters, &row.constants, &row.poses, &row.modes}) part->row(r).setZero();
+  }
+}
+
+}  // namespace
+
+InputModels::InputModels(const Model& model)
+    : base(model.settings(), model),
+      uncertain(with_free_ratio(model.settings()), model),
+      operators(make_observation_operators(base)),
+      constants(model.uncertain_constants()),
+      rigid(rigid_motions(base.mesh())) {
+  BasisOptions basis;
+  basis.nonlinear = BasisOptions::Nonlinear::left_out;
+  runs = std::make_unique<ReducedModel>(uncertain, basis);
+}
+
+NormalEquations::NormalEquations(Eigen::Index size, Eigen::Index constant_count)
+    : information(Eigen::MatrixXd::Zero(size, size)),
+      gradient(Eigen::VectorXd::Zero(size)),
+      constants(Eigen::MatrixXd::Zero(size, constant_count)) {}
+
+void NormalEquations::repeat(double times) {
+  information *= times;
+  gradient *= times;
+  constants *= times;
+  cost *= times;
+  rows *= times;
+}
+
+InputLinearisation::InputLinearisation(const MeshError::Question& question, InputModels& models)
+    : q_(question), models_(models), p_(question.w.size()), size_(p_) {
+  const std::size_t stride = (question.frames.size() + kMostFrames - 1) / kMostFrames;
+  for (std::size_t k = question.frames.size(); k > 0; k -= std::min(k, stride))
+    frames_.insert(frames_.begin(), &question.frames[k - 1]);
+  repeated_ = static_cast<double>(question.frames.size()) / static_cast<double>(frames_.size());
+  if (models.base.settings().exact_inputs) return;
+  for (const auto& [topic, course] : models.uncertain.courses()) add_load(topic, course);
+  for (std::size_t i = 0; i < models.base.settings().observations.size(); ++i) add_pose(i);
+}
+
+InputLinearisation::~InputLinearisation() {
+  correct_loads(Eigen::VectorXd::Zero(size_));
+}
+
+void InputLinearisation::add_load(const std::string& topic, const std::shared_ptr<Course>& course) {
+  course->correct({}, {});
+  if (course->empty() || course->tolerance().exact()) return;
+  const int components = course->acting();
+  const auto measured = [&](double t) {
+    Eigen::VectorXd load(components);
+    for (int i = 0; i < components; ++i) load[i] = course->measured(t, i);
+    return load;
+  };
+  LoadTolerance tolerance = course->tolerance();
+  for (const FreeParameter& free : models_.base.free_parameters()) {
+    if (free.name.find("force_scale") == 0) tolerance.gain = 0.0;  // the same number
+  }
+  const LoadErrorBasis basis(tolerance, measured, components, q_.start, q_.frames.back().time);
+  if (basis.size() == 0) return;
+  loads_.push_back({topic, course, basis, size_});
+  size_ += basis.size();
+}
+
+void InputLinearisation::add_pose(std::size_t source) {
+  const ObservationSettings& sensor = models_.base.settings().observations[source];
+  if (sensor.rotation == 0.0 && sensor.offset == 0.0) return;
+  poses_.push_back({static_cast<int>(source), sensor.rotation, sensor.offset, size_});
+  size_ += 6;
+}
+
+void InputLinearisation::correct_loads(const Eigen::VectorXd& z) {
+  for (const Load& load : loads_) load.course->correct(load.basis, z.segment(load.first, load.basis.size()));
+}
+
+// Parameters of the centre, of the sigma points around it, and of each constant to either side.
+std::vector<Eigen::VectorXd> InputLinearisation::points(const Eigen::VectorXd& w) const {
+  const Eigen::VectorXd centre = models_.base.theta(w);
+  std::vector<Eigen::VectorXd> out{centre};
+  for (const double side : {1.0, -1.0}) {
+    for (Eigen::Index i = 0; i < p_; ++i) {
+      Eigen::VectorXd moved = w;
+      moved[i] += side * q_.spread[i];
+      out.push_back(models_.base.theta(moved));
+    }
+  }
+  for (const double side : {1.0, -1.0}) {
+    for (const UncertainConstant& constant : models_.constants) {
+      Eigen::VectorXd theta = centre;
+      theta[constant.index] += side * kConstantStep * constant.std;
+      out.push_back(std::move(theta));
+    }
+  }
+  return out;
+}
+
+InputLinearisation::Row InputLinearisation::row(const Frame& frame, const std::vector<Eigen::VectorXd>& thetas,
+                                                const Eigen::MatrixXd& u, const Eigen::MatrixXd& shapes,
+                                                const Eigen::VectorXd& z) const {
+  const auto predict = [&](std::size_t i) {
+    return predict_frame(models_.base, models_.operators, frame, thetas[i], u.col(static_cast<Eigen::Index>(i)));
+  };
+  const Prediction there = predict(0);
+  const auto along = [&](const Eigen::MatrixXd& motions) {
+    return predict_along(models_.base, models_.operators, frame, thetas[0], u.col(0), there, motions);
+  };
+  const Eigen::Index rows = there.predicted.size();
+  const auto np = static_cast<std::size_t>(p_), nc = models_.constants.size();
+  Row out;
+  out.parameters.resize(rows, p_);
+  for (std::size_t i = 0; i < np; ++i) {
+    const Eigen::VectorXd change = predict(1 + i).predicted - predict(1 + np + i).predicted;
+    out.parameters.col(static_cast<Eigen::Index>(i)) = change / (2.0 * q_.spread[static_cast<Eigen::Index>(i)]);
+  }
+  out.constants.resize(rows, static_cast<Eigen::Index>(nc));
+  for (std::size_t i = 0; i < nc; ++i) {
+    const std::size_t high = 1 + 2 * np + i;
+    out.constants.col(static_cast<Eigen::Index>(i)) =
+        (predict(high).predicted - predict(high + nc).predicted) / (2.0 * kConstantStep);
+  }
+  out.modes = along(shapes);
+  out.poses = poses_.empty() ? Eigen::MatrixXd::Zero(rows, 0).eval() : pose_columns(frame, u.col(0), along(models_.rigid));
+  Prediction posed = there;
+  posed.predicted += out.poses * z.tail(out.poses.cols());
+  out.error = there.measured - posed.predicted;
+  out.precision = row_weights(posed).cwiseQuotient(there.sigma.cwiseAbs2());
+  clean(out);
+  return out;
+}
+
+Eigen::MatrixXd InputLinearisation::pose_columns(const Frame& frame, const Eigen::VectorXd& u,
+                                                 const Eigen::MatrixXd& rigid) const {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(rigid.rows(), 6 * static_cast<Eigen::Index>(poses_.size()));
+  Eigen::Index first = 0;
+  for (const Observation& observation : frame.observations) {
+    const auto& sensor = *models_.operators[static_cast<std::size_t>(observation.source)];
+    const Eigen::Index count = sensor.predict(observation, u).predicted.size();
+    for (std::size_t k = 0; k < poses_.size(); ++k) {
+      if (poses_[k].source != observation.source) continue;
+      const Eigen::Index column = 6 * static_cast<Eigen::Index>(k);
+      out.block(first, column, count, 3) = poses_[k].offset * rigid.block(first, 0, count, 3);
+      out.block(first, column + 3, count, 3) = poses_[k].rotation * rigid.block(first, 3, count, 3);
+    }
+    first += count;
+  }
+  return out;
+}
+
+// Shows every frame, linearised at z, with the modal amplitudes of the loads' errors.
+void InputLinearisation::each_row(const Eigen::VectorXd& z, const Visitor& visit) {
+  correct_loads(z);
+  const std::vector<Eigen::VectorXd> thetas = points(z.head(p_));
+  const auto all = models_.runs->start_all(thetas, q_.start);
+  std::vector<LoadErrorResponse> responses;
+  for (const Load& load : loads_) responses.emplace_back(*models_.runs, thetas[0], q_.start, load.course, load.basis);
+  const ReducedTrajectory at_rest(*models_.runs, thetas[0], q_.start);
+  const Eigen::MatrixXd shapes = at_rest.mode_shapes(static_cast<int>(at_rest.modes()->square.size()));
+  Eigen::MatrixXd u = Eigen::MatrixXd::Zero(models_.base.fem().dof_count(), static_cast<Eigen::Index>(thetas.size()));
+  Eigen::MatrixXd amplitudes(shapes.cols(), load_columns());
+  for (const Frame* frame : frames_) {
+    std::vector<double> times;
+    for (const Eigen::VectorXd& theta : thetas) times.push_back(frame->time - models_.base.delay(theta));
+    all->advance(times);
+    all->displacements(u);
+    for (std::size_t i = 0; i < loads_.size(); ++i) {
+      responses[i].advance(times[0]);
+      // The measured load is too large by B eta: the motion under the true one is smaller.
+      amplitudes.middleCols(loads_[i].first - p_, loads_[i].basis.size()) = -responses[i].amplitudes();
+    }
+    visit(row(*frame, thetas, u, shapes, z), amplitudes);
+  }
+}
+
+NormalEquations InputLinearisation::at(const Eigen::VectorXd& z) {
+  NormalEquations out(size_, static_cast<Eigen::Index>(models_.constants.size()));
+  const Eigen::Index l = load_columns(), c = size_ - p_ - l;
+  each_row(z, [&](const Row& row, const Eigen::MatrixXd& amplitudes) {
+    Eigen::MatrixXd own(row.error.size(), p_ + c);
+    own << row.parameters, row.poses;
+    const Eigen::MatrixXd weighted = row.precision.asDiagonal() * own, seen = row.precision.asDiagonal() * row.modes;
+    const Eigen::MatrixXd direct = weighted.transpose() * own;
+    const Eigen::MatrixXd across = (weighted.transpose() * row.modes) * amplitudes;
+    const Eigen::VectorXd pull = weighted.transpose() * row.error;
+    const Eigen::MatrixXd constants = weighted.transpose() * row.constants;
+    out.information.topLeftCorner(p_, p_) += direct.topLeftCorner(p_, p_);
+    out.information.topRightCorner(p_, c) += direct.topRightCorner(p_, c);
+    out.information.bottomRightCorner(c, c) += direct.bottomRightCorner(c, c);
+    out.information.block(0, p_, p_, l) += across.topRows(p_);
+    out.information.block(p_, p_ + l, l, c) += across.bottomRows(c).transpose();
+    out.information.block(p_, p_, l, l).noalias() += amplitudes.transpose() * ((seen.transpose() * row.modes) * amplitudes);
+    out.gradient.head(p_) += pull.head(p_);
+    out.gradient.tail(c) += pull.tail(c);
+    out.gradient.segment(p_, l) += amplitudes.transpose() * (seen.transpose() * row.error);
+    out.constants.topRows(p_) += constants.topRows(p_);
+    out.constants.bottomRows(c) += constants.bottomRows(c);
+    out.constants.middleRows(p_, l) += amplitudes.transpose() * (seen.transpose() * row.constants);
+    out.cost += row.error.dot(row.precision.cwiseProduct(row.error));
+    out.rows += static_cast<double>((row.precision.array() > 0.0).count());
+  });
+  out.information.triangularView<Eigen::StrictlyLower>() = out.information.transpose();
+  out.repeat(repeated_);
+  return out;
+}
+
+}  // namespace tissue_stiffness
