@@ -43,6 +43,19 @@ macro(tissue_stiffness_executables layer)
   endforeach()
 endmacro()
 
+# Tools that write what they know when they are interrupted, also while their libraries are being loaded.
+macro(tissue_stiffness_start_with_signals_held)
+  foreach(tool ${ARGN})
+    set_target_properties(${tool} PROPERTIES OUTPUT_NAME ${tool}.tool)
+    add_executable(start_${tool} ${PROJECT_SOURCE_DIR}/src/tools/start/start.cpp)
+    set_target_properties(start_${tool} PROPERTIES OUTPUT_NAME ${tool})
+    target_compile_options(start_${tool} PRIVATE ${tissue_stiffness_warnings})
+    target_link_options(start_${tool} PRIVATE -Wl,--as-needed)
+    add_dependencies(${tool} start_${tool})
+    list(APPEND tissue_stiffness_executable_targets start_${tool})
+  endforeach()
+endmacro()
+
 # Template, style, scripts and libraries of report.html, compiled into the report layer.
 macro(tissue_stiffness_report_assets)
   set(assets ${CMAKE_CURRENT_BINARY_DIR}/report_assets.cpp)

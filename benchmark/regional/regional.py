@@ -76,7 +76,9 @@ class Body:
 
 
 def tool(name, *arguments):
-    subprocess.run([os.path.join(TOOLS, name), *arguments, '--quiet'], check=True)
+    done = subprocess.run([os.path.join(TOOLS, name), *arguments, '--quiet'])
+    if done.returncode not in (0, 3):  # 3: answered, but not to be used
+        done.check_returncode()
 
 
 def table(results, truth, peer=None):

@@ -1,8 +1,5 @@
 #include "tissue_stiffness/diagnosis/candidates.hpp"
 
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_invoke.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +8,7 @@
 
 #include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/forward/extra_force.hpp"
+#include "tissue_stiffness/forward/for_each_index.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -90,7 +88,7 @@ void read_tangents(const Study& study, const Study& base, const Eigen::VectorXd&
   const double moves = motion(rest);
   const std::vector<Eigen::Index> added = added_parameters(study, base);
   Eigen::MatrixXd columns(rest.error.size(), static_cast<Eigen::Index>(added.size()));
-  tbb::parallel_for(std::size_t{0}, added.size(), [&](std::size_t j) {
+  for_each_index(added.size(), [&](std::size_t j) {
     columns.col(static_cast<Eigen::Index>(j)) = tangent(study, rest, moves, start, added[j]);
     over(static_cast<double>(candidates.size()) / static_cast<double>(added.size()));
   });
@@ -193,8 +191,8 @@ std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd&
     study = std::make_shared<const Study>(settings, study ? *study : base, options);
     read_tangents(*study, base, w, candidates, over);
   };
-  tbb::parallel_invoke([&] { read(linear_ones, 4, BasisOptions::Nonlinear::left_out, library.linear); },
-                       [&] { read(others, 16, BasisOptions::Nonlinear::first_order, library.others); });
+  run_side_by_side([&] { read(linear_ones, 4, BasisOptions::Nonlinear::left_out, library.linear); },
+                   [&] { read(others, 16, BasisOptions::Nonlinear::first_order, library.others); });
   return all;
 }
 
@@ -211,7 +209,8 @@ std::vector<std::string> entries_of_simulation(const Study& base, const Eigen::V
 Eigen::MatrixXd base_tangents(const Study& base, const Eigen::VectorXd& w, const Eigen::VectorXd& std,
                               const Study::Rows& rows) {
   Eigen::MatrixXd out(rows.error.size(), w.size());
-  tbb::parallel_for(Eigen::Index{0}, w.size(), [&](Eigen::Index i) {
+  for_each_index(static_cast<std::size_t>(w.size()), [&](std::size_t k) {
+    const auto i = static_cast<Eigen::Index>(k);
     const double step = std::max(0.5 * std[i], 1e-6);
     Eigen::VectorXd up = w, down = w;
     up[i] += step;

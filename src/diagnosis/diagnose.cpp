@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "tissue_stiffness/diagnosis/finding.hpp"
@@ -16,6 +17,7 @@
 #include "tissue_stiffness/forward/extra_force.hpp"
 #include "tissue_stiffness/settings/extend_model.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "tissue_stiffness/types/stop_request.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -117,61 +119,128 @@ Eigen::VectorXd believed(const Fitted& model, const Finding& finding) {
   return model.study->model().coordinates(finding.refits.front().parameters, model.fit.w);
 }
 
+/// The search: what is known so far is always in `out`.
+class Search {
+ public:
+  Search(const Recording& recording, const DiagnosisOptions& options, Diagnosis& out)
+      : recording_(recording), options_(options), out_(out) {
+    options_.progress = [this, tell = options.progress](const std::string& step, std::size_t done, std::size_t total) {
+      out_.interrupted = step;
+      tell(step, done, total);
+    };
+  }
+
+  void judge_given(const ModelSettings& settings, const TetMesh& mesh) {
+    options_.progress("fit of the given model", 0, 0);
+    model_ = fit_model(settings, mesh, recording_);
+    describe_residual(model_, std::numeric_limits<double>::quiet_NaN(), out_);
+    add_step();
+    finding_ = look(model_, {}, options_, {}, {}, [&](std::vector<MissingEffect> candidates) {
+      out_.candidates = std::move(candidates);
+      publish();
+    });
+    out_.verdict = out_.final_verdict = finding_.verdict;
+    out_.set = finding_.set;
+    out_.best = best_of(model_, finding_);
+    out_.candidates = finding_.effects;
+    out_.next_experiment = next_experiment(finding_.set);
+    out_.sigmas.numerical = finding_.floor;
+    out_.metres.numerical = finding_.floor * out_.metres.noise;
+    publish();
+    if (!lacks_something()) return;
+    options_.progress("the force that is missing", 0, 0);
+    out_.force = missing_force(*model_.study, believed(model_, finding_));
+  }
+
+  void add_effects() {
+    const std::size_t asked = options_.add.size();
+    const std::size_t most = asked + static_cast<std::size_t>(options_.automatic ? options_.most_steps : 0);
+    for (std::size_t k = 0; k < most; ++k) {
+      if (k >= asked && !lacks_something()) break;
+      const std::vector<Refit> refits =
+          k < asked ? look(model_, {options_.add[k]}, options_, finding_.finer, finding_.library).refits : finding_.refits;
+      if (refits.empty() || (k >= asked && !worth_adding(refits.front()))) break;
+      const Library library = add(refits.front());
+      if (k + 1 >= asked && is_noise(model_.rows, finding_.floor)) {
+        out_.final_verdict = "adequate";
+        break;
+      }
+      finding_ = look(model_, {}, options_, finding_.finer, library);
+      out_.final_verdict = finding_.verdict;
+    }
+  }
+
+  void conclude() {
+    // What was added first was fitted while the rest was missing.
+    fit_entries(out_.entries, model_.study->model(), model_.fit);
+    estimate(doubt_of_nonlinear(model_, recording_));
+    options_.progress("run the models once more for the report", 0, 0);
+    publish();
+    options_.at_end(out_, given_.study ? given_ : model_, model_, finding_.finer.study.get());
+    out_.interrupted.clear();
+  }
+
+ private:
+  bool lacks_something() const { return finding_.verdict == "missing" || finding_.verdict == "unexplained"; }
+
+  bool worth_adding(const Refit& refit) const {
+    return proven(model_, refit) && (finding_.verdict != "unexplained" || takes_a_part(model_, refit, recording_));
+  }
+
+  // The library of tangents that the next look may take over.
+  Library add(const Refit& best) {
+    for (const std::string& effect : best.effects) options_.progress("add " + effect, 0, 0);
+    Fitted next = extended(model_, best);
+    Library library = same_body(model_.study->model(), next.study->model()) ? std::move(finding_.library) : Library();
+    out_.final_effects.insert(out_.final_effects.end(), best.effects.begin(), best.effects.end());
+    out_.entries.insert(out_.entries.end(), best.entries.begin(), best.entries.end());
+    out_.final_verdict = "unfinished";
+    if (!given_.study) given_ = std::move(model_);
+    model_ = std::move(next);
+    add_step();
+    return library;
+  }
+
+  void add_step() {
+    out_.steps.push_back(step_of(model_, recording_, out_.final_effects));
+    estimate(Eigen::MatrixXd::Zero(model_.fit.w.size(), model_.fit.w.size()));
+    publish();
+  }
+
+  void estimate(const Eigen::MatrixXd& doubt) {
+    out_.estimate = summarise(model_.study->model().free_parameters(), model_.fit.w, model_.fit.covariance + doubt);
+  }
+
+  void publish() {
+    out_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+    options_.so_far(out_);
+  }
+
+  const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  const Recording& recording_;
+  DiagnosisOptions options_;
+  Diagnosis& out_;
+  Fitted given_, model_;  ///< given_ is empty as long as model_ is the given one
+  Finding finding_;       ///< of model_
+};
+
 }  // namespace
 
 Diagnosis diagnose(const ModelSettings& settings, const TetMesh& mesh, const Recording& recording,
                    const DiagnosisOptions& options) {
-  const auto clock = std::chrono::steady_clock::now();
   if (recording.frames.size() < kFewestFrames) {
     throw InputError(settings.name, std::to_string(recording.frames.size()) + " usable frames",
                      "at least " + std::to_string(kFewestFrames) + " to hold some of them out");
   }
   for (const std::string& name : options.ignore) effect_spec({name, name, {}});  // throws what is none
   Diagnosis out;
-  options.progress("fit of the given model", 0, 0);
-  Fitted given, model = fit_model(settings, mesh, recording);
-  out.steps.push_back(step_of(model, recording, {}));
-  Finding finding = look(model, {}, options);
-  if (finding.verdict == "missing" || finding.verdict == "unexplained") {
-    options.progress("the force that is missing", 0, 0);
-    out.force = missing_force(*model.study, believed(model, finding));
+  Search search(recording, options, out);
+  try {
+    search.judge_given(settings, mesh);
+    search.add_effects();
+    search.conclude();
+  } catch (const Interrupted&) {  // `out` says during what
   }
-  describe_residual(model, finding.floor, out);
-  out.verdict = out.final_verdict = finding.verdict;
-  out.set = finding.set;
-  out.best = best_of(model, finding);
-  out.candidates = finding.effects;
-  out.next_experiment = next_experiment(finding.set);
-
-  const std::size_t asked = options.add.size();
-  const std::size_t most = asked + static_cast<std::size_t>(options.automatic ? options.most_steps : 0);
-  for (std::size_t k = 0; k < most; ++k) {
-    if (k >= asked && finding.verdict != "missing" && finding.verdict != "unexplained") break;
-    const std::vector<Refit> refits =
-        k < asked ? look(model, {options.add[k]}, options, finding.finer, finding.library).refits : finding.refits;
-    if (refits.empty() || (k >= asked && !proven(model, refits.front()))) break;
-    if (k >= asked && finding.verdict == "unexplained" && !takes_a_part(model, refits.front(), recording)) break;
-    const Refit& best = refits.front();
-    for (const std::string& effect : best.effects) options.progress("add " + effect, 0, 0);
-    Fitted next = extended(model, best);
-    const Library library = same_body(model.study->model(), next.study->model()) ? std::move(finding.library) : Library();
-    out.final_effects.insert(out.final_effects.end(), best.effects.begin(), best.effects.end());
-    out.entries.insert(out.entries.end(), best.entries.begin(), best.entries.end());
-    if (!given.study) given = std::move(model);
-    model = std::move(next);
-    out.steps.push_back(step_of(model, recording, out.final_effects));
-    if (k + 1 >= asked && is_noise(model.rows, finding.floor)) {
-      out.final_verdict = "adequate";
-      break;
-    }
-    finding = look(model, {}, options, finding.finer, library);
-    out.final_verdict = finding.verdict;
-  }
-  fit_entries(out.entries, model.study->model(), model.fit);  // what was added first was fitted while the rest was missing
-  out.estimate = summarise(model.study->model().free_parameters(), model.fit.w,
-                           model.fit.covariance + doubt_of_nonlinear(model, recording));
-  out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
-  options.at_end(out, given.study ? given : model, model, finding.finer.study.get());
   return out;
 }
 

@@ -104,11 +104,13 @@ bool proven(const Fitted& base, const Refit& refit) {
 }
 
 Finding look(const Fitted& base, const std::vector<std::string>& wanted, const DiagnosisOptions& options,
-             const FinerMesh& finer, const Library& library) {
+             const FinerMesh& finer, const Library& library, const CandidatesSoFar& so_far) {
   const FirstLook look(base, options, finer, library);
   require_proposed(look, wanted);
   Finding out;
-  out.refits = search_refits(look, wanted, options);
+  so_far(describe(look, {}));
+  const auto refitted = [&](const std::vector<Refit>& refits) { so_far(describe(look, refits)); };
+  out.refits = search_refits(look, wanted, options, refitted);
   out.verdict = judge(look, out.refits);
   if (out.verdict == "missing" || out.verdict == "unexplained") out.set = set_of(look, out.refits);
   out.effects = describe(look, out.refits);

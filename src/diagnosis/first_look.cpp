@@ -1,9 +1,9 @@
 #include "tissue_stiffness/diagnosis/first_look.hpp"
 
-#include <tbb/parallel_invoke.h>
-
 #include <algorithm>
 #include <utility>
+
+#include "tissue_stiffness/forward/for_each_index.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -33,7 +33,7 @@ FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Fine
   const Study::Rows& r = base.rows;
   const auto worsens = [&](const Eigen::VectorXd& by) { return (r.error - by).squaredNorm() > (1.0 + kElsewhere) * cost; };
   const bool within_noise = noise() && options.add.empty();  // who asks for effects by name may have any
-  tbb::parallel_invoke(
+  run_side_by_side(
       [&] {
         candidates = find_candidates(
             *base.study, base.fit.w, within_noise, options.ignore,

@@ -1,7 +1,5 @@
 #include "tissue_stiffness/diagnosis/refit_list.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -9,7 +7,9 @@
 #include <utility>
 
 #include "tissue_stiffness/effects/registry.hpp"
+#include "tissue_stiffness/forward/for_each_index.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "tissue_stiffness/types/stop_request.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -58,7 +58,9 @@ void RefitList::try_each(std::size_t count, const std::function<std::string(std:
                          const std::function<void(std::size_t)>& work) const {
   std::mutex telling;
   std::size_t over = 0;
+  const auto& checkpoint = look_.base.study->recording().checkpoint;
   const auto try_one = [&](std::size_t i) {
+    checkpoint();
     {
       const std::lock_guard<std::mutex> lock(telling);
       options_.progress(name(i), over, count);
@@ -66,13 +68,13 @@ void RefitList::try_each(std::size_t count, const std::function<std::string(std:
     try {
       work(i);
     } catch (const NumericalError&) {
-      look_.base.study->recording()
-          .checkpoint();  // a study that was ended; else a model that cannot be run explains nothing
+      // A study that was ended; otherwise a model that cannot be run explains nothing.
+      checkpoint();
     }
     const std::lock_guard<std::mutex> lock(telling);
     ++over;
   };
-  tbb::parallel_for(std::size_t{0}, count, try_one, tbb::simple_partitioner());
+  for_each_index(count, try_one, tbb::simple_partitioner());
 }
 
 void RefitList::add(std::vector<std::vector<Addition>> list) {
@@ -85,14 +87,24 @@ void RefitList::add(std::vector<std::vector<Addition>> list) {
   for (std::vector<Addition>& additions : list) trials.emplace_back(parameters_of(additions), std::move(additions));
   std::stable_sort(trials.begin(), trials.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<std::optional<Refit>> done(trials.size());
-  try_each(
-      trials.size(), [&](std::size_t i) { return "refit with " + names_of(trials[i].second); },
-      [&](std::size_t i) { done[i] = refit(look_.base, trials[i].second, look_.finer.change, rival); });
+  try {
+    try_each(
+        trials.size(), [&](std::size_t i) { return "refit with " + names_of(trials[i].second); },
+        [&](std::size_t i) { done[i] = refit(look_.base, trials[i].second, look_.finer.change, rival); });
+  } catch (const Interrupted&) {
+    keep(std::move(done));
+    throw;
+  }
+  keep(std::move(done));
+}
+
+void RefitList::keep(std::vector<std::optional<Refit>> done) {
   for (std::optional<Refit>& refit : done) {
     if (refit) refits_.push_back(std::move(*refit));
   }
   sort();
   for (std::size_t i = 1; i < refits_.size(); ++i) refits_[i].model.reset();
+  so_far_(refits_);
 }
 
 double RefitList::left_beside_steps() {

@@ -7,8 +7,6 @@
 #include <set>
 #include <utility>
 
-#include "tissue_stiffness/diagnosis/refit_list.hpp"
-
 namespace tissue_stiffness {
 namespace {
 
@@ -33,7 +31,8 @@ constexpr double kRival = 0.5;         // of a leader's evidence by tangents: le
 /// The search, stage by stage.
 class Search {
  public:
-  Search(const FirstLook& look, const DiagnosisOptions& options) : look_(look), refits_(look, options) {}
+  Search(const FirstLook& look, const DiagnosisOptions& options, const RefitsSoFar& so_far)
+      : look_(look), refits_(look, options, so_far) {}
 
   std::vector<Refit> operator()(const std::vector<std::string>& wanted) {
     refit_singles(wanted);
@@ -259,8 +258,8 @@ void Search::refit_pairs() {
 }  // namespace
 
 std::vector<Refit> search_refits(const FirstLook& look, const std::vector<std::string>& wanted,
-                                 const DiagnosisOptions& options) {
-  return Search(look, options)(wanted);
+                                 const DiagnosisOptions& options, const RefitsSoFar& so_far) {
+  return Search(look, options, so_far)(wanted);
 }
 
 }  // namespace tissue_stiffness

@@ -1,7 +1,5 @@
 #include "tissue_stiffness/diagnosis/study.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +7,7 @@
 #include "tissue_stiffness/estimation/compare.hpp"
 #include "tissue_stiffness/estimation/coordinate_scan.hpp"
 #include "tissue_stiffness/forward/extra_force.hpp"
+#include "tissue_stiffness/forward/for_each_index.hpp"
 #include "tissue_stiffness/meshing/build_mesh.hpp"
 
 namespace tissue_stiffness {
@@ -58,6 +57,7 @@ Study::Study(const ModelSettings& settings, const Study& relative, const BasisOp
 }
 
 void Study::prepare(const BasisOptions& basis, const ForwardModel* relative) {
+  recording_.checkpoint();  // what follows may take longer than a frame
   model_.drive(recording_.first_stamp, recording_.loads);
   BasisOptions whole = basis;
   whole.steps_per_frame = kSteps;
@@ -136,7 +136,10 @@ Eigen::VectorXd Study::predicted(const Eigen::VectorXd& w) const {
 void Study::show(const Eigen::VectorXd& w, const FreeFrameVisitor& visit) {
   forward_->focus({});
   const FitProblem all = problem(*forward_, recording_.frames);
-  free_run({model_, *forward_, operators_, all.frames, all.start}, model_.theta(w), visit);
+  free_run({model_, *forward_, operators_, all.frames, all.start}, model_.theta(w), [&](const FreeFrame& frame) {
+    recording_.checkpoint();
+    visit(frame);
+  });
 }
 
 Eigen::MatrixXd Study::rows_along(const Eigen::VectorXd& w, const Eigen::MatrixXd& shapes, const Rows& rows) const {
@@ -193,7 +196,7 @@ BatchFit Study::fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd spread) 
   for (const Frame& frame : recording_.frames) times.push_back(frame.time);
   const auto run = [&](const Eigen::VectorXd& w) {
     auto runs = std::make_unique<AnchoredModel>(*forward_, *quick_);
-    runs->anchor(model_.theta(w), start, times);
+    runs->anchor(model_.theta(w), start, times, recording_.checkpoint);
     return runs;
   };
   anchored_ = run(at);
@@ -243,8 +246,10 @@ Study::Place Study::scan_near(const Eigen::VectorXd& start, const std::vector<Ei
       return Eigen::VectorXd(from + k * kNearStep * std[i] * Eigen::VectorXd::Unit(from.size(), i));
     };
     Eigen::VectorXd costs(2 * kNearPoints + 1);
-    tbb::parallel_for(-kNearPoints, kNearPoints + 1,
-                      [&](int k) { costs[k + kNearPoints] = free_fit(train, place(k)).cost; });
+    for_each_index(static_cast<std::size_t>(costs.size()), [&](std::size_t i) {
+      const int k = static_cast<int>(i);
+      costs[k] = free_fit(train, place(k - kNearPoints)).cost;
+    });
     Eigen::Index lowest = 0;
     best.cost = costs.minCoeff(&lowest);
     best.w = place(static_cast<int>(lowest) - kNearPoints);

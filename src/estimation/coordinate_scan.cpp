@@ -1,6 +1,6 @@
 #include "tissue_stiffness/estimation/coordinate_scan.hpp"
 
-#include <tbb/parallel_for.h>
+#include "tissue_stiffness/forward/for_each_index.hpp"
 
 namespace tissue_stiffness {
 
@@ -16,7 +16,10 @@ ScanResult scan_coordinates(const std::function<double(const Eigen::VectorXd&)>&
       return w;
     };
     Eigen::VectorXd costs(2 * points + 1);
-    tbb::parallel_for(0, 2 * points + 1, [&](int k) { costs[k] = cost(place(k)); });
+    for_each_index(static_cast<std::size_t>(costs.size()), [&](std::size_t i) {
+      const int k = static_cast<int>(i);
+      costs[k] = cost(place(k));
+    });
     Eigen::Index lowest = 0;
     if (!(costs.minCoeff(&lowest) < result.lowest)) continue;
     result.lowest = costs[lowest];

@@ -33,8 +33,9 @@ void Estimator::add_load(const LoadSample& sample) {
 StepResult Estimator::step(const Frame& frame) {
   return implementation_->scheme->step(frame);
 }
-StepResult Estimator::replay(const std::vector<Frame>& frames, const Estimate* near) {
-  return implementation_->scheme->replay(frames, near);
+StepResult Estimator::replay(const std::vector<Frame>& frames, const Estimate* near,
+                             const std::function<void()>& checkpoint) {
+  return implementation_->scheme->replay(frames, near, checkpoint);
 }
 std::optional<StepResult> Estimator::catch_up() {
   return implementation_->scheme->catch_up();

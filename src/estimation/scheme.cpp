@@ -119,11 +119,12 @@ std::optional<StepResult> Scheme::catch_up() {
   }
 }
 
-StepResult Scheme::replay(const std::vector<Frame>& frames, const Estimate* near) {
+StepResult Scheme::replay(const std::vector<Frame>& frames, const Estimate* near, const std::function<void()>& checkpoint) {
   replaying_ = true;
   near_ = near;
   StepResult last;
   for (const Frame& frame : frames) {
+    checkpoint();
     more_follow_ = &frame != &frames.back();
     StepResult result = step(frame);
     if (result.used || !last.used) last = std::move(result);
@@ -149,6 +150,8 @@ bool Scheme::seen(const Frame& frame) const {
 
 void Scheme::reset() {
   stop();
+  replaying_ = false;
+  near_ = nullptr;
   last_time_.reset();
   first_stamp_.reset();
   first_load_ = INFINITY;

@@ -1,9 +1,8 @@
 #include "tissue_stiffness/forward/anchored_model.hpp"
 
-#include <tbb/parallel_invoke.h>
-
 #include <algorithm>
-#include <exception>
+
+#include "tissue_stiffness/forward/for_each_index.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -11,10 +10,11 @@ namespace {
 constexpr double kFarthest = 1.0;  // lengths of the last move: farther off nothing is known
 
 Eigen::MatrixXd displacements(const ForwardModel& model, const Eigen::VectorXd& theta, double start,
-                              const std::vector<double>& times) {
+                              const std::vector<double>& times, const std::function<void()>& checkpoint) {
   const auto run = model.start(theta, start);
   Eigen::MatrixXd u(run->displacement().size(), static_cast<Eigen::Index>(times.size()));
   for (std::size_t k = 0; k < times.size(); ++k) {
+    checkpoint();
     run->advance(times[k]);
     u.col(static_cast<Eigen::Index>(k)) = run->displacement();
   }
@@ -55,10 +55,11 @@ class AnchoredTrajectory : public Trajectory {
 
 }  // namespace
 
-void AnchoredModel::anchor(const Eigen::VectorXd& theta, double start, const std::vector<double>& times) {
+void AnchoredModel::anchor(const Eigen::VectorXd& theta, double start, const std::vector<double>& times,
+                           const std::function<void()>& checkpoint) {
   Eigen::MatrixXd accurate, cheap;
-  tbb::parallel_invoke([&] { accurate = displacements(*accurate_, theta, start, times); },
-                       [&] { cheap = displacements(*cheap_, theta, start, times); });
+  run_side_by_side([&] { accurate = displacements(*accurate_, theta, start, times, checkpoint); },
+                   [&] { cheap = displacements(*cheap_, theta, start, times, checkpoint); });
   times_ = times;
   anchor_ = theta;
   difference_ = accurate - cheap;

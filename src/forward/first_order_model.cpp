@@ -1,11 +1,10 @@
 #include "tissue_stiffness/forward/first_order_model.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "tissue_stiffness/forward/extra_force.hpp"
+#include "tissue_stiffness/forward/for_each_index.hpp"
 #include "tissue_stiffness/forward/reduced_trajectory.hpp"
 
 namespace tissue_stiffness {
@@ -48,8 +47,9 @@ class FirstOrderTrajectory : public Trajectory {
     coordinates.rightCols(steps) = modes_->shapes * modal_velocities;
     const Eigen::MatrixXd motion = basis_ * coordinates;
     Eigen::MatrixXd forces(motion.rows(), steps);
-    tbb::parallel_for(0, steps, [&](int k) {
-      forces.col(k) = extra_(times[static_cast<std::size_t>(k)], motion.col(k), motion.col(steps + k));
+    for_each_index(times.size(), [&](std::size_t i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      forces.col(k) = extra_(times[i], motion.col(k), motion.col(steps + k));
     });
     const Eigen::MatrixXd modal = modes_->shapes.transpose() * (transposed_ * forces);
     for (int k = 0; k < steps; ++k) {

@@ -12,8 +12,10 @@
 namespace tissue_stiffness {
 namespace {
 
-TetMesh fill(const TriangleSurface& surface, const MeshSettings& settings, bool keep_triangles, const std::string& where) {
-  return check_tet_file(fill_surface(surface, settings.max_edge_length, keep_triangles, where), 1.0, settings.order, where);
+TetMesh fill(const TriangleSurface& surface, const MeshSettings& settings, bool keep_triangles, const std::string& where,
+             const std::function<void()>& checkpoint) {
+  return check_tet_file(fill_surface(surface, settings.max_edge_length, keep_triangles, where, checkpoint), 1.0,
+                        settings.order, where);
 }
 
 void require_positive(const std::string& key, double value) {
@@ -23,27 +25,29 @@ void require_positive(const std::string& key, double value) {
 
 }  // namespace
 
-TetMesh build_mesh(const MeshSettings& settings) {
+TetMesh build_mesh(const MeshSettings& settings, const std::function<void()>& checkpoint) {
   if (is_tet_file(settings.file)) return load_tet_mesh(settings.file, settings.scale, settings.order);
   const std::string where = "mesh file " + settings.file;
   if (!is_surface_file(settings.file)) {
     throw InputError(where, "ending '" + file_ending(settings.file) + "'", ".vtk, .node, .ele, .msh, .stl, .ply or .obj");
   }
   const TriangleSurface surface = load_surface(settings.file, settings.scale);
-  return fill(surface, settings, false, where);
+  return fill(surface, settings, false, where, checkpoint);
 }
 
-TetMesh build_mesh(const MeshSettings& settings, const Contour& contour, const Camera& camera) {
-  if (settings.source == MeshSettings::Source::file) return build_mesh(settings);
+TetMesh build_mesh(const MeshSettings& settings, const Contour& contour, const Camera& camera,
+                   const std::function<void()>& checkpoint) {
+  if (settings.source == MeshSettings::Source::file) return build_mesh(settings, checkpoint);
   check_outline(contour);
   require_positive("max_edge_length", settings.max_edge_length);
   if (settings.source == MeshSettings::Source::extrude) {
     require_positive("depth", settings.depth);
     const TriangleSurface surface = extruded_surface(contour, camera, settings.depth, settings.max_edge_length);
-    return fill(surface, settings, false, "mesh.extrude");
+    return fill(surface, settings, false, "mesh.extrude", checkpoint);
   }
   const ProfileFit fit = fit_profile(viewing_rays(contour, camera), camera, settings.axis);
-  TetMesh mesh = fill(revolution_surface(fit.profile, settings.max_edge_length), settings, true, "mesh.revolve");
+  TetMesh mesh =
+      fill(revolution_surface(fit.profile, settings.max_edge_length), settings, true, "mesh.revolve", checkpoint);
   curve_boundary(mesh, fit.profile);
   return mesh;
 }

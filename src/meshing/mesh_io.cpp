@@ -2,15 +2,36 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
 #include <iomanip>
 #include <limits>
+#include <ostream>
 
 #include "tissue_stiffness/meshing/file_ending.hpp"
 #include "tissue_stiffness/meshing/tet_file_check.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "tissue_stiffness/types/pending_file.hpp"
 
 namespace tissue_stiffness {
+namespace {
+
+void write_vtk(const TetMesh& mesh, std::ostream& out) {
+  out << "# vtk DataFile Version 3.0\ntissue_stiffness mesh, m\nASCII\nDATASET UNSTRUCTURED_GRID\n";
+  out << "POINTS " << mesh.node_count() << " double\n" << std::setprecision(std::numeric_limits<double>::max_digits10);
+  for (int i = 0; i < mesh.node_count(); ++i) {
+    out << mesh.nodes(0, i) << ' ' << mesh.nodes(1, i) << ' ' << mesh.nodes(2, i) << '\n';
+  }
+  const Eigen::Index size = mesh.tets.rows();
+  out << "CELLS " << mesh.tet_count() << ' ' << mesh.tet_count() * (size + 1) << '\n';
+  for (int tet = 0; tet < mesh.tet_count(); ++tet) {
+    out << size;
+    for (Eigen::Index i = 0; i < size; ++i) out << ' ' << mesh.tets(i, tet);
+    out << '\n';
+  }
+  out << "CELL_TYPES " << mesh.tet_count() << '\n';
+  for (int tet = 0; tet < mesh.tet_count(); ++tet) out << (mesh.quadratic() ? "24\n" : "10\n");
+}
+
+}  // namespace
 
 std::string file_ending(const std::string& file) {
   const std::size_t dot = file.rfind('.');
@@ -36,23 +57,7 @@ TetMesh load_tet_mesh(const std::string& file, double scale, int order) {
 
 void save_mesh(const TetMesh& mesh, const std::string& file) {
   if (file_ending(file) != ".vtk") throw InputError("mesh file " + file, "another ending", ".vtk");
-  std::ofstream out(file);
-  out << "# vtk DataFile Version 3.0\ntissue_stiffness mesh, m\nASCII\nDATASET UNSTRUCTURED_GRID\n";
-  out << "POINTS " << mesh.node_count() << " double\n" << std::setprecision(std::numeric_limits<double>::max_digits10);
-  for (int i = 0; i < mesh.node_count(); ++i) {
-    out << mesh.nodes(0, i) << ' ' << mesh.nodes(1, i) << ' ' << mesh.nodes(2, i) << '\n';
-  }
-  const Eigen::Index size = mesh.tets.rows();
-  out << "CELLS " << mesh.tet_count() << ' ' << mesh.tet_count() * (size + 1) << '\n';
-  for (int tet = 0; tet < mesh.tet_count(); ++tet) {
-    out << size;
-    for (Eigen::Index i = 0; i < size; ++i) out << ' ' << mesh.tets(i, tet);
-    out << '\n';
-  }
-  out << "CELL_TYPES " << mesh.tet_count() << '\n';
-  for (int tet = 0; tet < mesh.tet_count(); ++tet) out << (mesh.quadratic() ? "24\n" : "10\n");
-  out.close();
-  if (!out) throw InputError("mesh file " + file, "no writable file", "a file that can be written");
+  write_file(file, [&mesh](std::ostream& out) { write_vtk(mesh, out); });
 }
 
 }  // namespace tissue_stiffness

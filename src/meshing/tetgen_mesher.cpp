@@ -196,10 +196,10 @@ bool has_tetgen() {
 }
 
 // Apart, because TetGen 1.5's library frees its memory twice when it gives up.
-TetFile fill_surface(const TriangleSurface& surface, double max_edge_length, bool keep_triangles,
-                     const std::string& where) {
+TetFile fill_surface(const TriangleSurface& surface, double max_edge_length, bool keep_triangles, const std::string& where,
+                     const std::function<void()>& checkpoint) {
   const auto result =
-      run_apart([&] { return mesh_or_message(surface, max_edge_length, keep_triangles, where); }, kMaxSeconds);
+      run_apart([&] { return mesh_or_message(surface, max_edge_length, keep_triangles, where); }, kMaxSeconds, checkpoint);
   if (!result || result->empty()) {
     throw InputError(where, "a surface on which TetGen gives up",
                      "a closed surface without needle triangles or parts that nearly touch");
@@ -214,7 +214,7 @@ bool has_tetgen() {
   return false;
 }
 
-TetFile fill_surface(const TriangleSurface&, double, bool, const std::string& where) {
+TetFile fill_surface(const TriangleSurface&, double, bool, const std::string& where, const std::function<void()>&) {
   throw InputError(where, "a surface, but this build is without TetGen",
                    "tetrahedra (.vtk, .node/.ele, .msh), or a build with -DTISSUE_STIFFNESS_TETGEN=ON");
 }

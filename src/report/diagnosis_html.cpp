@@ -30,11 +30,13 @@ std::string paragraph(const std::string& text) {
 }
 
 std::string verdict_badge(const std::string& verdict) {
-  const std::string colour = verdict == "adequate" ? "good" : verdict == "missing" ? "warn" : "bad";
-  const std::string text = verdict == "missing"    ? "an effect is missing"
-                           : verdict == "numerics" ? "mesh too coarse to tell"
-                           : verdict == "adequate" ? "model adequate"
-                                                   : "error not explained";
+  const bool open = verdict == "missing" || verdict == "unfinished";
+  const std::string colour = verdict == "adequate" ? "good" : open ? "warn" : "bad";
+  const std::string text = verdict == "missing"      ? "an effect is missing"
+                           : verdict == "numerics"   ? "mesh too coarse to tell"
+                           : verdict == "adequate"   ? "model adequate"
+                           : verdict == "unfinished" ? "no verdict yet"
+                                                     : "error not explained";
   return "<span class=\"badge " + colour + "\">" + text + "</span>";
 }
 
@@ -64,14 +66,18 @@ std::string modulus_answer(const std::string& name, const Diagnosis& d) {
   }
   if (text.empty()) return "";
   if (!interval.empty() && d.estimate.state == EstimateState::no_data) interval += ", of the fit itself";
-  if (d.final_verdict != "adequate") interval += std::string(interval.empty() ? "" : "; ") + "biased by what is missing";
+  const std::string bias = d.final_verdict == "adequate"     ? ""
+                           : d.final_verdict == "unfinished" ? "not known yet whether something is missing that biases it"
+                                                             : "biased by what is missing";
+  if (!bias.empty()) interval += (interval.empty() ? "" : "; ") + bias;
   return "<p class=\"answer\"><span class=\"name\">" + escape_html(name) + "</span><b>" + escape_html(text) +
          "</b> <span class=\"interval\">" + escape_html(interval) + "</span></p>";
 }
 
 std::string answer(const Diagnosis& d) {
-  std::string text =
-      "<p>" + verdict_badge(d.verdict) + "</p><p class=\"verdict\">" + escape_html(diagnosis_sentence(d)) + "</p>";
+  std::string text = interruption_notice(d.interrupted) + "<p>" + verdict_badge(d.verdict) + "</p><p class=\"verdict\">" +
+                     escape_html(diagnosis_sentence(d)) + "</p>";
+  if (d.steps.empty()) return section("answer", "", text);
   const DiagnosisStep &first = d.steps.front(), &last = d.steps.back();
   if (d.steps.size() > 1) {
     text += modulus_answer("Young's modulus, with " + effect_list(d.final_effects), d) +
@@ -98,6 +104,7 @@ std::string force_paragraph(const MissingForce& force) {
 }
 
 std::string fails(const Diagnosis& d) {
+  if (d.steps.empty()) return "";
   const ErrorParts &m = d.metres, &s = d.sigmas;
   return section("fails", "Where and when the given model fails",
                  "<dl class=\"facts\">" + part("Error, rms", m.total, s.total) + part("of it noise", m.noise, s.noise) +
@@ -188,6 +195,7 @@ std::string ranking(const Diagnosis& d) {
 }
 
 std::string staircase(const Diagnosis& d) {
+  if (d.steps.empty()) return "";
   std::string rows;
   std::size_t known = 0;
   for (const DiagnosisStep& step : d.steps) {

@@ -89,22 +89,24 @@ std::string diagnosis_json(const Diagnosis& d) {
                      {"held_out_rms", number(s.held_out_rms)},
                      {"noise_floor", number(s.noise_floor)}});
   }
-  const json root = {{"verdict", d.verdict},
-                     {"set", d.set},
-                     {"best",
-                      {{"effects", d.best.effects},
-                       {"explained", number(d.best.explained)},
-                       {"held_out_rms", number(d.best.held_out_rms)}}},
-                     {"candidates", candidates},
-                     {"where", d.where},
-                     {"when", d.when},
-                     {"how_much", {{"metres", parts_json(d.metres)}, {"sigmas", parts_json(d.sigmas)}}},
-                     {"residual", residual_json(d.residual)},
-                     {"missing_force", force_json(d.force)},
-                     {"steps", steps},
-                     {"next_experiment", d.next_experiment},
-                     {"final", final},
-                     {"seconds", number(d.seconds)}};
+  json root = {{"complete", d.interrupted.empty()},
+               {"verdict", d.verdict},
+               {"set", d.set},
+               {"best",
+                {{"effects", d.best.effects},
+                 {"explained", number(d.best.explained)},
+                 {"held_out_rms", number(d.best.held_out_rms)}}},
+               {"candidates", candidates},
+               {"where", d.where},
+               {"when", d.when},
+               {"how_much", {{"metres", parts_json(d.metres)}, {"sigmas", parts_json(d.sigmas)}}},
+               {"residual", residual_json(d.residual)},
+               {"missing_force", force_json(d.force)},
+               {"steps", steps},
+               {"next_experiment", d.next_experiment},
+               {"final", final},
+               {"seconds", number(d.seconds)}};
+  if (!d.interrupted.empty()) root["interrupted_during"] = d.interrupted;
   return root.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }
 

@@ -75,6 +75,12 @@ std::string surface_place(bool arrows) {
 
 }  // namespace
 
+std::string interruption_notice(const std::string& interrupted) {
+  if (interrupted.empty()) return "";
+  return "<p><span class=\"badge warn\">incomplete</span> The work was interrupted during: " + escape_html(interrupted) +
+         ". This page holds what was known by then.</p>";
+}
+
 std::string short_path(const std::string& file) {
   const std::filesystem::path path(file);
   return (path.parent_path().filename() / path.filename()).string();

@@ -77,7 +77,7 @@ std::string answer(const Results& results) {
   const std::string badge_line =
       "<p>" + badge(state.colour, state.badge) + " " + state.sentence +
       (results.state_reason.empty() ? "" : " Reason: " + escape_html(results.state_reason) + ".") + "</p>";
-  return section("answer", "", badge_line + text);
+  return section("answer", "", interruption_notice(results.interrupted) + badge_line + text);
 }
 
 std::string fact(const std::string& name, const std::string& value, const std::string& remark) {

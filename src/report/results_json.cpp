@@ -80,6 +80,7 @@ std::string results_json(const Results& results) {
     if (!frame.used) skipped.push_back({{"time", number(frame.time)}, {"reason", frame.reason}});
   }
   json root = {
+      {"complete", results.interrupted.empty()},
       {"model", results.model},
       {"recording", results.recording},
       {"state", to_string(results.state)},
@@ -99,6 +100,7 @@ std::string results_json(const Results& results) {
        {{"median", number(results.frame_seconds_quantile(0.5))}, {"p99", number(results.frame_seconds_quantile(0.99))}}},
       {"versions", versions},
   };
+  if (!results.interrupted.empty()) root["interrupted_during"] = results.interrupted;
   if (results.map) root["map"] = map_json(*results.map);
   return root.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }

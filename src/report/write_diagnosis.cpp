@@ -8,7 +8,6 @@
 #include "tissue_stiffness/report/effect_words.hpp"
 #include "tissue_stiffness/report/text.hpp"
 #include "tissue_stiffness/report/write_results.hpp"
-#include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -20,6 +19,7 @@ std::string millimetres(double metres) {
 }  // namespace
 
 std::string diagnosis_sentence(const Diagnosis& d) {
+  if (d.verdict == "unfinished") return "There is no verdict yet: the search for what is missing was interrupted.";
   if (d.verdict == "adequate") return "The model is adequate: what it leaves is noise.";
   if (d.verdict == "numerics") return "The mesh is too coarse to tell: a finer one would change more than any effect.";
   if (d.best.effects.empty()) return "The error has structure, but no effect of the library explains it.";
@@ -42,13 +42,11 @@ std::string diagnosis_sentence(const Diagnosis& d) {
 
 void write_diagnosis(const Diagnosis& d, const DiagnosisTexts& texts, const Showing& showing,
                      const std::string& directory) {
-  std::error_code error;
-  std::filesystem::create_directories(directory, error);
-  if (error) throw InputError(directory, error.message(), "a writable folder");
+  make_folder(directory);
   const std::filesystem::path folder(directory);
-  write_text((folder / "diagnosis.json").string(), diagnosis_json(d));
   write_text((folder / "model_next.yaml").string(), texts.next_model_text);
   write_text((folder / "report.html").string(), diagnosis_html(d, texts, showing));
+  write_text((folder / "diagnosis.json").string(), diagnosis_json(d));
 }
 
 }  // namespace tissue_stiffness

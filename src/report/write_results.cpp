@@ -1,27 +1,29 @@
 #include "tissue_stiffness/report/write_results.hpp"
 
 #include <filesystem>
-#include <fstream>
+#include <ostream>
 
 #include "tissue_stiffness/types/error.hpp"
+#include "tissue_stiffness/types/pending_file.hpp"
 
 namespace tissue_stiffness {
 
 void write_text(const std::string& file, const std::string& text) {
-  std::ofstream stream(file, std::ios::binary);
-  stream << text;
-  stream.close();
-  if (!stream) throw InputError(file, "a file that cannot be written", "a writable folder");
+  write_file(file, [&](std::ostream& out) { out << text; });
 }
 
-void write_results(const Results& results, const Showing& showing, const std::string& directory) {
+void make_folder(const std::string& directory) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);
   if (error) throw InputError(directory, error.message(), "a writable folder");
+}
+
+void write_results(const Results& results, const Showing& showing, const std::string& directory) {
+  make_folder(directory);
   const std::filesystem::path folder(directory);
-  write_text((folder / "results.json").string(), results_json(results));
   write_text((folder / "estimates.csv").string(), estimates_csv(results));
   write_text((folder / "report.html").string(), report_html(results, showing));
+  write_text((folder / "results.json").string(), results_json(results));
 }
 
 }  // namespace tissue_stiffness

@@ -1,5 +1,3 @@
-#include <tbb/parallel_invoke.h>
-
 #include <fstream>
 #include <functional>
 #include <iostream>
@@ -11,13 +9,16 @@
 #include "tissue_stiffness/diagnosis/diagnose.hpp"
 #include "tissue_stiffness/diagnosis/replay_model.hpp"
 #include "tissue_stiffness/estimation/estimator.hpp"
+#include "tissue_stiffness/forward/for_each_index.hpp"
 #include "tissue_stiffness/report/effect_words.hpp"
 #include "tissue_stiffness/report/write_diagnosis.hpp"
+#include "tissue_stiffness/report/write_results.hpp"
 #include "tissue_stiffness/settings/extend_model.hpp"
 #include "tissue_stiffness/tools/print_diagnosis.hpp"
 #include "tissue_stiffness/tools/progress.hpp"
 #include "tissue_stiffness/tools/recording_reader.hpp"
 #include "tissue_stiffness/tools/run_tool.hpp"
+#include "tissue_stiffness/tools/stop_on_signals.hpp"
 #include "tissue_stiffness/tools/versions.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
@@ -40,7 +41,7 @@ Estimate estimate_at_last(const Diagnosis& diagnosis, const Fitted& given, const
   Estimator estimator(extend_model(model.settings(), diagnosis.entries), model.mesh(), relatives);
   estimator.set_first_stamp(recording.first_stamp);
   for (const LoadSample& load : recording.loads) estimator.add_load(load);
-  estimator.replay(recording.frames, &diagnosis.estimate);
+  estimator.replay(recording.frames, &diagnosis.estimate, recording.checkpoint);
   return estimator.estimate();
 }
 
@@ -55,32 +56,34 @@ void try_run(const std::string& what, const std::function<void()>& run) {
 
 /// What the report shows beyond the diagnosis: the estimate, and the free runs of the given model and, where effects were
 /// added, the last one's.
-void run_once_more(const Diagnosis& diagnosis, Fitted& given, Fitted& last, const Study* finer,
-                   const std::vector<double>& stamps, Estimate& estimate, std::vector<Replay>& replays) {
+void run_once_more(Diagnosis& diagnosis, Fitted& given, Fitted& last, const Study* finer, const std::vector<double>& stamps,
+                   std::vector<Replay>& replays) {
   const auto replay = [&](Fitted& fitted, const std::string& name) {
     Replay out = replay_model(fitted, stamps);
     out.name = name;
     return out;
   };
-  Replay extended;
-  replays.emplace_back();
-  tbb::parallel_invoke(
-      [&] { try_run("the estimator", [&] { estimate = estimate_at_last(diagnosis, given, last, finer); }); },
-      [&] { replays.front() = replay(given, "as given"); },
+  Replay as_given, extended;
+  run_side_by_side(
+      [&] { try_run("the estimator", [&] { diagnosis.estimate = estimate_at_last(diagnosis, given, last, finer); }); },
+      [&] { as_given = replay(given, "as given"); },
       [&] {
         if (&last == &given) return;
         try_run("the extended model", [&] { extended = replay(last, "with " + effect_list(diagnosis.final_effects)); });
       });
+  replays.push_back(std::move(as_given));
   if (!extended.name.empty()) replays.push_back(std::move(extended));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  StopRequest& stop = stop_on_signals();
   CLI::App app("Compares a model with a recording and says which physical effect it misses.", "diagnose");
   DiagnosisTexts texts;
   DiagnosisOptions options;
   std::string output;
+  double time_limit = 0.0;
   bool quiet = false, json = false;
   app.add_option("MODEL", texts.model, "model file (YAML)")->required();
   app.add_option("RECORDING", texts.recording, "rosbag")->required();
@@ -88,28 +91,35 @@ int main(int argc, char** argv) {
   app.add_option("--add", options.add, "add this effect and fit again (may be given several times)")->take_all();
   app.add_option("--ignore", options.ignore, "do not look for this effect (may be given several times)")->take_all();
   app.add_flag("--auto", options.automatic, "keep adding the best effect while the held-out error proves it");
+  app.add_option("--time-limit", time_limit, "end after so many seconds with what is known then")
+      ->check(CLI::PositiveNumber);
   app.add_flag("--quiet", quiet, "no progress and no table");
   app.add_flag("--json", json, "print diagnosis.json instead of the table");
-  app.footer("Example: diagnose model.yaml recording.bag --output out --auto");
+  app.footer(std::string("Example: diagnose model.yaml recording.bag --output out --auto\n") + exit_code_help);
   return run_tool(app, argc, argv, [&] {
+    if (time_limit > 0.0) stop.end_after(time_limit);
+    Diagnosis diagnosis;  // as long as nothing is known
+    diagnosis.interrupted = "reading the model and the recording";
+    options.so_far = [&](const Diagnosis& known) { write_text(output + "/diagnosis.json", diagnosis_json(known)); };
+    make_folder(output);
+    options.so_far(diagnosis);
     const ModelSettings settings = load_model(texts.model);
-    RecordingReader reader(texts.recording, settings);
     StepProgress progress(std::cerr, Progress::style_of_stderr(quiet || json), "diagnose");
-    const auto say = [&](const std::string& what, std::size_t done = 0, std::size_t total = 0) {
+    options.progress = [&](const std::string& what, std::size_t done, std::size_t total) {
       progress.show(what, done, total);
     };
-    say("read the recording");
-    const Recording recording = read_recording(reader, settings, texts.recording);
-    options.progress = say;
-    Estimate estimate;
-    Showing showing{recording.first_stamp, {}, reader.reader().pictures()};
-    options.at_end = [&](const Diagnosis& found, Fitted& given, Fitted& last, const Study* finer) {
-      say("run the models once more for the report");
-      estimate = found.estimate;
-      run_once_more(found, given, last, finer, reader.reader().picture_stamps(), estimate, showing.replays);
-    };
-    Diagnosis diagnosis = diagnose(settings, reader.mesh(), recording, options);
-    diagnosis.estimate = std::move(estimate);
+    Showing showing;
+    try {
+      RecordingReader reader(texts.recording, settings, [&] { stop.check(); });
+      progress.show("read the recording");
+      const Recording recording = read_recording(reader, settings, texts.recording);
+      showing = {recording.first_stamp, {}, reader.reader().pictures()};
+      options.at_end = [&](Diagnosis& found, Fitted& given, Fitted& last, const Study* finer) {
+        run_once_more(found, given, last, finer, reader.reader().picture_stamps(), showing.replays);
+      };
+      diagnosis = diagnose(settings, reader.mesh(), recording, options);
+    } catch (const Interrupted&) {  // while the recording was read
+    }
     for (int i = 0; i < argc; ++i) texts.command_line += (i > 0 ? " " : "") + std::string(i > 0 ? argv[i] : "diagnose");
     texts.model_text = read_text(texts.model);
     texts.next_model_text = extend_model(texts.model_text, diagnosis.entries, settings.directory);
@@ -122,5 +132,6 @@ int main(int argc, char** argv) {
       print_diagnosis(diagnosis, Paint::for_stdout(), std::cout);
       std::cout << "written       " << output << "/{diagnosis.json,model_next.yaml,report.html}\n";
     }
+    return exit_code(diagnosis);
   });
 }

@@ -65,8 +65,8 @@ struct NoiseSum {
 /// One run: frames in, records out.
 class Run {
  public:
-  Run(const ModelSettings& settings, RecordingReader& recording)
-      : settings_(settings), recording_(recording), estimator_(settings, recording.mesh()) {
+  Run(const ModelSettings& settings, RecordingReader& recording, const StopRequest& stop)
+      : settings_(settings), recording_(recording), stop_(stop), estimator_(settings, recording.mesh()) {
     estimator_.set_first_stamp(recording.reader().first_stamp());
     if (settings.map) require_map(Model(settings, recording.mesh()));
   }
@@ -117,8 +117,14 @@ class Run {
       for (const double s : samples) sum += s;
       results.stage_seconds.emplace_back(stage, sum);
     }
-    if (settings_.map) add_map();
-    add_free_run();
+    run_.showing = {recording_.reader().first_stamp(), {}, recording_.reader().pictures()};
+    try {
+      stop_.check();
+      if (settings_.map) add_map();
+      add_free_run();
+    } catch (const Interrupted&) {
+      results.interrupted = "the runs at the last estimate";
+    }
     run_.late = recording_.reader().late();
     return std::move(run_);
   }
@@ -126,8 +132,9 @@ class Run {
  private:
   void add_map() {
     const TetMesh& mesh = estimator_.mesh();
-    const StiffnessMap map = map_stiffness(
-        {settings_, mesh, std::move(frames_), std::move(loads_), recording_.reader().first_stamp(), estimator_.estimate()});
+    const StiffnessMap map =
+        map_stiffness({settings_, mesh, std::move(frames_), std::move(loads_), recording_.reader().first_stamp(),
+                       estimator_.estimate(), recording_.checkpoint()});
     run_.map_vtk = map_vtk(map, mesh);
     run_.results.map = map;
   }
@@ -136,14 +143,17 @@ class Run {
     double error = 0.0, motion = 0.0, count = 0.0;
     const BagReader& reader = recording_.reader();
     ReplayRecorder recorder(estimator_.mesh(), reader.first_stamp(), reader.picture_stamps());
-    for (const Misfit& misfit : estimator_.free_run([&](const FreeFrame& frame) { recorder.add(frame); })) {
+    const auto record = [&](const FreeFrame& frame) {
+      stop_.check();
+      recorder.add(frame);
+    };
+    for (const Misfit& misfit : estimator_.free_run(record)) {
       error += misfit.count * misfit.rms * misfit.rms;
       motion += misfit.count * misfit.motion_rms * misfit.motion_rms;
       count += misfit.count;
     }
     run_.results.rms_error = std::sqrt(error / count);
     run_.results.relative_error = std::sqrt(error / motion);
-    run_.showing = {reader.first_stamp(), {}, reader.pictures()};
     Replay replay = recorder.finish();
     if (replay.time.empty()) return;  // of a very long recording the estimator keeps no frames
     replay.name = "the estimate";
@@ -152,6 +162,7 @@ class Run {
 
   const ModelSettings& settings_;
   RecordingReader& recording_;
+  const StopRequest& stop_;
   Estimator estimator_;
   EstimationRun run_;
   ConsistencySum nis_;
@@ -163,26 +174,31 @@ class Run {
 }  // namespace
 
 EstimationRun estimate_recording(const std::string& model_file, const std::string& recording_file, std::size_t max_frames,
-                                 const ProgressCallback& progress) {
+                                 const ProgressCallback& progress, const StopRequest& stop) {
   const ModelSettings settings = load_model(model_file);
-  RecordingReader recording(recording_file, settings);
+  RecordingReader recording(recording_file, settings, [&] { stop.check(); });
   const std::size_t all = recording.reader().frame_count();
   const std::size_t total = max_frames > 0 ? std::min(max_frames, all) : all;
-  Run run(settings, recording);
+  Run run(settings, recording, stop);
   const auto start = Clock::now();
   std::size_t done = 0;
-  std::string reason;
+  std::string reason, interrupted;
   bool used = false;
-  while (max_frames == 0 || done < max_frames) {
-    const std::optional<Instant> instant = recording.next();
-    if (!instant) break;
-    used = run.step(*instant, reason) || used;
-    progress(++done, std::max(total, done));
+  try {
+    while (max_frames == 0 || done < max_frames) {
+      const std::optional<Instant> instant = recording.next();
+      if (!instant) break;
+      used = run.step(*instant, reason) || used;
+      progress(++done, std::max(total, done));
+    }
+  } catch (const Interrupted&) {
+    interrupted = "frame " + std::to_string(done + 1) + " of " + std::to_string(std::max(total, done + 1));
   }
-  if (!used) throw InputError(recording_file, "no usable frame (" + reason + ")", "at least one");
+  if (!used && interrupted.empty()) throw InputError(recording_file, "no usable frame (" + reason + ")", "at least one");
   const double seconds = since(start);
   EstimationRun result = run.finish();
   result.seconds = seconds;
+  if (!interrupted.empty()) result.results.interrupted = interrupted;
   result.results.model = model_file;
   result.results.recording = recording_file;
   result.results.model_text = read_text(model_file);

@@ -22,12 +22,16 @@ std::string line(const char* pattern, const std::string& name, double a, double 
 
 std::string painted(const std::string& verdict, const Paint& paint) {
   if (verdict == "adequate") return paint.good(verdict);
-  return verdict == "missing" ? paint.warning(verdict) : paint.bad(verdict);
+  return verdict == "missing" || verdict == "unfinished" ? paint.warning(verdict) : paint.bad(verdict);
 }
 
 }  // namespace
 
 void print_diagnosis(const Diagnosis& d, const Paint& paint, std::ostream& out) {
+  if (!d.interrupted.empty()) {
+    out << paint.warning("incomplete") << "    interrupted during: " << d.interrupted << "\n";
+  }
+  if (d.steps.empty()) return;
   out << paint.bold(diagnosis_sentence(d)) << "\nwhere         " << d.where << "\nwhen          " << d.when << "\n";
   out << line("error         %s%.3f mm rms: noise %.3f, beyond noise %.3f, of the mesh %.3f\n", "", 1e3 * d.metres.total,
               1e3 * d.metres.noise, 1e3 * d.metres.structured, 1e3 * d.metres.numerical);

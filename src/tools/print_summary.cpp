@@ -86,6 +86,10 @@ void print_stages(const EstimationRun& run, const Paint& paint, std::ostream& ou
 
 void print_summary(const EstimationRun& run, const Paint& paint, std::ostream& out) {
   const Results& results = run.results;
+  if (!results.interrupted.empty()) {
+    out << paint.warning("incomplete") << "    interrupted during: " << results.interrupted << "\n";
+  }
+  if (results.frames.empty()) return;
   print_parameters(results, paint, out);
   for (std::size_t i = 0; i < results.variance.size() && i < results.parameters.size(); ++i) {
     const std::string name = results.variance.size() > 1 ? results.parameters[i].name + ": " : "";

@@ -7,12 +7,13 @@
 
 namespace tissue_stiffness {
 
-RecordingReader::RecordingReader(const std::string& file, const ModelSettings& settings)
-    : reader_(file, settings), mesh_(make_mesh(file, settings)) {
+RecordingReader::RecordingReader(const std::string& file, const ModelSettings& settings, std::function<void()> checkpoint)
+    : checkpoint_(std::move(checkpoint)), reader_(file, settings), mesh_(make_mesh(file, settings)) {
   reader_.set_vertex_count(mesh_.corner_count);
 }
 
 std::optional<Instant> RecordingReader::next() {
+  checkpoint_();
   if (ahead_.empty()) return reader_.next();
   Instant instant = std::move(ahead_.front());
   ahead_.pop_front();
@@ -20,13 +21,14 @@ std::optional<Instant> RecordingReader::next() {
 }
 
 TetMesh RecordingReader::make_mesh(const std::string& file, const ModelSettings& settings) {
-  if (settings.mesh.source == MeshSettings::Source::file) return build_mesh(settings.mesh);
+  if (settings.mesh.source == MeshSettings::Source::file) return build_mesh(settings.mesh, checkpoint_);
   std::string reason = "no contour observed by the model";
   while (std::optional<Instant> instant = reader_.next()) {
+    checkpoint_();
     if (!instant->reason.empty()) reason = instant->reason;
     ahead_.push_back(std::move(*instant));
     for (const Observation& observation : ahead_.back().frame.observations) {
-      if (observation.contour) return build_mesh(settings.mesh, *observation.contour, *observation.camera);
+      if (observation.contour) return build_mesh(settings.mesh, *observation.contour, *observation.camera, checkpoint_);
     }
   }
   throw InputError(file, "no outline to make the mesh from (" + reason + ")", "an image that shows the body");
@@ -35,6 +37,7 @@ TetMesh RecordingReader::make_mesh(const std::string& file, const ModelSettings&
 Recording read_recording(RecordingReader& reader, const ModelSettings& settings, const std::string& file) {
   Recording out;
   out.first_stamp = reader.reader().first_stamp();
+  out.checkpoint = reader.checkpoint();
   std::string reason = "the bag is empty";
   while (std::optional<Instant> instant = reader.next()) {
     for (LoadSample& sample : instant->loads) out.loads.push_back(std::move(sample));

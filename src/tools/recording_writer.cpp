@@ -38,13 +38,18 @@ sensor_msgs::CameraInfo info_of(const Camera& camera, const std_msgs::Header& he
 
 }  // namespace
 
-RecordingWriter::RecordingWriter(const std::string& file) {
+RecordingWriter::RecordingWriter(const std::string& file) : file_(file) {
   try {
-    bag_.open(file, rosbag::bagmode::Write);
+    bag_.open(file_.path(), rosbag::bagmode::Write);
   } catch (const rosbag::BagException& error) {
     throw InputError(file, error.what(), "a file that can be written");
   }
   bag_.setCompression(rosbag::compression::BZ2);
+}
+
+void RecordingWriter::close() {
+  bag_.close();
+  file_.put_in_place();
 }
 
 void RecordingWriter::write_cloud(const std::string& topic, const ros::Time& stamp, const Eigen::Matrix3Xd& points,

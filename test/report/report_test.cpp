@@ -300,6 +300,38 @@ TEST(DiagnosisHtml, TellsTheStoryInOrder) {
   EXPECT_FALSE(json::parse(diagnosis_json(fitted))["final"].contains("state"));
 }
 
+TEST(Interrupted, ResultsSaySo) {
+  Results results = example(20);
+  EXPECT_EQ(json::parse(results_json(results)).at("complete"), true);
+  EXPECT_EQ(own_part(report_html(results, {})).find("interrupted"), std::string::npos);
+  results.interrupted = "frame 21 of <30>";
+  EXPECT_EQ(json::parse(results_json(results)).at("complete"), false);
+  EXPECT_EQ(json::parse(results_json(results)).at("interrupted_during"), "frame 21 of <30>");
+  const std::string page = report_html(results, {});
+  EXPECT_LT(page.find("The work was interrupted during: frame 21 of &lt;30&gt;"), page.find("412.3 kPa"));
+}
+
+TEST(Interrupted, ADiagnosisSaysWhatIsNotKnown) {
+  Diagnosis nothing;
+  nothing.interrupted = "reading the model and the recording";
+  const json root = json::parse(diagnosis_json(nothing));
+  EXPECT_EQ(root.at("complete"), false);
+  EXPECT_EQ(root.at("verdict"), "unfinished");
+  EXPECT_EQ(root.at("steps").size(), 0u);
+  const std::string empty = diagnosis_html(nothing, {}, {});
+  EXPECT_NE(empty.find("The work was interrupted during: reading the model"), std::string::npos);
+  EXPECT_EQ(own_part(empty).find("id=\"fails\""), std::string::npos);
+  Diagnosis fitted = example_diagnosis();
+  fitted.interrupted = "refit with added_mass";
+  fitted.verdict = fitted.final_verdict = "unfinished";
+  const std::string page = diagnosis_html(fitted, {}, {});
+  for (const std::string words :
+       {"no verdict yet", "There is no verdict yet", "not known yet whether something is missing"}) {
+    EXPECT_NE(page.find(words), std::string::npos) << words;
+  }
+  EXPECT_EQ(json::parse(diagnosis_json(example_diagnosis())).at("complete"), true);
+}
+
 TEST(WriteResults, WritesThreeFilesIntoANewFolder) {
   const fs::path folder = fs::temp_directory_path() / "tissue_stiffness_report_test" / "deep";
   fs::remove_all(folder.parent_path());

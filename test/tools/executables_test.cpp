@@ -1,9 +1,16 @@
 // The tools as a user meets them: exit codes, one line on what is wrong, help.
+#include <poll.h>
+#include <signal.h>
+#include <sys/inotify.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <random>
+#include <thread>
 
 #include "workbench.hpp"
 
@@ -40,7 +47,68 @@ Outcome call(const std::string& command) {
   return says(outcome.text, words);
 }
 
-class Executables : public Workbench {};
+using Seconds = std::chrono::duration<double>;
+
+/// `diagnose` under way.
+class Diagnosing {
+ public:
+  Diagnosing(const std::string& model, const std::string& recording, const std::string& output)
+      : watch_(inotify_init1(IN_CLOEXEC)) {
+    std::filesystem::create_directories(output);
+    inotify_add_watch(watch_, output.c_str(), IN_MOVED_TO);
+    const std::string tool = std::string(TISSUE_STIFFNESS_TOOLS) + "/diagnose";
+    child_ = fork();
+    if (child_ != 0) return;
+    execl(tool.c_str(), "diagnose", model.c_str(), recording.c_str(), "--output", output.c_str(), "--auto", "--quiet",
+          static_cast<char*>(nullptr));
+    _exit(127);
+  }
+  ~Diagnosing() { close(watch_); }
+  Diagnosing(const Diagnosing&) = delete;
+  Diagnosing& operator=(const Diagnosing&) = delete;
+
+  void wait_for_first_file() const {
+    pollfd first{watch_, POLLIN, 0};
+    EXPECT_EQ(poll(&first, 1, 30000), 1) << "no diagnosis.json";
+  }
+
+  void send(int signal_number) const { kill(child_, signal_number); }
+
+  /// Exit code, or minus the signal that it died of.
+  int wait() const {
+    int status = 0;
+    waitpid(child_, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+  }
+
+ private:
+  int watch_;
+  pid_t child_;
+};
+
+class Executables : public Workbench {
+ protected:
+  /// A recording with damping that model.yaml does not know, and the arguments that name both.
+  std::string film_hidden_damping() {
+    write_model("scene.yaml", "4e5", vertices(), "simulation: {duration: 0.5, rate: 60, step: 0.001}\n");
+    std::string scene = read("scene.yaml");
+    write("scene.yaml", scene.insert(scene.find("- gravity"), "- viscous_damping: {beta: 4.0e-3}\n"));
+    const Outcome simulated = call("simulate " + path("scene.yaml") + " --output " + path("r.bag") + " --quiet");
+    EXPECT_EQ(simulated.code, 0) << simulated.text;
+    return write_model("model.yaml", "{prior: 8e5, factor: 3}", vertices()) + " " + path("r.bag");
+  }
+
+  Diagnosing begin() const { return {path("model.yaml"), path("r.bag"), path("out")}; }
+
+  nlohmann::json diagnosis() const { return nlohmann::json::parse(read("out/diagnosis.json"), nullptr, false); }
+
+  bool has_temporary_file() const {
+    for (const auto& file : std::filesystem::directory_iterator(path("out"))) {
+      if (file.path().filename().string().find(".part") != std::string::npos) return true;
+    }
+    return false;
+  }
+};
 
 TEST_F(Executables, HelpThemselves) {
   for (const std::string tool : {"estimate", "diagnose", "simulate", "effects", "parameters"}) {
@@ -86,6 +154,94 @@ TEST_F(Executables, GoFromSceneToResults) {
   EXPECT_EQ(read("out/estimates.csv"), read("again/estimates.csv"));
   EXPECT_TRUE(refuses("estimate " + scene + " " + path("r.bag") + " --output " + path("x"), {"scene.yaml", "simulation"}));
   EXPECT_TRUE(refuses(estimate + "/proc/none", {"/proc/none"}));
+}
+
+TEST_F(Executables, LeaveAReadableDiagnosisWheneverTheyAreKilled) {
+  film_hidden_damping();
+  const auto start = std::chrono::steady_clock::now();
+  const int answered = begin().wait();
+  const Seconds duration = std::chrono::steady_clock::now() - start;
+  EXPECT_EQ(diagnosis().value("complete", false), true);
+  std::mt19937 random(1);
+  for (int trial = 0; trial < 10; ++trial) {
+    // A process that has not begun cannot write; one that loads its libraries will.
+    const Seconds instant = Seconds(0.02) + duration * std::uniform_real_distribution<>(0.0, 1.0)(random);
+    std::filesystem::remove_all(path("out"));
+    const Diagnosing killed = begin();
+    std::this_thread::sleep_for(instant);
+    killed.send(SIGTERM);
+    const int code = killed.wait();
+    const nlohmann::json found = diagnosis();
+    ASSERT_TRUE(found.is_object()) << "killed after " << instant.count() << " s: " << read("out/diagnosis.json");
+    EXPECT_EQ(code, found.at("complete") == true ? answered : 75) << instant.count();
+    EXPECT_EQ(found.contains("interrupted_during"), code == 75);
+    EXPECT_EQ(found.at("steps").empty(), found.at("final").value("parameters", nlohmann::json()).empty());
+    EXPECT_NE(read("out/report.html").find("</html>"), std::string::npos);
+    EXPECT_EQ(read("out/report.html").find("The work was interrupted during") != std::string::npos, code == 75);
+    EXPECT_NE(read("out/model_next.yaml"), "");
+    EXPECT_FALSE(has_temporary_file());
+  }
+}
+
+TEST_F(Executables, HearASignalThatCameWhileTheirLibrariesWereLoaded) {
+  film_hidden_damping();
+  const Diagnosing killed = begin();
+  std::this_thread::sleep_for(Seconds(0.02));
+  killed.send(SIGTERM);
+  EXPECT_EQ(killed.wait(), 75);
+  EXPECT_EQ(diagnosis().value("verdict", ""), "unfinished");
+}
+
+TEST_F(Executables, LeaveTheLastDiagnosisWhenTheyAreKilledOutright) {
+  film_hidden_damping();
+  for (const double instant : {0.0, 0.2, 0.5}) {
+    const Diagnosing killed = begin();
+    killed.wait_for_first_file();
+    std::this_thread::sleep_for(Seconds(instant));
+    killed.send(SIGKILL);
+    killed.wait();
+    EXPECT_TRUE(diagnosis().is_object()) << instant;
+  }
+}
+
+TEST_F(Executables, EndAtOnceOnTheSecondSignal) {
+  film_hidden_damping();
+  const Diagnosing killed = begin();
+  killed.wait_for_first_file();
+  killed.send(SIGINT);
+  killed.send(SIGTERM);
+  EXPECT_EQ(killed.wait(), 75);
+  EXPECT_EQ(diagnosis().value("complete", true), false);
+  EXPECT_FALSE(std::filesystem::exists(path("out/report.html"))) << "nothing more is written";
+}
+
+TEST_F(Executables, EndWithWhatIsKnownWhenTheTimeIsUp) {
+  const std::string inputs = film_hidden_damping();
+  const std::string limit = " --time-limit 1e-3 --output " + path("out");
+  const Outcome diagnosed = call("diagnose " + inputs + limit);
+  EXPECT_EQ(diagnosed.code, 75) << diagnosed.text;
+  EXPECT_NE(diagnosed.text.find("incomplete    interrupted during: "), std::string::npos) << diagnosed.text;
+  EXPECT_EQ(diagnosis().value("complete", true), false);
+  EXPECT_EQ(diagnosis().value("verdict", ""), "unfinished");
+  const Outcome estimated = call("estimate " + inputs + limit);
+  EXPECT_EQ(estimated.code, 75) << estimated.text;
+  EXPECT_EQ(nlohmann::json::parse(read("out/results.json")).at("complete"), false);
+  EXPECT_NE(read("out/report.html").find("The work was interrupted during"), std::string::npos);
+  EXPECT_TRUE(refuses("estimate " + inputs + " --time-limit 0 --output " + path("out"), {"--time-limit"}));
+}
+
+TEST_F(Executables, TellTheShellWhetherTheAnswerIsToBeUsed) {
+  const std::string inputs = film_hidden_damping();
+  const Outcome estimated = call("estimate " + inputs + " --output " + path("out"));
+  const auto results = nlohmann::json::parse(read("out/results.json"));
+  EXPECT_EQ(results.at("complete"), true);
+  EXPECT_TRUE(results.at("state") == "doubtful" || results.at("state") == "model_invalid") << results.at("state");
+  EXPECT_EQ(estimated.code, 3) << estimated.text;
+  for (const std::string tool : {"estimate", "diagnose"}) {
+    const std::string help = call(tool + " --help").text;
+    EXPECT_NE(help.find("Exit codes: 0 answered"), std::string::npos) << help;
+    EXPECT_NE(help.find("--time-limit"), std::string::npos) << help;
+  }
 }
 
 TEST_F(Executables, ColourOnlyOnATerminalThatWantsIt) {

@@ -18,7 +18,7 @@ class RoundTrip : public Workbench {
     const std::string scene = write_model("scene.yaml", std::to_string(modulus), observations, simulation);
     simulate_scene(load_scene(scene), path("recording.bag"), nothing);
     model_ = write_model("model.yaml", "{prior: " + std::to_string(2.0 * modulus) + ", factor: 3}", observations);
-    return estimate_recording(model_, path("recording.bag"), 0, nothing);
+    return estimate_recording(model_, path("recording.bag"), 0, nothing, {});
   }
 
   std::string model_;
@@ -61,7 +61,7 @@ TEST_F(RoundTrip, FindsTheModulusFromImages) {
 
 TEST_F(RoundTrip, GivesTheSameBytesForTheSameInput) {
   const EstimationRun first = run(4e5, vertices(), "simulation: {duration: 0.2, rate: 60, step: 0.001}\n");
-  const EstimationRun second = estimate_recording(model_, path("recording.bag"), 0, nothing);
+  const EstimationRun second = estimate_recording(model_, path("recording.bag"), 0, nothing, {});
   EXPECT_EQ(estimates_csv(first.results), estimates_csv(second.results));
   const std::string bag = read("recording.bag");
   simulate_scene(load_scene(path("scene.yaml")), path("recording.bag"), nothing);
@@ -70,7 +70,7 @@ TEST_F(RoundTrip, GivesTheSameBytesForTheSameInput) {
 
 TEST_F(RoundTrip, StopsAfterTheFramesAskedFor) {
   run(4e5, vertices(), "simulation: {duration: 0.2, rate: 60, step: 0.001}\n");
-  EXPECT_EQ(estimate_recording(model_, path("recording.bag"), 5, nothing).results.frames.size(), 5U);
+  EXPECT_EQ(estimate_recording(model_, path("recording.bag"), 5, nothing, {}).results.frames.size(), 5U);
 }
 
 TEST_F(RoundTrip, ASceneIsTheTruth) {

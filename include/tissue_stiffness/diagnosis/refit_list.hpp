@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tissue_stiffness/diagnosis/first_look.hpp"
@@ -18,12 +19,17 @@ double evidence(const Refit& refit, double rows, double variance);
 /// Parameters that are fitted besides the base's.
 std::ptrdiff_t parameters_of(const std::vector<Addition>& additions);
 
+/// Hears of all refits so far, best first, whenever there are more.
+using RefitsSoFar = std::function<void(const std::vector<Refit>&)>;
+
 /// The refits of one look: best first, one an effect (or pair), compared beside the numerics.
 class RefitList {
  public:
-  RefitList(const FirstLook& look, const DiagnosisOptions& options) : look_(look), options_(options) {}
+  RefitList(const FirstLook& look, const DiagnosisOptions& options, RefitsSoFar so_far)
+      : look_(look), options_(options), so_far_(std::move(so_far)) {}
 
-  /// Refits with each of these additions, side by side. What falls behind the best so far is not fitted to the end.
+  /// Refits with each of these additions, side by side. What falls behind the best so far is not fitted to the end; where
+  /// the recording's checkpoint throws Interrupted, those that were fitted by then are kept.
   void add(std::vector<std::vector<Addition>> list);
   /// A recording may be simulated itself: what its time steps do decides between twins, and may be all that an effect
   /// leaves. Believed only where an explanation leaves noise beside them: what is wrong otherwise is not theirs.
@@ -49,12 +55,14 @@ class RefitList {
 
  private:
   bool is_noise(double cost) const;
+  void keep(std::vector<std::optional<Refit>> done);
   void add_steps();
   void sort();
   void drop_worse_ways();
 
   const FirstLook& look_;
   const DiagnosisOptions& options_;
+  RefitsSoFar so_far_;
   std::vector<Refit> refits_;
   std::optional<double> left_beside_steps_;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -69,8 +70,10 @@ class Estimator {
 
   /// Steps through frames that were measured before, waiting for every look back, and with one look at
   /// the mesh's error, at the end; the last used one's result, or the last's. `near`: the estimate as other means have it:
-  /// the first sigma points lie there, and nothing is looked at again before the end.
-  StepResult replay(const std::vector<Frame>& frames, const Estimate* near = nullptr);
+  /// the first sigma points lie there, and nothing is looked at again before the end. `checkpoint` is called before every
+  /// frame; what it throws ends the replay, and the estimator must then be reset.
+  StepResult replay(
+      const std::vector<Frame>& frames, const Estimate* near = nullptr, const std::function<void()>& checkpoint = [] {});
 
   /// Back to the prior; loads and frames are forgotten.
   void reset();

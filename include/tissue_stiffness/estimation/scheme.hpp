@@ -21,7 +21,7 @@ class Scheme {
   virtual ~Scheme() = default;
 
   StepResult step(const Frame& frame);
-  StepResult replay(const std::vector<Frame>& frames, const Estimate* near);
+  StepResult replay(const std::vector<Frame>& frames, const Estimate* near, const std::function<void()>& checkpoint);
   std::optional<StepResult> catch_up();
   void reset();
   void set_first_stamp(double time);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,7 +18,10 @@ class AnchoredModel : public ForwardModel {
   AnchoredModel(const ForwardModel& accurate, const ForwardModel& cheap) : accurate_(&accurate), cheap_(&cheap) {}
 
   /// Runs both over `times` [s], ascending; in between their difference is linear. Throws NumericalError as the runs do.
-  void anchor(const Eigen::VectorXd& theta, double start, const std::vector<double>& times);
+  /// `checkpoint` is called before every one of them, side by side; what it throws ends the runs.
+  void anchor(
+      const Eigen::VectorXd& theta, double start, const std::vector<double>& times,
+      const std::function<void()>& checkpoint = [] {});
 
   /// `before`: the same models at another anchor, over the same times. `scale`: what counts as one of each of theta, 0
   /// where both have the same.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <string>
 
 #include "tissue_stiffness/meshing/mesh_io.hpp"
@@ -14,7 +15,10 @@ namespace tissue_stiffness {
 /// `max_edge_length` > 0: edges of about that length [m], and plane parts of the surface are triangulated anew; 0: the
 /// surface keeps its triangles, and the inside follows them. `keep_triangles`: the surface's triangles are kept in either
 /// case. Throws InputError naming `where` and the place for a surface that crosses itself, and for a build without TetGen.
-TetFile fill_surface(const TriangleSurface& surface, double max_edge_length, bool keep_triangles, const std::string& where);
+/// `checkpoint` is called ten times a second; what it throws ends the meshing.
+TetFile fill_surface(
+    const TriangleSurface& surface, double max_edge_length, bool keep_triangles, const std::string& where,
+    const std::function<void()>& checkpoint = [] {});
 
 /// Whether this build has TetGen (CMake option TISSUE_STIFFNESS_TETGEN).
 bool has_tetgen();

@@ -22,6 +22,9 @@ struct Page {
 /// A card; nothing when there is no content.
 std::string section(const std::string& id, const std::string& title, const std::string& content);
 
+/// Says that the work was interrupted, and during what, and what the page then holds; nothing when `interrupted` is empty.
+std::string interruption_notice(const std::string& interrupted);
+
 /// A file with the folder that it lies in.
 std::string short_path(const std::string& file);
 

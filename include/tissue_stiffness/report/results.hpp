@@ -39,9 +39,10 @@ struct Results {
   std::string recording;                      ///< name of the recording
   std::vector<ParameterEstimate> parameters;  ///< final
   EstimateState state = EstimateState::no_data;
-  std::string state_reason;                                          ///< why it is so
-  std::vector<VarianceShares> variance;                              ///< of each parameter; empty: not known
-  std::vector<InputUncertainty> inputs;                              ///< errors that the interval counts
+  std::string state_reason;              ///< why it is so
+  std::string interrupted;               ///< what was under way when the run was interrupted; empty: it came to its end
+  std::vector<VarianceShares> variance;  ///< of each parameter; empty: not known
+  std::vector<InputUncertainty> inputs;  ///< errors that the interval counts
   std::map<std::string, IdentifiabilityRecord> identifiable;         ///< by parameter name
   double rms_error = std::numeric_limits<double>::quiet_NaN();       ///< of the free run at the final estimate [m]
   double relative_error = std::numeric_limits<double>::quiet_NaN();  ///< rms error / rms motion [-]

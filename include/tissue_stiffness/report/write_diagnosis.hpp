@@ -16,15 +16,16 @@ struct DiagnosisTexts {
   std::vector<std::pair<std::string, std::string>> versions;
 };
 
-/// `diagnosis.json`: verdict, set, best, candidates[], where, when, how_much, residual, steps[], next_experiment, final. A
-/// number that does not exist is null. Everything but `seconds` is the same for the same input.
+/// `diagnosis.json`: complete, interrupted_during (where it is not), verdict, set, best, candidates[], where, when,
+/// how_much, residual, steps[], next_experiment, final. A number that does not exist is null. Everything but `seconds` is
+/// the same for the same input.
 std::string diagnosis_json(const Diagnosis& diagnosis);
 
 /// `report.html`: one page that needs no network; as report_html.
 std::string diagnosis_html(const Diagnosis& diagnosis, const DiagnosisTexts& texts, const Showing& showing);
 
-/// Makes the folder when it is missing and writes diagnosis.json, model_next.yaml and report.html. Throws InputError when a
-/// file cannot be written.
+/// Makes the folder when it is missing and writes model_next.yaml, report.html and, last, diagnosis.json, each whole.
+/// Throws InputError when one cannot be written.
 void write_diagnosis(const Diagnosis& diagnosis, const DiagnosisTexts& texts, const Showing& showing,
                      const std::string& directory);
 

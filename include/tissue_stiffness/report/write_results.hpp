@@ -7,8 +7,9 @@
 
 namespace tissue_stiffness {
 
-/// `results.json`: parameters.{effect.parameter}.{unit,mean,std,interval95}, identifiable.{...}.{verdict,reason}, state,
-/// map (where there is one).{levels[].{patches,mean_square,log_evidence,kept},
+/// `results.json`: complete, interrupted_during (where it is not),
+/// parameters.{effect.parameter}.{unit,mean,std,interval95}, identifiable.{...}.{verdict,reason}, state, map (where there
+/// is one).{levels[].{patches,mean_square,log_evidence,kept},
 /// patches[].{center,young_modulus,interval95,identified},identified,mesh_error}, frames (used), skipped[].{time,reason},
 /// rms_error [m], noise_rms [m], relative_error, nis.{mean_per_dof,p_value}, seconds_per_frame.{median,p99}. A number that
 /// does not exist is null. Everything but seconds_per_frame is the same for the same input.
@@ -22,10 +23,14 @@ std::string estimates_csv(const Results& results);
 /// which draw and move.
 std::string report_html(const Results& results, const Showing& showing);
 
-/// Makes the folder when it is missing and writes the three files. Throws InputError when a file cannot be written.
+/// Makes the folder when it is missing and writes the three files, each whole, results.json last. Throws InputError when
+/// one cannot be written.
 void write_results(const Results& results, const Showing& showing, const std::string& directory);
 
-/// Throws InputError naming the file when it cannot be written.
+/// Makes the folder when it is missing. Throws InputError when it cannot.
+void make_folder(const std::string& directory);
+
+/// As write_file does.
 void write_text(const std::string& file, const std::string& text);
 
 }  // namespace tissue_stiffness

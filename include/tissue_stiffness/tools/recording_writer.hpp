@@ -9,10 +9,11 @@
 
 #include "tissue_stiffness/types/camera.hpp"
 #include "tissue_stiffness/types/load_sample.hpp"
+#include "tissue_stiffness/types/pending_file.hpp"
 
 namespace tissue_stiffness {
 
-/// Writes what sensors saw into a rosbag; a message's stamp is its record time.
+/// Writes what sensors saw into a rosbag, which is there once it is closed; a message's stamp is its record time.
 class RecordingWriter {
  public:
   /// Throws InputError when the file cannot be written.
@@ -27,9 +28,11 @@ class RecordingWriter {
                    const ros::Time& stamp, const Camera& camera, const cv::Mat& image);
   /// A sensor's pose on /tf_static.
   void write_pose(const std::string& frame, const ros::Time& stamp, const Eigen::Isometry3d& model_from_sensor);
-  void close() { bag_.close(); }
+  /// Throws InputError as PendingFile does.
+  void close();
 
  private:
+  PendingFile file_;
   rosbag::Bag bag_;
 };
 

@@ -2,33 +2,39 @@
 
 #include <CLI/CLI.hpp>
 #include <exception>
-#include <functional>
 #include <iostream>
+#include <type_traits>
 
+#include "tissue_stiffness/tools/exit_code.hpp"
 #include "tissue_stiffness/types/error.hpp"
 #include "tissue_stiffness/types/freed_memory.hpp"
 
 namespace tissue_stiffness {
 
-/// Parses the command line and runs a tool. Wrong arguments or input: one line and exit code 2; anything else that fails:
-/// one line and exit code 1.
-inline int run_tool(CLI::App& app, int argc, char** argv, const std::function<void()>& tool) {
+/// Parses the command line and runs a tool, which returns its exit code, or nothing where it always answers. Wrong
+/// arguments or input: one line and exit code 2; anything else that fails: one line and exit code 1.
+template <typename Tool>
+int run_tool(CLI::App& app, int argc, char** argv, const Tool& tool) {
   keep_freed_memory();
   try {
     app.parse(argc, argv);
-    tool();
-    return 0;
+    if constexpr (std::is_void_v<decltype(tool())>) {
+      tool();
+      return static_cast<int>(ExitCode::answered);
+    } else {
+      return static_cast<int>(tool());
+    }
   } catch (const CLI::Success& help) {
     return app.exit(help);
   } catch (const CLI::ParseError& error) {
     std::cerr << app.get_name() << ": " << error.what() << " (--help shows the arguments)\n";
-    return 2;
+    return static_cast<int>(ExitCode::wrong_input);
   } catch (const InputError& error) {
     std::cerr << app.get_name() << ": " << error.what() << "\n";
-    return 2;
+    return static_cast<int>(ExitCode::wrong_input);
   } catch (const std::exception& error) {
     std::cerr << app.get_name() << ": " << error.what() << "\n";
-    return 1;
+    return static_cast<int>(ExitCode::failed);
   }
 }
 

@@ -74,9 +74,10 @@ struct BestExplanation {
   double held_out_rms = std::numeric_limits<double>::quiet_NaN();  ///< [m]
 };
 
-/// Which physics a model misses. `verdict`: adequate, missing, numerics, unexplained.
+/// Which physics a model misses. `verdict`: adequate, missing, numerics, unexplained; unfinished where the search was
+/// interrupted before it had one. What is not known then is empty or NaN.
 struct Diagnosis {
-  std::string verdict;
+  std::string verdict = "unfinished";
   std::vector<std::string> set;  ///< the winner and what the data cannot tell from it
   BestExplanation best;
   std::vector<MissingEffect> candidates;
@@ -86,9 +87,10 @@ struct Diagnosis {
   MissingForce force;      ///< the same
   std::vector<DiagnosisStep> steps;
   std::string next_experiment;
-  std::string final_verdict;
+  std::string final_verdict = "unfinished";  ///< of the last step
   std::vector<std::string> final_effects;
   std::vector<std::string> entries;  ///< of the accepted effects, for the model file
+  std::string interrupted;           ///< what was under way when the work was interrupted; empty: all was done
   double seconds = 0.0;
   Estimate estimate;  ///< of the last step's model: an estimator's; in state no_data the fit's own
 };
