@@ -33,7 +33,8 @@ const std::map<std::string, std::set<std::string>> kAllowed = [] {
   add("estimation", {"forward", "filter"});
   add("diagnosis", {"estimation"});
   add("report", {"settings"});
-  add("nodes", {"diagnosis", "segmentation", "report"});
+  add("check", {"estimation", "segmentation", "report"});
+  add("nodes", {"diagnosis", "segmentation", "report", "check"});
   add("tools", {"nodes"});
   add("nodelets", {"nodes"});
   add("rviz", {"nodes"});

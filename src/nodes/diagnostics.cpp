@@ -35,6 +35,12 @@ void Diagnostics::set(const std::string& key, const std::string& text) {
   texts_[key] = text;
 }
 
+std::string Diagnostics::text(const std::string& key) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto found = texts_.find(key);
+  return found == texts_.end() ? "" : found->second;
+}
+
 void Diagnostics::time(const std::string& stage, double seconds) {
   const std::lock_guard<std::mutex> lock(mutex_);
   Stage& entry = stages_[stage];

@@ -47,6 +47,7 @@ EstimatorNode::EstimatorNode(ros::NodeHandle node, const NodeSettings& settings)
       inputs_(node, settings_, poses_, queue_, diagnostics_),
       outputs_(node, poses_.model_frame()),
       map_(node, poses_.model_frame()),
+      watch_(node, settings_, diagnostics_),
       running_(settings_) {
   const ModelCheck::Options check{read_number(settings.own, key("diagnosis_period")),
                                   read_number(settings.own, key("diagnosis_window"))};
@@ -110,6 +111,7 @@ void EstimatorNode::run() {
 void EstimatorNode::work() {
   const std::optional<TetMesh> first = wait_for_mesh();
   if (!first) return;
+  watch_.mesh_came(*first);
   if (settings_.map) require_map(Model(settings_, *first));
   build(*first);
   inputs_.listen(queue_size_);
@@ -217,6 +219,7 @@ void EstimatorNode::process(const FrameQueue::Work& work) {
   const StepResult result = estimator_->step(frame);
   report(result);
   if (!result.used) return;
+  watch_.frame_used(frame, estimator_->mesh(), work.first_stamp.toSec() + running_.time.start);
   services_->check().add(frame);
   if (services_->check().complete()) {
     map_.add_frame(result.estimate, [this] { return services_->check().recording(); });

@@ -2,11 +2,13 @@
 
 #include <ros/ros.h>
 
+#include "tissue_stiffness/check/check_mesh.hpp"
 #include "tissue_stiffness/meshing/build_mesh.hpp"
 #include "tissue_stiffness/meshing/mesh_io.hpp"
 #include "tissue_stiffness/nodes/message_conversions.hpp"
 #include "tissue_stiffness/nodes/node_keys.hpp"
 #include "tissue_stiffness/nodes/sensor_conversions.hpp"
+#include "tissue_stiffness/nodes/setup_watch.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
@@ -45,7 +47,9 @@ MeshNode::MeshNode(ros::NodeHandle node, const NodeSettings& settings)
                                                            ros::VoidConstPtr(), true);
   build_service_ = node_.advertiseService("build_mesh", &MeshNode::on_build, this);
   save_service_ = node_.advertiseService("save_mesh", &MeshNode::on_save, this);
-  if (from_file) publish(build_mesh(settings_.mesh));
+  if (!from_file) return;
+  warn_of(check_mesh_file(settings_.mesh));  // before TetGen, which takes long over a mesh in mm
+  publish(build_mesh(settings_.mesh));
 }
 
 void MeshNode::publish(const TetMesh& mesh) {

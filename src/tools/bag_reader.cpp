@@ -214,6 +214,7 @@ void BagReader::convert(const Measurement& measurement, Instant& instant) {
 }
 
 void BagReader::segment(const Measurement& measurement, Instant& instant) {
+  if (come_[measurement.source]++ % image_stride_ != 0) return;
   const ObservationSettings& settings = settings_.observations[static_cast<std::size_t>(measurement.source)];
   const std_msgs::Header& header = measurement.image->header;
   const auto model_from_sensor = pose(header, instant.reason);

@@ -14,6 +14,7 @@
 #include "tissue_stiffness/report/write_diagnosis.hpp"
 #include "tissue_stiffness/report/write_results.hpp"
 #include "tissue_stiffness/settings/extend_model.hpp"
+#include "tissue_stiffness/tools/check_setup.hpp"
 #include "tissue_stiffness/tools/print_diagnosis.hpp"
 #include "tissue_stiffness/tools/progress.hpp"
 #include "tissue_stiffness/tools/recording_reader.hpp"
@@ -110,6 +111,8 @@ int main(int argc, char** argv) {
     };
     Showing showing;
     try {
+      warn_of_setup(
+          "diagnose", settings, texts.recording, [&] { stop.check(); }, std::cerr);
       RecordingReader reader(texts.recording, settings, [&] { stop.check(); });
       progress.show("read the recording");
       const Recording recording = read_recording(reader, settings, texts.recording);

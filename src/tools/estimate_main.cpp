@@ -1,6 +1,7 @@
 #include <string>
 
 #include "tissue_stiffness/report/write_results.hpp"
+#include "tissue_stiffness/tools/check_setup.hpp"
 #include "tissue_stiffness/tools/estimate_recording.hpp"
 #include "tissue_stiffness/tools/progress.hpp"
 #include "tissue_stiffness/tools/run_tool.hpp"
@@ -42,6 +43,8 @@ int main(int argc, char** argv) {
     Progress progress(std::cerr, Progress::style_of_stderr(quiet || json), "estimate");
     const auto show = [&](std::size_t done, std::size_t total) { progress.show(done, total); };
     try {
+      warn_of_setup(
+          "estimate", load_model(model), recording, [&] { stop.check(); }, std::cerr);
       run = estimate_recording(model, recording, frames, show, stop);
     } catch (const Interrupted&) {
     }

@@ -7,8 +7,9 @@
 
 namespace tissue_stiffness {
 
-RecordingReader::RecordingReader(const std::string& file, const ModelSettings& settings, std::function<void()> checkpoint)
-    : checkpoint_(std::move(checkpoint)), reader_(file, settings), mesh_(make_mesh(file, settings)) {
+RecordingReader::RecordingReader(const std::string& file, const ModelSettings& settings, std::function<void()> checkpoint,
+                                 std::size_t most_images)
+    : checkpoint_(std::move(checkpoint)), reader_(file, settings), mesh_(make_mesh(file, settings, most_images)) {
   reader_.set_vertex_count(mesh_.corner_count);
 }
 
@@ -20,7 +21,8 @@ std::optional<Instant> RecordingReader::next() {
   return instant;
 }
 
-TetMesh RecordingReader::make_mesh(const std::string& file, const ModelSettings& settings) {
+TetMesh RecordingReader::make_mesh(const std::string& file, const ModelSettings& settings, std::size_t most_images) {
+  if (most_images > 0) reader_.thin_images(most_images);
   if (settings.mesh.source == MeshSettings::Source::file) return build_mesh(settings.mesh, checkpoint_);
   std::string reason = "no contour observed by the model";
   while (std::optional<Instant> instant = reader_.next()) {

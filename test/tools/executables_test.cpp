@@ -12,32 +12,11 @@
 #include <random>
 #include <thread>
 
+#include "outcome.hpp"
 #include "workbench.hpp"
 
 namespace tissue_stiffness {
 namespace {
-
-struct Outcome {
-  int code;
-  std::string text;  ///< standard output and error
-};
-
-Outcome run(const std::string& command) {
-  Outcome outcome{-1, ""};
-  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
-  if (pipe == nullptr) return outcome;
-  std::array<char, 4096> buffer;
-  while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe)) {
-    outcome.text.append(buffer.data(), count);
-  }
-  const int status = pclose(pipe);
-  if (WIFEXITED(status)) outcome.code = WEXITSTATUS(status);
-  return outcome;
-}
-
-Outcome call(const std::string& command) {
-  return run(std::string(TISSUE_STIFFNESS_TOOLS) + "/" + command);
-}
 
 /// Exit code 2 and one line with all the words.
 ::testing::AssertionResult refuses(const std::string& command, const std::vector<std::string>& words) {
@@ -111,7 +90,7 @@ class Executables : public Workbench {
 };
 
 TEST_F(Executables, HelpThemselves) {
-  for (const std::string tool : {"estimate", "diagnose", "simulate", "effects", "parameters"}) {
+  for (const std::string tool : {"estimate", "diagnose", "check", "simulate", "effects", "parameters"}) {
     const Outcome help = call(tool + " --help");
     EXPECT_EQ(help.code, 0) << help.text;
     EXPECT_NE(help.text.find("Usage"), std::string::npos) << help.text;

@@ -16,6 +16,8 @@ class Diagnostics {
 
   void count(const std::string& key);
   void set(const std::string& key, const std::string& text);
+  /// Empty when it was never set.
+  std::string text(const std::string& key);
   /// Wall time of a stage [s]: its mean and its longest are shown.
   void time(const std::string& stage, double seconds);
   void state(std::uint8_t level, const std::string& message);

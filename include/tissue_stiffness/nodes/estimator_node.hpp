@@ -17,6 +17,7 @@
 #include "tissue_stiffness/nodes/map_publisher.hpp"
 #include "tissue_stiffness/nodes/model_services.hpp"
 #include "tissue_stiffness/nodes/ros_settings.hpp"
+#include "tissue_stiffness/nodes/setup_watch.hpp"
 
 namespace tissue_stiffness {
 
@@ -69,6 +70,7 @@ class EstimatorNode {
   EstimatorInputs inputs_;
   EstimatorOutputs outputs_;
   MapPublisher map_;
+  SetupWatch watch_;
   ModelSettings running_;  ///< with what was added; the worker's alone, as the estimator
   std::unique_ptr<Estimator> estimator_;
   std::optional<Frame> last_;  ///< used

@@ -50,6 +50,9 @@ class BagReader {
   /// Upper bound of the field `vertex`, once the mesh is known.
   void set_vertex_count(int count) { vertex_count_ = count; }
 
+  /// Segments about `most` images of each sensor, evenly over the bag, and passes over the others.
+  void thin_images(std::size_t most) { image_stride_ = (frame_count_ + most - 1) / most; }
+
   /// Nothing at the end.
   std::optional<Instant> next();
 
@@ -92,13 +95,14 @@ class BagReader {
   rosbag::Bag bag_;
   rosbag::View view_;
   rosbag::View::iterator next_message_;
-  std::size_t frame_count_ = 0;
+  std::size_t frame_count_ = 0, image_stride_ = 1;
   int vertex_count_ = std::numeric_limits<int>::max();
   int late_ = 0;
 
   tf2::BufferCore poses_;
   std::map<int, std::unique_ptr<Segmenter>> segmenters_;  ///< by source
   std::map<int, std::size_t> images_;                     ///< seen, by source
+  std::map<int, std::size_t> come_;                       ///< those passed over, too
   std::vector<Picture> pictures_;
   std::map<std::string, std::map<ros::Time, sensor_msgs::CameraInfoConstPtr>> cameras_;
   std::map<ros::Time, std::vector<Measurement>> pending_;

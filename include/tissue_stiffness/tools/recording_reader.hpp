@@ -15,8 +15,10 @@ namespace tissue_stiffness {
 /// build_mesh do. `checkpoint` is called before every frame that is read; what it throws ends the reading.
 class RecordingReader {
  public:
+  /// `most_images`: of each sensor that are segmented; 0: all.
   RecordingReader(
-      const std::string& file, const ModelSettings& settings, std::function<void()> checkpoint = [] {});
+      const std::string& file, const ModelSettings& settings, std::function<void()> checkpoint = [] {},
+      std::size_t most_images = 0);
 
   /// Nothing at the end.
   std::optional<Instant> next();
@@ -25,7 +27,7 @@ class RecordingReader {
   const std::function<void()>& checkpoint() const { return checkpoint_; }
 
  private:
-  TetMesh make_mesh(const std::string& file, const ModelSettings& settings);
+  TetMesh make_mesh(const std::string& file, const ModelSettings& settings, std::size_t most_images);
 
   std::function<void()> checkpoint_;
   BagReader reader_;

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "tissue_stiffness/check/setup_finding.hpp"
+#include "tissue_stiffness/settings/model_settings.hpp"
+#include "tissue_stiffness/types/observation.hpp"
+#include "tissue_stiffness/types/tet_mesh.hpp"
+
+namespace tissue_stiffness {
+
+/// When the body was at rest [s], its first frame from then on, and the frame after it, if there is one.
+struct FirstFrames {
+  double rest_time = 0.0;
+  const Frame& first;
+  const Frame* second = nullptr;
+};
+
+/// The first frame beside the mesh at rest, for point clouds.
+///   unit: points that spread 31.6 times as wide as the mesh, or a 31.6th, are in another unit than m;
+///   place: an rms distance D from the mesh with D^2 > 9 (3 noise^2 + 3 offset_tolerance^2 + (rotation_tolerance size)^2 +
+///   (scale_tolerance size)^2) + motion^2, where `motion` is what the body may have moved since it was at rest, at the
+///   speed of the first two frames. The rigid motion after which it fits is said. Points that a scale within 20 % of 1
+///   explains better are left to the effect `image_scale`.
+/// Points outside the bounds of their cloud's field are the reader's errors, not looked for here.
+SetupFindings check_first_frame(const ModelSettings& settings, const TetMesh& mesh, const FirstFrames& frames);
+
+}  // namespace tissue_stiffness
