@@ -34,6 +34,20 @@ SetupFinding missing(const NeededTopic& needed, const std::vector<Topic>& there,
                           ", there is " + join(alike) + "; mend the name or remap it."};
 }
 
+std::string kind_name(ObservationSettings::Kind kind) {
+  switch (kind) {
+    case ObservationSettings::Kind::vertices:
+      return "vertices";
+    case ObservationSettings::Kind::markers:
+      return "markers";
+    case ObservationSettings::Kind::points:
+      return "points";
+    case ObservationSettings::Kind::contour:
+      break;
+  }
+  return "contour";
+}
+
 }  // namespace
 
 std::vector<NeededTopic> needed_topics(const ModelSettings& settings) {
@@ -49,7 +63,7 @@ std::vector<NeededTopic> needed_topics(const ModelSettings& settings) {
       add(key + ".contour.image", observation.topic, "sensor_msgs/Image");
       add(key + ".contour.camera_info", observation.camera_info, "sensor_msgs/CameraInfo");
     } else {
-      add(key + ".topic", observation.topic, "sensor_msgs/PointCloud2");
+      add(key + "." + kind_name(observation.kind) + ".topic", observation.topic, "sensor_msgs/PointCloud2");
     }
   }
   for (EffectSettings effect : settings.effects) {  // a copy: asking marks keys as known

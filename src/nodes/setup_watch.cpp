@@ -3,6 +3,8 @@
 #include <diagnostic_msgs/DiagnosticStatus.h>
 #include <ros/ros.h>
 
+#include <algorithm>
+
 #include "tissue_stiffness/check/check_first_frame.hpp"
 #include "tissue_stiffness/check/check_mesh.hpp"
 #include "tissue_stiffness/check/check_numbers.hpp"
@@ -20,11 +22,16 @@ std::vector<NeededTopic> needed_by(const ros::NodeHandle& node, const ModelSetti
   return needed;
 }
 
+/// Those of other nodes: the estimator does not feed on what it publishes.
 std::vector<Topic> published_topics() {
   ros::master::V_TopicInfo infos;
   if (!ros::master::getTopics(infos)) return {};
+  ros::V_string own;
+  ros::this_node::getAdvertisedTopics(own);
   std::vector<Topic> topics;
-  for (const ros::master::TopicInfo& info : infos) topics.push_back({info.name, info.datatype});
+  for (const ros::master::TopicInfo& info : infos) {
+    if (std::find(own.begin(), own.end(), info.name) == own.end()) topics.push_back({info.name, info.datatype});
+  }
   return topics;
 }
 

@@ -42,38 +42,41 @@ bool add_header(const rosbag::MessageInstance& message, TopicTimes& times, BagOv
   return true;
 }
 
-void read_times(const rosbag::Bag& bag, const std::string& topic, BagOverview& out) {
-  TopicTimes times{topic, {}, {}};
-  rosbag::View messages(bag, rosbag::TopicQuery(topic));
-  for (const rosbag::MessageInstance& message : messages) {
-    add_header<sensor_msgs::PointCloud2>(message, times, out) || add_header<sensor_msgs::Image>(message, times, out) ||
-        add_header<geometry_msgs::WrenchStamped>(message, times, out) ||
-        add_header<sensor_msgs::FluidPressure>(message, times, out);
-  }
-  if (!times.stamps.empty()) out.times.push_back(std::move(times));
+void add_times(const rosbag::MessageInstance& message, BagOverview& out) {
+  const auto same = [&](const TopicTimes& times) { return times.topic == message.getTopic(); };
+  const auto times = std::find_if(out.times.begin(), out.times.end(), same);
+  add_header<sensor_msgs::PointCloud2>(message, *times, out) || add_header<sensor_msgs::Image>(message, *times, out) ||
+      add_header<geometry_msgs::WrenchStamped>(message, *times, out) ||
+      add_header<sensor_msgs::FluidPressure>(message, *times, out);
 }
 
-void read_images(const rosbag::Bag& bag, const std::string& topic, BagOverview& out) {
-  rosbag::View messages(bag, rosbag::TopicQuery(topic));
-  const std::size_t stride = std::max<std::size_t>(1, messages.size() / kImages);
-  std::size_t index = 0;
+void add_transforms(const rosbag::MessageInstance& message, BagOverview& out) {
+  const auto read = message.instantiate<tf2_msgs::TFMessage>();
+  if (!read) return;
+  for (const geometry_msgs::TransformStamped& pose : read->transforms) {
+    const std::pair<std::string, std::string> joint{plain(pose.header.frame_id), plain(pose.child_frame_id)};
+    const auto known = std::find(out.transforms.begin(), out.transforms.end(), joint);
+    if (known == out.transforms.end()) out.transforms.push_back(joint);
+  }
+}
+
+/// One pass: a compressed bag is slow to read.
+void read(const rosbag::Bag& bag, const std::vector<std::string>& topics, BagOverview& out) {
+  std::map<std::string, std::size_t> strides, come;
+  for (const std::string& topic : topics) {
+    strides[topic] = std::max<std::size_t>(1, rosbag::View(bag, rosbag::TopicQuery(topic)).size() / kImages);
+  }
+  rosbag::View messages(bag, rosbag::TopicQuery(topics));
   for (const rosbag::MessageInstance& message : messages) {
-    if (index++ % stride != 0 || out.images[topic].size() == kImages) continue;
-    if (const auto image = message.instantiate<sensor_msgs::Image>()) {
-      out.images[topic].push_back(to_image(image, topic).clone());
+    const std::string& topic = message.getTopic();
+    if (topic == "/tf" || topic == "/tf_static") {
+      add_transforms(message, out);
+      continue;
     }
-  }
-}
-
-void read_transforms(const rosbag::Bag& bag, BagOverview& out) {
-  rosbag::View messages(bag, rosbag::TopicQuery(std::vector<std::string>{"/tf", "/tf_static"}));
-  for (const rosbag::MessageInstance& message : messages) {
-    const auto read = message.instantiate<tf2_msgs::TFMessage>();
-    if (!read) continue;
-    for (const geometry_msgs::TransformStamped& pose : read->transforms) {
-      const std::pair<std::string, std::string> joint{plain(pose.header.frame_id), plain(pose.child_frame_id)};
-      const auto known = std::find(out.transforms.begin(), out.transforms.end(), joint);
-      if (known == out.transforms.end()) out.transforms.push_back(joint);
+    add_times(message, out);
+    if (come[topic]++ % strides[topic] != 0 || message.getDataType() != "sensor_msgs/Image") continue;
+    if (const auto image = message.instantiate<sensor_msgs::Image>()) {
+      if (out.images[topic].size() < kImages) out.images[topic].push_back(to_image(image, topic).clone());
     }
   }
 }
@@ -91,11 +94,15 @@ BagOverview overview(const std::string& file, const std::vector<NeededTopic>& ne
                                       [&](const Topic& topic) { return topic.name == connection->topic; });
       if (known == out.topics.end()) out.topics.push_back({connection->topic, connection->datatype});
     }
+    std::vector<std::string> topics{"/tf", "/tf_static"};
     for (const NeededTopic& need : needed) {
-      if (need.topic.type != "sensor_msgs/CameraInfo") read_times(bag, need.topic.name, out);
-      if (need.topic.type == "sensor_msgs/Image") read_images(bag, need.topic.name, out);
+      if (need.topic.type == "sensor_msgs/CameraInfo") continue;
+      topics.push_back(need.topic.name);
+      out.times.push_back({need.topic.name, {}, {}});  // in the model file's order, observations first
     }
-    read_transforms(bag, out);
+    read(bag, topics, out);
+    const auto silent = [](const TopicTimes& times) { return times.stamps.empty(); };
+    out.times.erase(std::remove_if(out.times.begin(), out.times.end(), silent), out.times.end());
   } catch (const rosbag::BagException& error) {
     throw InputError(file, error.what(), "a bag that `rosbag check` accepts");
   }

@@ -46,7 +46,8 @@ class CheckRecording : public ::testing::Test {
   void record() {
     Model truth(pushed_bar(std::to_string(kTruth)), mesh_);
     truth.drive(0.0, recorded_.loads);
-    const auto run = make_forward_model(truth)->start(truth.theta(truth.prior_mean()), 0.0);
+    const auto forward = make_forward_model(truth);
+    const auto run = forward->start(truth.theta(truth.prior_mean()), 0.0);
     std::mt19937 random(7);
     std::normal_distribution<double> noise(0.0, kNoise);
     for (int k = 0; k < kFrames; ++k) {
@@ -58,7 +59,7 @@ class CheckRecording : public ::testing::Test {
       seen.points = mesh_.nodes.leftCols(mesh_.corner_count);
       const Eigen::VectorXd u = run->displacement();
       seen.points += Eigen::Map<const Eigen::Matrix3Xd>(u.data(), 3, mesh_.corner_count);
-      for (double& x : Eigen::Map<Eigen::ArrayXd>(seen.points.data(), seen.points.size())) x += noise(random);
+      for (Eigen::Index i = 0; i < seen.points.size(); ++i) seen.points.data()[i] += noise(random);
       recorded_.frames.push_back(frame);
     }
   }
@@ -128,7 +129,8 @@ TEST_F(CheckRecording, NamesAForceOfTheWrongSign) {
 
 TEST_F(CheckRecording, NamesAForceInMillinewton) {
   scale_force(1e3);
-  EXPECT_TRUE(says(check_motion(pushed_bar(kPrior), mesh_, recorded_), {"/tool/wrench", "mN", "scale: 0.001", "of 30 kPa"}));
+  EXPECT_TRUE(
+      says(check_motion(pushed_bar(kPrior), mesh_, recorded_), {"/tool/wrench", "mN", "scale: 0.001", "of 30 kPa"}));
 }
 
 TEST_F(CheckRecording, NamesAPriorInKilopascal) {

@@ -23,7 +23,7 @@ class SetupTest(unittest.TestCase):
         self.assertIn('no node publishes the topic /tissue/vertices (did you mean `/tissue/vertexes`?)', message)
         self.assertEqual(level, DiagnosticStatus.WARN)
         rospy.wait_for_service('list_effects', 10)
-        self.assertTrue(rospy.ServiceProxy('list_effects', ListEffects)().effects)
+        self.assertTrue(rospy.ServiceProxy('list_effects', ListEffects)().running)
 
 
 if __name__ == '__main__':

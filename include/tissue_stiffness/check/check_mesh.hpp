@@ -7,9 +7,9 @@
 
 namespace tissue_stiffness {
 
-/// A body of these extents [m]: one above 2.5 m (taller than a person) is probably in mm, one below 0.1 mm in m already.
-/// And an edge length that TetGen would fill with more than 10^7 tetrahedra, of edge^3 / (6 sqrt(2)) each, or a factor of
-/// that in the volume that `fill` of the box around the body has.
+/// A body of these extents [m] and volume [m^3]: one above 2.5 m (taller than a person) is probably in mm, one below 0.1 mm
+/// was in m already; and a `max_edge_length` that divides it into more than 10^7 regular tetrahedra, of edge^3 / (6
+/// sqrt(2)) each, keeps TetGen busy for longer than anybody waits.
 SetupFindings check_extent(const MeshSettings& settings, const Eigen::Vector3d& extent, double volume);
 
 /// The same of the mesh file, before TetGen or anything else works on it: that would take as long as the mesh is large.

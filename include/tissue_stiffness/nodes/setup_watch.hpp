@@ -18,7 +18,7 @@ namespace tissue_stiffness {
 /// Logs each finding as a warning.
 void warn_of(const SetupFindings& findings);
 
-/// Says what is wrong with the estimator's set-up: numbers of the model file while it starts; topics that nobody publishes,
+/// Says what is wrong with the estimator's set-up. Numbers of the model file while it starts; topics that nobody publishes,
 /// every 5 s until the first usable frame; the mesh and the first frame when they come. Each sentence is logged once, and
 /// all of them stand on /diagnostics under `set-up`, at level WARN until a frame is used. Nothing is ever stopped. Thread
 /// safe.
