@@ -19,15 +19,16 @@ import foreign
 from figures import plt, save
 from organs import organs
 from scenes import scenes
-from study import HIDDEN, ORGANS, MODULUS, Failed, load_for, observations, simulate, strength_for, write
+from study import HIDDEN, ORGANS, MODULUS, Failed, load_for, observations, simulate
 
 LEVELS = (0.02, 0.05, 0.1, 0.2, 0.5)  # of the load
 SIGMAS = (1.0, 5.0)                   # default tolerances of a constant
-MISFITS = (0.03, 0.1, 0.3)            # of the motion, that a hidden effect makes
+STRENGTHS = (0.1, 0.3, 1.0)           # of a hidden effect; 1: about as large as tissue has it
+VARIANTS = 2                          # bodies of each scene
+STEP = 0.002                          # s, of a truth of our own
 STARTS = (0.5, 0.7, 1.5, 2.0)         # prior over truth
 READY = 30                            # frames after which a clean recording should be converged
 TIME_LIMIT = 300                      # s a run
-FOREIGN_SHARES = {'case': '../shared/cases', 'simulator': '../shared/simulator'}
 COLOURS = {'converged': '#1a7f37', 'doubtful': '#d29922', 'model_invalid': '#cf222e', 'converging': '#57606a',
            'drifting': '#8250df', 'stale': '#6e7781', 'no_data': '#000000'}
 
@@ -63,10 +64,10 @@ def tasks(arguments):
     rows += [('own', str(name), 'typical', 1.0) for name in rng.choice([n for n in own if loaded(n)], 50)]
     rows += [('own', *row) for row in wrong_inputs(own, rng, 8)]
     choices = {**HIDDEN, **ORGANS}
-    for misfit in MISFITS:
-        for name in rng.choice(own, 36):
+    for strength in STRENGTHS:
+        for name in rng.choice(own, 25):
             hidden = str(rng.choice([effect for effect in choices[name] if effect != 'none']))
-            rows.append(('own', str(name), 'hidden ' + hidden, misfit))
+            rows.append(('own', str(name), 'hidden ' + hidden, strength))
     truths = sorted(foreign.TOLD) + foreign.CLEAN
     rows += [('foreign', name, 'none', 0.0) for name in truths]
     rows += [('foreign', str(name), 'typical', 1.0) for name in rng.choice([n for n in truths if loaded(n)], 20)]
@@ -78,35 +79,39 @@ def tasks(arguments):
     return [(arguments, *rows[k]) for k in order[:arguments.draws or None]]
 
 
-def own_recording(arguments, folder, number, name, hidden, misfit, rng):
+def own_truth(arguments, name, hidden, strength, variant):
+    """Simulates one of our own bodies without noise, where it is not there yet; returns its folder."""
+    folder = os.path.join(arguments.output, 'own', '%s %s %g %d' % (name, hidden, strength, variant))
+    if os.path.exists(os.path.join(folder, 'truth.yaml')):
+        return folder
+    os.makedirs(folder, exist_ok=True)
     scene = next(s for s in scenes() + organs() if s.name == name)
-    modulus = scene.modulus * rng.uniform(0.7, 1.4)
-    mesh = scene.write_mesh(folder, 'mesh', False)
-    strength = strength_for(arguments, folder, scene, modulus, hidden, misfit) if hidden != 'none' else 0.0
+    modulus = float(scene.modulus * np.random.default_rng(variant).uniform(0.7, 1.4))
     load = load_for(hidden, strength)
-    bag = simulate(arguments, folder, scene, modulus, hidden, strength, load, True, 1e-9, 0.0, number + 1)
+    simulate(arguments, folder, scene, modulus, hidden, strength, load, True, step=STEP)
+    mesh = scene.write_mesh(folder, 'mesh', False)
     effects = [{'elasticity': {'law': 'linear', 'young_modulus': None, 'poisson_ratio': 0.45}}] + scene.effects_under(load)
-    model = {'mesh': {'file': os.path.join(folder, mesh['file']), **{k: v for k, v in mesh.items() if k != 'file'}},
-             'regions': scene.regions, 'effects': effects, 'observations': observations(scene)}
-    return modulus, json.loads(json.dumps(model)), bag, scene.noise
+    errors.write_yaml(os.path.join(folder, 'model.yaml'), {'mesh': mesh, 'regions': scene.regions, 'effects': effects,
+                                                           'observations': observations(scene)})
+    errors.write_yaml(os.path.join(folder, 'truth.yaml'), {'young_modulus': modulus})
+    return folder
 
 
-def foreign_recording(arguments, name, told):
+def truth_of(arguments, ground, name, kind, level, number):
+    """Folder with model.yaml and recording.bag, file with the true modulus, and the noise that is still to be added [m]."""
+    if ground == 'own':
+        hidden, strength = (kind[7:], level) if kind.startswith('hidden') else ('none', 0.0)
+        folder = own_truth(arguments, name, hidden, strength, number % VARIANTS)
+        return folder, os.path.join(folder, 'truth.yaml'), next(s for s in scenes() + organs() if s.name == name).noise
     if name.startswith('case'):
-        folder = os.path.join(arguments.shared, 'cases', name)
-        truth = os.path.join(arguments.shared, 'cases_truth', name + '.yaml')
-        noise = 0.0  # it is in the recording
-    else:
-        folder = os.path.join(arguments.output, 'foreign', name)
-        truth = os.path.join(folder, 'truth.yaml')
-        noise = foreign.NOISE
-    with open(os.path.join(folder, 'model.yaml')) as file:
-        model = yaml.safe_load(file)
-    with open(truth) as file:
-        modulus = yaml.safe_load(file)['young_modulus']
-    model['mesh']['file'] = os.path.join(folder, model['mesh']['file'])
-    model['effects'] += foreign.TOLD.get(name, []) if told else []
-    return modulus, model, os.path.join(folder, 'recording.bag'), noise
+        return (os.path.join(arguments.shared, 'cases', name), os.path.join(arguments.shared, 'cases_truth', name + '.yaml'), 0.0)
+    folder = os.path.join(arguments.output, 'foreign', name)
+    return folder, os.path.join(folder, 'truth.yaml'), foreign.NOISE
+
+
+def read_yaml(path):
+    with open(path) as file:
+        return yaml.safe_load(file)
 
 
 def draw(task):
@@ -117,11 +122,11 @@ def draw(task):
     os.makedirs(folder, exist_ok=True)
     row = {'number': number, 'ground': ground, 'name': name, 'kind': kind, 'level': level}
     try:
-        if ground == 'own':
-            hidden = kind[7:] if kind.startswith('hidden') else 'none'
-            modulus, model, bag, noise = own_recording(arguments, folder, number, name, hidden, level, rng)
-        else:
-            modulus, model, bag, noise = foreign_recording(arguments, name, not kind.startswith('hidden'))
+        source, truth, noise = truth_of(arguments, ground, name, kind, level, number)
+        model, modulus = read_yaml(os.path.join(source, 'model.yaml')), read_yaml(truth)['young_modulus']
+        model['mesh']['file'] = os.path.join(source, model['mesh']['file'])
+        if ground == 'foreign' and not kind.startswith('hidden'):
+            model['effects'] += foreign.TOLD.get(name, [])
         change = move = None
         if kind in errors.LOADS:
             change = lambda times, load: errors.wrong_load(kind, level, times, load, rng)  # noqa: E731
@@ -130,7 +135,7 @@ def draw(task):
         elif kind in errors.CONSTANTS:
             move = errors.wrong_constant(kind, level, model, folder, rng)
         recording = os.path.join(folder, 'wrong.bag')
-        errors.rewrite(bag, recording, change, move, noise, rng)
+        errors.rewrite(os.path.join(source, 'recording.bag'), recording, change, move, noise, rng)
         prior = {'prior': float(modulus * rng.choice(STARTS)), 'factor': 3.0}
         errors.of_effect(model, 'elasticity')[0]['young_modulus'] = prior
         model_file = errors.write_yaml(os.path.join(folder, 'model.yaml'), model)
@@ -251,6 +256,13 @@ def picture(rows, path):
     save(figure, path, 110, [axis])
 
 
+def simulate_own(task):
+    try:
+        own_truth(*task)
+    except (Failed, subprocess.TimeoutExpired) as error:
+        print(task[1:], error)  # its draws fail and are counted
+
+
 def simulate_foreign(arguments, name):
     folder = os.path.join(arguments.output, 'foreign', name)
     if not os.path.exists(os.path.join(folder, 'truth.yaml')):
@@ -285,7 +297,11 @@ def main():
             pool.map(lambda name: simulate_foreign(arguments, name), foreign.CLEAN + foreign.HIDDEN)
         done = {row['number'] for row in rows}
         planned = [task for task in tasks(arguments) if task[1] not in done]
+        truths = {(name, kind[7:], level, number % VARIANTS) if kind.startswith('hidden') else (name, 'none', 0.0, number % VARIANTS)
+                  for _, number, ground, name, kind, level in planned if ground == 'own'}
         with multiprocessing.Pool(arguments.jobs) as pool:
+            for k, _ in enumerate(pool.imap_unordered(simulate_own, [(arguments, *truth) for truth in sorted(truths)])):
+                print('simulated %d of %d' % (k + 1, len(truths)), flush=True)
             for row in pool.imap_unordered(draw, planned):
                 rows.append(row)
                 print('%4d %-28s %-24s %4g -> %s' % (len(rows), row['name'], row['kind'], row['level'], row.get('failed') or

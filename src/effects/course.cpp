@@ -125,11 +125,11 @@ void Course::correct(const LoadErrorBasis& basis, const Eigen::VectorXd& coeffic
 
 void Course::clear() {
   const std::unique_lock<std::shared_mutex> lock(mutex_);
+  coefficients_.resize(0);
   corrected_.clear();
   if (from_file_) return;
   times_.clear();
   values_.clear();
-  corrected_.clear();
 }
 
 void Course::shift(double offset) {

@@ -95,6 +95,7 @@ class UnscentedScheme : public Scheme {
     if (input_work_.valid()) input_work_.wait();
     input_work_ = {};
     inputs_.reset();
+    restudying_ = corrected_ = false;
     input_shift_.resize(0);
     mesh_left_.reset();
     settling_ = {};
@@ -207,13 +208,13 @@ class UnscentedScheme : public Scheme {
       past_ = {};
     } else if (task.change) {
       past_.turn(*track_, *outcome.track, outcome.first, *task.change, frames_);
-      validity_.reset();
       if (inputs_) inputs_->fitted = false;  // its fit was one without a change
       input_shift_.resize(0);
       if (!task.change->near) watch_.go_on();
     }
     track_ = std::move(outcome.track);
     forward_ = track_->forward();
+    validity_.reset();  // the misfits so far were those of other runs
     return true;
   }
 
@@ -245,7 +246,8 @@ class UnscentedScheme : public Scheme {
     std::string why;
     const EstimateState now = state(result.misfit, why);
     // Beside a misfit that does not pass, no interval is tighter than that misfit allows.
-    if (now == EstimateState::doubtful || now == EstimateState::model_invalid) unexplained_ = std::max(0.0, validity_.excess() - of_mesh());
+    if (now == EstimateState::doubtful || now == EstimateState::model_invalid)
+      unexplained_ = std::max(0.0, validity_.excess() - of_mesh());
     estimate_ = summarise(model_->free_parameters(), published_mean(), covariance());
     estimate_.time = frame.time;
     estimate_.state = now;
@@ -274,18 +276,29 @@ class UnscentedScheme : public Scheme {
   Parts covariance_parts() const {
     const Eigen::MatrixXd noise = track_->covariance(), zero = Eigen::MatrixXd::Zero(noise.rows(), noise.cols());
     Parts parts{noise, mesh_doubt(*model_, mesh_shift()), zero, zero, zero};
-    if (!inputs_) return parts;
+    if (!inputs_) {  // nothing is known yet of what the inputs' errors do
+      if (!model_->settings().exact_inputs) parts.loads = model_->prior_std().cwiseAbs2().asDiagonal();
+      return parts;
+    }
     parts.loads = inputs_->from_loads;
     parts.constants = inputs_->from_constants;
     // The misfit may lie along what the parameters do, with all rows and frames alike (Kennedy & O'Hagan 2001).
-    parts.model = std::max(misfit_test().discrepancy(), unexplained_) * inputs_->rows * inputs_->from_noise;
+    parts.model = within_prior(std::max(misfit_test().discrepancy(), unexplained_) * inputs_->rows * inputs_->from_noise);
     return parts;
+  }
+
+  /// (C^-1 + P^-1)^-1: whatever is left open, the prior P still holds.
+  Eigen::MatrixXd within_prior(const Eigen::MatrixXd& c) const {
+    const Eigen::MatrixXd prior = model_->prior_std().cwiseAbs2().asDiagonal();
+    return prior * (prior + c).ldlt().solve(c);
   }
 
   Eigen::MatrixXd covariance() const {
     const Parts parts = covariance_parts();
     return parts.noise + parts.mesh + parts.loads + parts.constants + parts.model;
   }
+
+  Eigen::MatrixXd covariance_beside_model() const { return covariance() - covariance_parts().model; }
 
   std::vector<VarianceShares> variance_shares() const {
     const Parts parts = covariance_parts();
@@ -317,7 +330,7 @@ class UnscentedScheme : public Scheme {
     return moduli.empty() ? all : moduli;
   }
 
-  // Why the estimate is not precise enough to be called settled; empty: it is.
+  // Why the estimate is not precise enough to be used; empty: it is.
   std::string unlearnt() const {
     const Eigen::VectorXd std = covariance().diagonal().cwiseSqrt(), prior = model_->prior_std();
     for (const Eigen::Index i : judged()) {
@@ -340,14 +353,16 @@ class UnscentedScheme : public Scheme {
       return why = "no value of the parameters explains the motion", EstimateState::model_invalid;
     }
     if (why = stale_load(misfit.time); !why.empty()) return EstimateState::stale;
-    if (why = unlearnt(); !why.empty()) {
-      return track_->start().motion ? EstimateState::drifting : EstimateState::converging;
-    }
+    const EstimateState unknown = track_->start().motion ? EstimateState::drifting : EstimateState::converging;
     if (!inputs_) return why = "the errors of the inputs have not been studied yet", EstimateState::converging;
-    if (left_study()) return why = "the errors of the inputs are studied anew", EstimateState::converging;
-    if (!settling_.settled()) return why = "the estimate still moves out of its own interval", EstimateState::converging;
+    if (restudying_ || left_study()) return why = "the errors of the inputs are studied anew", EstimateState::converging;
+    if (!settling_.settled()) return why = "the estimate still moves out of its own interval", unknown;
     if (!inputs_->implausible.empty()) return why = inputs_->implausible, EstimateState::doubtful;
-    return inputs_->fitted ? state_of_misfit(why) : state_of_rms(misfit, why);
+    std::string verdict;
+    const EstimateState of_misfit = inputs_->fitted ? state_of_misfit(verdict) : state_of_rms(misfit, verdict);
+    if (of_misfit == EstimateState::doubtful) return why = verdict, of_misfit;
+    if (why = unlearnt(); !why.empty()) return unknown;
+    return why = verdict, of_misfit;
   }
 
   EstimateState state_of_misfit(std::string& why) const {
@@ -366,7 +381,8 @@ class UnscentedScheme : public Scheme {
 
   // A model that runs in full is judged by the size of its misfit alone.
   EstimateState state_of_rms(const Misfit& misfit, std::string& why) const {
-    if (std::pow(misfit.rms_sigma, 2) <= std::pow(kFullSigmas, 2) + of_mesh()) return why = "the misfit is about the noise", EstimateState::converged;
+    if (std::pow(misfit.rms_sigma, 2) <= std::pow(kFullSigmas, 2) + of_mesh())
+      return why = "the misfit is about the noise", EstimateState::converged;
     char text[100];
     std::snprintf(text, sizeof text, "the misfit is %.2g times the noise", misfit.rms_sigma);
     return why = text, EstimateState::doubtful;
@@ -391,9 +407,11 @@ class UnscentedScheme : public Scheme {
     if (input_work_.valid() || more_follow() || track_->start().motion || !complete_) return moved;
     const bool grown = static_cast<double>(frames_.size()) >=
                        std::max<double>(kFirstInputs, kInputGrowth * static_cast<double>(last_inputs_));
-    if (!grown && !(left_study() && frames_.size() > last_inputs_)) return moved;
+    restudying_ = left_study();
+    if (!grown && !restudying_) return moved;
     last_inputs_ = frames_.size();
     const AnchoredFilter& filter = track_->filter();
+    studied_at_ = filter.mean();
     MeshError::Question question(*model_, frames_, filter.mean(), filter.spread(), model_->prior_std());
     const auto work = [this, question = std::move(question)] {
       if (input_study_ == nullptr) input_study_ = std::make_unique<InputStudy>(*model_);
@@ -411,32 +429,36 @@ class UnscentedScheme : public Scheme {
     }
   }
 
-  // A load's estimated error is taken off where that moves the estimate; what the runs under the corrected loads still
-  // leave to the fit's parameters is a shift.
+  // A load's estimated error is taken off where it is plausible, leaves a misfit that passes, and moves the estimate; what
+  // the runs then still leave to the fit's parameters is a shift. An error that is not believed must not hide the misfit.
   bool take_inputs() {
     inputs_ = std::move(studied_inputs_);
+    restudying_ = false;
     if (!inputs_->fitted) return false;
     const Eigen::VectorXd std = track_->covariance().diagonal().cwiseSqrt();
     const Eigen::VectorXd move = inputs_->w - inputs_->asked;
-    const bool moved = !inputs_->corrections.empty() && (move.array().abs() > kMoved * std.array()).any();
-    if (moved) {
+    const bool moves = !inputs_->corrections.empty() && (move.array().abs() > kMoved * std.array()).any();
+    const bool believed = inputs_->implausible.empty() && misfit_test().passes();
+    const bool change = believed ? moves : corrected_;
+    if (change) {
       stop();
       for (const auto& [topic, correction] : inputs_->corrections) {
-        model_->courses().at(topic)->correct(correction.basis, correction.coefficients);
+        model_->courses().at(topic)->correct(correction.basis, believed ? correction.coefficients : Eigen::VectorXd());
       }
+      corrected_ = believed;
       track_->rerun(frames_, inputs_->w);
       validity_.reset();
     }
-    studied_at_ = moved ? track_->filter().mean() : inputs_->asked;
+    studied_at_ = change ? track_->filter().mean() : inputs_->asked;
     input_shift_ = inputs_->w - studied_at_;
-    return moved;
+    return change;
   }
 
   // Whether the runs have left the place where the inputs were studied.
   bool left_study() const {
     if (!inputs_ || !inputs_->fitted || input_shift_.size() == 0) return false;
-    const Eigen::ArrayXd way = track_->filter().mean() - studied_at_;
-    return (way.abs() > covariance().diagonal().array().sqrt()).any();
+    const Eigen::ArrayXd moved = track_->filter().mean() - studied_at_;
+    return (moved.abs() > covariance_beside_model().diagonal().array().sqrt()).any();
   }
 
   // What the mesh does to the estimate, asked anew whenever the recording has doubled; in the background when a node runs.
@@ -492,6 +514,8 @@ class UnscentedScheme : public Scheme {
   Eigen::VectorXd input_shift_;                   ///< to the fit beside the inputs' errors; empty: not known yet
   Eigen::VectorXd studied_at_;                    ///< the filter's mean that the shift is from
   std::size_t last_inputs_ = 0;                   ///< frames that there were then
+  bool corrected_ = false;                        ///< the loads' estimated errors are taken off
+  bool restudying_ = false;                       ///< the last study is of a place that the runs have left
   Settling settling_;
   double unexplained_ = 0.0;              ///< mean square that does not pass, in noise variances
   std::future<void> study_, input_work_;  ///< last: their threads use the members above

@@ -112,7 +112,7 @@ TEST(MeshError, OfAFiniteStrainModelIsInTheInterval) {
   std::printf("finite strain: E %+.2f %% off, 95 %% %+.2f..%+.2f %%\n", 100.0 * (p.mean / kTruth - 1.0),
               100.0 * (p.lower95 / kTruth - 1.0), 100.0 * (p.upper95 / kTruth - 1.0));
   EXPECT_TRUE(holds(p, kTruth));
-  EXPECT_LT(p.upper95 / p.lower95, 1.3);
+  EXPECT_LT(p.upper95 / p.lower95, 2.0) << estimator.estimate().state_reason;  // beside a misfit of several sigma
   EXPECT_NE(estimator.description().back().find("linear form"), std::string::npos);
 }
 

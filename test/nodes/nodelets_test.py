@@ -74,7 +74,8 @@ class NodeletsTest(unittest.TestCase):
         one, other = nodes[shared[-1]], nodelets[shared[-1]]
         self.assertAlmostEqual(one.mean[0] / other.mean[0], 1.0, delta=0.005)
         self.assertAlmostEqual(math.log(one.covariance[0] / other.covariance[0]), 0.0, delta=math.log(4.0))
-        self.assertEqual(one.state, other.state)
+        for estimate in (one, other):  # whether it has settled depends on when looks ended
+            self.assertIn(estimate.state, ('converging', 'converged'), estimate.state_reason)
 
     def test_the_nodelets_are_one_process(self):
         self.assertEqual(self.nodelets.listeners, {MANAGER})

@@ -42,6 +42,7 @@ TEST_F(BagReaderTest, GivesFramesInTheOrderOfTheirStamps) {
       {
         RecordingWriter writer(path("one.bag"));
         write_vertex(writer, 0.1 * k, k);
+        writer.close();
       }
       rosbag::Bag one(path("one.bag"));
       rosbag::View view(one);
@@ -72,6 +73,7 @@ TEST_F(BagReaderTest, MergesObservationsOfOneStampAndCountsLateOnes) {
     write_vertex(writer, 0.0, 1.0);
     write_vertex(writer, 0.0, 2.0, "/other");
     for (int k = 1; k < 10; ++k) write_vertex(writer, 0.2 * k, 1.0);
+    writer.close();
   }
   {
     rosbag::Bag bag(path("recording.bag"), rosbag::bagmode::Append);
@@ -102,6 +104,7 @@ TEST_F(BagReaderTest, TurnsAWrenchIntoTheModelFrame) {
     Eigen::Isometry3d quarter(Eigen::AngleAxisd(0.5 * M_PI, Eigen::Vector3d::UnitZ()));
     writer.write_pose("tool_tip", at(0.0), quarter);
     write_vertex(writer, 0.0, 1.0);
+    writer.close();
   }
   rosbag::Bag bag(path("recording.bag"), rosbag::bagmode::Append);
   geometry_msgs::WrenchStamped wrench;
@@ -123,6 +126,7 @@ TEST_F(BagReaderTest, SkipsAFrameWhoseSensorHasNoPose) {
   {
     RecordingWriter writer(path("one.bag"));
     write_vertex(writer, 0.0, 1.0);
+    writer.close();
   }
   rosbag::Bag one(path("one.bag"));
   rosbag::View view(one);
@@ -141,6 +145,7 @@ TEST_F(BagReaderTest, FollowsASensorThatMoves) {
   {
     RecordingWriter writer(path("one.bag"));
     for (int i = 0; i < 20; ++i) write_vertex(writer, 0.05 * i, 1.0);
+    writer.close();
   }
   {
     rosbag::Bag one(path("one.bag")), bag(path("recording.bag"), rosbag::bagmode::Write);
@@ -182,6 +187,7 @@ TEST_F(BagReaderTest, RefusesABagWithoutItsEnd) {
   {
     RecordingWriter writer(path("recording.bag"));
     for (int k = 0; k < 100; ++k) write_vertex(writer, 0.1 * k, 1.0);
+    writer.close();
   }
   const std::string whole = read("recording.bag");
   write("recording.bag", whole.substr(0, whole.size() / 2));
@@ -192,6 +198,7 @@ TEST_F(BagReaderTest, NamesTheTopicsThatWouldFit) {
   {
     RecordingWriter writer(path("recording.bag"));
     write_vertex(writer, 0.0, 1.0, "/elsewhere/vertices");
+    writer.close();
   }
   EXPECT_TRUE(says(input_error([&] { open(); }), {"/tissue/vertices", "found nothing", "/elsewhere/vertices"}));
 }
@@ -207,6 +214,7 @@ TEST_F(BagReaderTest, RefusesVerticesThatTheMeshDoesNotHave) {
   {
     RecordingWriter writer(path("recording.bag"));
     write_vertex(writer, 0.0, 1.0);
+    writer.close();
   }
   BagReader reader = open();
   reader.set_vertex_count(3);
