@@ -33,6 +33,7 @@ constexpr double kWidest = 0.2;              // relative standard deviation of a
 constexpr double kFinerLeaves = 16.0 / 9.0;  // of the mean square that the finer mesh changes: at second order, the whole
 constexpr std::size_t kFirstInputs = 4;      // frames before the first study of the inputs' errors
 constexpr double kFullSigmas = 1.5;          // rms error over noise that passes where the misfit's shape is not tested
+constexpr double kInvalidScale = 4.0;        // mean square of the same over all frames, under the present parameters
 constexpr double kInvalidSigmas = 10.0;      // rms error over noise at which the model says nothing about the body
 
 class UnscentedScheme : public Scheme {
@@ -214,7 +215,6 @@ class UnscentedScheme : public Scheme {
     }
     track_ = std::move(outcome.track);
     forward_ = track_->forward();
-    validity_.reset();  // the misfits so far were those of other runs
     return true;
   }
 
@@ -241,13 +241,9 @@ class UnscentedScheme : public Scheme {
     result.misfit.dof = innovation.dof;
     validity_.add(result.misfit);
     watch_.add(result.misfit.rms_sigma * result.misfit.rms_sigma, filter);
-    unexplained_ = 0.0;
     settling_.add(published_mean(), covariance().diagonal().cwiseSqrt());
     std::string why;
     const EstimateState now = state(result.misfit, why);
-    // Beside a misfit that does not pass, no interval is tighter than that misfit allows.
-    if (now == EstimateState::doubtful || now == EstimateState::model_invalid)
-      unexplained_ = std::max(0.0, validity_.excess() - of_mesh());
     estimate_ = summarise(model_->free_parameters(), published_mean(), covariance());
     estimate_.time = frame.time;
     estimate_.state = now;
@@ -283,8 +279,19 @@ class UnscentedScheme : public Scheme {
     parts.loads = inputs_->from_loads;
     parts.constants = inputs_->from_constants;
     // The misfit may lie along what the parameters do, with all rows and frames alike (Kennedy & O'Hagan 2001).
-    parts.model = within_prior(std::max(misfit_test().discrepancy(), unexplained_) * inputs_->rows * inputs_->from_noise);
+    parts.model = within_prior(std::max(misfit_test().discrepancy(), unexplained()) * inputs_->rows * inputs_->from_noise);
     return parts;
+  }
+
+  // Beside a misfit that does not pass, or has risen since it was tested, no interval is tighter than that misfit allows,
+  // whatever the state: mean square of all frames' misfit under the present parameters beyond noise and mesh, in noise
+  // variances.
+  double unexplained() const {
+    const MisfitTest test = misfit_test();
+    const double scale = track_->filter().misfit_scale(), tested = inputs_->fitted ? scale_then_ : 1.0;
+    const bool passes = inputs_->implausible.empty() && (!inputs_->fitted || test.passes());
+    if (passes && scale <= kFullSigmas * kFullSigmas * tested) return 0.0;
+    return std::max(0.0, scale - test.noise_level() - of_mesh());
   }
 
   /// (C^-1 + P^-1)^-1: whatever is left open, the prior P still holds.
@@ -349,7 +356,7 @@ class UnscentedScheme : public Scheme {
     if (watch_.suspicious() && !watch_.searched()) {
       return why = "the misfit has risen, as it does when a parameter changes", EstimateState::drifting;
     }
-    if (misfit.rms_sigma > kInvalidSigmas || validity_.invalid()) {
+    if (misfit.rms_sigma > kInvalidSigmas || (validity_.invalid() && track_->filter().misfit_scale() > kInvalidScale)) {
       return why = "no value of the parameters explains the motion", EstimateState::model_invalid;
     }
     if (why = stale_load(misfit.time); !why.empty()) return EstimateState::stale;
@@ -412,6 +419,7 @@ class UnscentedScheme : public Scheme {
     last_inputs_ = frames_.size();
     const AnchoredFilter& filter = track_->filter();
     studied_at_ = filter.mean();
+    scale_then_ = filter.misfit_scale();
     MeshError::Question question(*model_, frames_, filter.mean(), filter.spread(), model_->prior_std());
     const auto work = [this, question = std::move(question)] {
       if (input_study_ == nullptr) input_study_ = std::make_unique<InputStudy>(*model_);
@@ -512,12 +520,12 @@ class UnscentedScheme : public Scheme {
   InputStudy::Answer studied_inputs_;             ///< the same
   std::optional<InputStudy::Answer> inputs_;      ///< the last study's
   Eigen::VectorXd input_shift_;                   ///< to the fit beside the inputs' errors; empty: not known yet
+  double scale_then_ = 1.0;                       ///< the misfit's when the inputs' study was asked for
   Eigen::VectorXd studied_at_;                    ///< the filter's mean that the shift is from
   std::size_t last_inputs_ = 0;                   ///< frames that there were then
   bool corrected_ = false;                        ///< the loads' estimated errors are taken off
   bool restudying_ = false;                       ///< the last study is of a place that the runs have left
   Settling settling_;
-  double unexplained_ = 0.0;              ///< mean square that does not pass, in noise variances
   std::future<void> study_, input_work_;  ///< last: their threads use the members above
 };
 

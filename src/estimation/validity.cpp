@@ -21,10 +21,6 @@ void Validity::add(const Misfit& misfit) {
   motion_ += weight * (std::pow(misfit.motion_rms, 2) - motion_);
 }
 
-double Validity::excess() const {
-  return std::max(0.0, sigmas_ - 1.0);
-}
-
 bool Validity::invalid() const {
   return frames_ >= kFewest && sigmas_ > kNoise && error_ > kUnexplained * motion_;
 }

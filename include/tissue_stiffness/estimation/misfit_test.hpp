@@ -35,9 +35,10 @@ class MisfitTest {
 
   static constexpr double tolerated = 1.0;  ///< noise variances: unexplained motion below one frame's noise
   static constexpr double bound = 3.0;      ///< standard deviations
+  /// Mean square of the residuals across the shapes a degree of freedom, in noise variances, at least 1.
+  double noise_level() const;
 
  private:
-  double noise_level() const;  ///< mean square of the rest a degree of freedom, at least the stated noise's
 
   double along_ = 0.0, along_dof_ = 0.0, rest_ = 0.0, rest_dof_ = 0.0;
   double product_ = 0.0, square_ = 0.0;  ///< of successive frames' rest, for its memory

@@ -10,8 +10,6 @@ class Validity {
  public:
   void add(const Misfit& misfit);
   bool invalid() const;
-  /// Smoothed mean square of error over sigma beyond noise, at least 0.
-  double excess() const;
   void reset() { *this = {}; }
 
  private:
