@@ -140,7 +140,7 @@ def scaled_mesh(model, folder, factor):
 
 def wrong_constant(kind, sigmas, model, folder, rng):
     """Changes the model by so many default tolerances; returns how the sensor's points move, or None."""
-    size = sigmas * CONSTANTS[kind] * rng.choice((-1.0, 1.0))
+    size = float(sigmas * CONSTANTS[kind] * rng.choice((-1.0, 1.0)))
     if kind == 'density':
         of_effect(model, 'inertia')[0]['density'] *= 1.0 + size
     elif kind == 'poisson_ratio':

@@ -122,7 +122,7 @@ def make(simulator, name, folder):
 
 def simulate_header(number, stamp):
     from std_msgs.msg import Header
-    return Header(seq=number, stamp=stamp, frame_id='world')
+    return Header(seq=number, stamp=stamp, frame_id='model')
 
 
 if __name__ == '__main__':

@@ -92,6 +92,9 @@ std::vector<Quantity> read_parameters(const EffectSettings& settings) {
     for (auto quantity = out.end() - spec.components; quantity != out.end(); ++quantity) {
       if (quantity->tolerance < 0.0)
         quantity->tolerance = spec.tolerance + spec.tolerance_share * std::abs(quantity->value);
+      // Two standard deviations stay within the bounds.
+      const double room = std::min(spec.upper - quantity->value, quantity->value - spec.lower);
+      quantity->tolerance = std::max(0.0, std::min(quantity->tolerance, 0.5 * room));
     }
   }
   return out;

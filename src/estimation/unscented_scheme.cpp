@@ -261,7 +261,7 @@ class UnscentedScheme : public Scheme {
   Eigen::VectorXd published_mean() const {
     Eigen::VectorXd mean = track_->filter().mean();
     if (!model_->nonlinear()) mean -= mesh_shift();
-    if (input_shift_.size() > 0) mean += input_shift_;
+    if (input_shift_.size() > 0 && inputs_believed()) mean += input_shift_;
     return mean;
   }
 
@@ -277,6 +277,7 @@ class UnscentedScheme : public Scheme {
       return parts;
     }
     parts.loads = inputs_->from_loads;
+    if (input_shift_.size() > 0 && !inputs_believed()) parts.loads += input_shift_ * input_shift_.transpose();
     parts.constants = inputs_->from_constants;
     // The misfit may lie along what the parameters do, with all rows and frames alike (Kennedy & O'Hagan 2001).
     parts.model = within_prior(std::max(misfit_test().discrepancy(), unexplained()) * inputs_->rows * inputs_->from_noise);
@@ -317,6 +318,10 @@ class UnscentedScheme : public Scheme {
     }
     return out;
   }
+
+  // Whether the estimated errors of the inputs are plausible and leave a misfit that passes. If not, the estimate is that
+  // under the inputs as they are, and its distance from the fit beside their errors is part of its doubt.
+  bool inputs_believed() const { return inputs_->implausible.empty() && misfit_test().passes(); }
 
   MisfitTest misfit_test() const {
     MisfitTest test = inputs_->test;
@@ -446,7 +451,7 @@ class UnscentedScheme : public Scheme {
     const Eigen::VectorXd std = track_->covariance().diagonal().cwiseSqrt();
     const Eigen::VectorXd move = inputs_->w - inputs_->asked;
     const bool moves = !inputs_->corrections.empty() && (move.array().abs() > kMoved * std.array()).any();
-    const bool believed = inputs_->implausible.empty() && misfit_test().passes();
+    const bool believed = inputs_believed();
     const bool change = believed ? moves : corrected_;
     if (change) {
       stop();

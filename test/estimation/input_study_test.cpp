@@ -109,6 +109,47 @@ TEST(InputStudy, WithExactInputsAddsNothing) {
   EXPECT_TRUE(holds(last.estimate.parameters.front(), kTruth));
 }
 
+// Two tolerances of 0.01 would reach beyond one half, where no body is.
+TEST(InputStudy, ARatioNearItsBoundDoesNotMoveTheEstimate) {
+  std::vector<std::string> effects = bar_under_gravity(prior(30e3, 3));
+  effects[1] = "elasticity: {law: linear, poisson_ratio: 0.495, young_modulus: " + prior(30e3, 3) + "}";
+  ModelSettings model = box_settings(effects);
+  const TetMesh mesh = bar_mesh();
+  const Experiment bar(model, mesh, {kTruth});
+  model.exact_inputs = false;
+  Estimator estimator(model, mesh);
+  step_through(estimator, see_all(bar, bar.film(0.0, kFilmed, 40), kNoise, 7));
+  const ParameterEstimate& p = estimator.estimate().parameters.front();
+  EXPECT_NEAR(p.mean / kTruth, 1.0, 0.03);
+  EXPECT_TRUE(holds(p, kTruth));
+}
+
+TEST(InputStudy, LeavesTheMisfitOfWhatItDoesNotBelieve) {
+  const auto rms_with = [](bool exact) {
+    ModelSettings model = pushed();
+    model.exact_inputs = exact;
+    return estimated(model, [](LoadSample& s) { s.value[2] *= 1.0 + 0.8 * std::sin(40.0 * s.time); });
+  };
+  const StepResult exact = rms_with(true), uncertain = rms_with(false);
+  EXPECT_NE(uncertain.estimate.state, EstimateState::converged) << uncertain.estimate.state_reason;
+  EXPECT_GT(uncertain.misfit.rms_sigma, 0.8 * exact.misfit.rms_sigma);
+}
+
+TEST(InputStudy, KnowsNothingBeforeItsFirstAnswer) {
+  const TetMesh mesh = bar_mesh();
+  const ModelSettings model = pushed();
+  Experiment bar(model, mesh, {kTruth});
+  Estimator estimator(model, mesh);
+  estimator.set_first_stamp(0.0);
+  for (int k = 0; k < 60; ++k) {
+    bar.add_load(wrench(0.005 * k));
+    estimator.add_load(wrench(0.005 * k));
+  }
+  const StepResult last = step_through(estimator, see_all(bar, bar.film(0.0, kFilmed, 2), kNoise, 7));
+  EXPECT_EQ(last.estimate.state, EstimateState::converging);
+  EXPECT_GT(std::log(last.estimate.parameters.front().upper95 / last.estimate.parameters.front().lower95), 2.0);
+}
+
 TEST(State, IsStaleWhileALoadStaysAway) {
   ModelSettings model = pushed();
   model.stale_after = 0.5;

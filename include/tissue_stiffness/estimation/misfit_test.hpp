@@ -31,15 +31,14 @@ class MisfitTest {
   double discrepancy() const;
   /// Degrees of freedom along the modes.
   double structured_dof() const { return along_dof_; }
+  /// Mean square of the residuals across the shapes a degree of freedom, in noise variances, at least 1.
+  double noise_level() const;
   bool empty() const { return frames_ == 0; }
 
   static constexpr double tolerated = 1.0;  ///< noise variances: unexplained motion below one frame's noise
   static constexpr double bound = 3.0;      ///< standard deviations
-  /// Mean square of the residuals across the shapes a degree of freedom, in noise variances, at least 1.
-  double noise_level() const;
 
  private:
-
   double along_ = 0.0, along_dof_ = 0.0, rest_ = 0.0, rest_dof_ = 0.0;
   double product_ = 0.0, square_ = 0.0;  ///< of successive frames' rest, for its memory
   double fitted_ = 0.0, numerics_ = 0.0, rows_ = 0.0;
