@@ -18,8 +18,8 @@ TIME_LIMIT = 1800  # s a recording
 CASES = {
     'case_01': ('cases', 1.5, None, 10),
     'case_06': ('cases', 4, None, 10),
-    'silicone_beam_gravity_a': ('cases', None, (230e3, 300e3), None),
-    'silicone_beam_gravity_b': ('cases', None, (230e3, 300e3), None),
+    'silicone_beam_gravity_a': ('cases', None, None, None),
+    'silicone_beam_gravity_b': ('cases', None, None, None),
     'ventricle_echo': ('recordings', 10, None, None),
     'bar_release': ('recordings', 10, None, None),
     'foam_ball': ('recordings', 15, (10e3, 30e3), None),
@@ -27,6 +27,7 @@ CASES = {
 }
 LIVE = ('ventricle_echo', 'bar_release')  # played through the nodes too
 SPEED = ('case_01', 'case_06')
+UNEXPLAINED = ('silicone_beam_gravity_a', 'silicone_beam_gravity_b')  # their models lack the damping, and are to say so
 SAME_WITHIN = ('silicone_beam_gravity_a', 'silicone_beam_gravity_b', 5)  # [%]
 
 
@@ -81,8 +82,8 @@ def row(name, results, truth, found):
     off = '%+.2f' % (100 * (entry['mean'] / truth - 1)) if truth else '-'
     interval = '%.4g..%.4g' % tuple(x / 1e3 for x in entry['interval95'])
     stages = '  '.join(results['stages'].get(stage, '-') for stage in STAGES)
-    return '%-24s %9.5g %9s %8s  %-18s %6.2f %9.3g %7.1f  %-9s %s' % (
-        name, entry['mean'] / 1e3, '%.5g' % (truth / 1e3) if truth else '-', off, interval,
+    return '%-24s %9.5g %9s %8s  %-18s %-13s %6.2f %9.3g %7.1f  %-9s %s' % (
+        name, entry['mean'] / 1e3, '%.5g' % (truth / 1e3) if truth else '-', off, interval, results['state'],
         results['rms_error'] / results['noise_rms'], results['rate'], results['wall'],
         'FAIL' if found else 'pass', '; '.join(found) or stages)
 
@@ -142,8 +143,8 @@ def read_options(root, arguments):
 
 def run_offline(options):
     """Prints a row a recording. Results by name of those that gave any, and how many failed."""
-    print('%-24s %9s %9s %8s  %-18s %6s %9s %7s  %-9s %s' % (
-        'recording', 'E [kPa]', 'truth', 'off [%]', '95 % [kPa]', 'rms/s', 'frames/s', 'wall s', 'verdict',
+    print('%-24s %9s %9s %8s  %-18s %-13s %6s %9s %7s  %-9s %s' % (
+        'recording', 'E [kPa]', 'truth', 'off [%]', '95 % [kPa]', 'state', 'rms/s', 'frames/s', 'wall s', 'verdict',
         'median/p99 [ms]: ' + ', '.join(STAGES)))
     failed, done = 0, {}
     for name in options.names or CASES:
@@ -156,6 +157,8 @@ def run_offline(options):
             continue
         done[name] = results
         found = failures(results, truth, bounds)
+        if name in UNEXPLAINED and results['state'] != 'model_invalid':
+            found.append('state ' + results['state'])
         failed += bool(found)
         print(row(name, results, truth, found), flush=True)
     return done, failed
