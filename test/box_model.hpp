@@ -16,8 +16,8 @@ inline TetMesh bar_mesh(int cells_x = 4, int cells_y = 1, int cells_z = 1) {
 
 /// Model file of a body in the box of bar_mesh, one line an effect ("gravity: {acceleration: [0, 0, -9.81]}"). Regions:
 /// `clamp` (x = 0), `tip` (x = 0.1), `top` (z = 0.02), `near` and `far` half, `skin` (everything). `observations` lists its
-/// entries; `rest` holds further sections. Its recordings come from the same mesh, so no error of the mesh is looked for, and its
-/// inputs are exact.
+/// entries; `rest` holds further sections. Its recordings come from the same mesh, so no error of the mesh is looked for,
+/// and its inputs are exact.
 inline ModelSettings box_settings(const std::vector<std::string>& effects,
                                   const std::string& observations = "[{vertices: {topic: /vertices, noise: 1.0e-4}}]",
                                   const std::string& rest = "") {

@@ -11,9 +11,9 @@ namespace {
 
 constexpr double kKnotsPerTime = 12.0;  // of the noise, a correlation time: 3 % of its variance is faster
 constexpr int kMostKnots = 120;         // of the noise: longer recordings have them further apart
-constexpr int kSamples = 200;          // of a load, to find its size and its rate
-constexpr double kRateSpan = 0.02;     // [s] over which a rate of change is read
-constexpr double kTurning = 0.1;       // of the rms rate: below it the hysteresis changes its sign gradually
+constexpr int kSamples = 200;           // of a load, to find its size and its rate
+constexpr double kRateSpan = 0.02;      // [s] over which a rate of change is read
+constexpr double kTurning = 0.1;        // of the rms rate: below it the hysteresis changes its sign gradually
 
 Eigen::VectorXd rate(const LoadErrorBasis::Load& load, double time) {
   return (load(time + kRateSpan) - load(time - kRateSpan)) / (2.0 * kRateSpan);

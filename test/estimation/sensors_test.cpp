@@ -29,7 +29,8 @@ class Sensors : public testing::Test {
     EXPECT_TRUE(last.used) << last.reason;
     EXPECT_LT(std::abs(p.mean - kTruth), 3.0 * p.std);
     const VarianceShares& from = last.estimate.variance.front();
-    EXPECT_LT(p.std / p.mean, 0.05) << last.estimate.state_reason << "; from noise " << from.noise << ", model " << from.model;
+    EXPECT_LT(p.std / p.mean, 0.05) << last.estimate.state_reason << "; from noise " << from.noise << ", model "
+                                    << from.model;
     EXPECT_NEAR(last.misfit.rms_sigma, 1.0, 0.35);
   }
   Eigen::Matrix3Xd positions(const Experiment::Moment& moment) const {

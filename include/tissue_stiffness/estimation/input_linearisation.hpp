@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "tissue_stiffness/effects/load_error.hpp"
-#include "tissue_stiffness/forward/observation_operator.hpp"
 #include "tissue_stiffness/estimation/mesh_error.hpp"
+#include "tissue_stiffness/forward/observation_operator.hpp"
 #include "tissue_stiffness/forward/reduced_model.hpp"
 
 namespace tissue_stiffness {
