@@ -268,6 +268,8 @@ class UnscentedScheme : public Scheme {
   /// Covariance by where it comes from, in the filter's coordinates.
   struct Parts {
     Eigen::MatrixXd noise, mesh, loads, constants, model;
+    Eigen::MatrixXd beside_model() const { return noise + mesh + loads + constants; }
+    Eigen::MatrixXd all() const { return beside_model() + model; }
   };
   Parts covariance_parts() const {
     const Eigen::MatrixXd noise = track_->covariance(), zero = Eigen::MatrixXd::Zero(noise.rows(), noise.cols());
@@ -301,16 +303,11 @@ class UnscentedScheme : public Scheme {
     return prior * (prior + c).ldlt().solve(c);
   }
 
-  Eigen::MatrixXd covariance() const {
-    const Parts parts = covariance_parts();
-    return parts.noise + parts.mesh + parts.loads + parts.constants + parts.model;
-  }
-
-  Eigen::MatrixXd covariance_beside_model() const { return covariance() - covariance_parts().model; }
+  Eigen::MatrixXd covariance() const { return covariance_parts().all(); }
 
   std::vector<VarianceShares> variance_shares() const {
     const Parts parts = covariance_parts();
-    const Eigen::VectorXd all = covariance().diagonal();
+    const Eigen::VectorXd all = parts.all().diagonal();
     std::vector<VarianceShares> out;
     for (Eigen::Index i = 0; i < all.size(); ++i) {
       out.push_back({parts.noise(i, i) / all[i], parts.mesh(i, i) / all[i], parts.loads(i, i) / all[i],
@@ -471,7 +468,7 @@ class UnscentedScheme : public Scheme {
   bool left_study() const {
     if (!inputs_ || !inputs_->fitted || input_shift_.size() == 0) return false;
     const Eigen::ArrayXd moved = track_->filter().mean() - studied_at_;
-    return (moved.abs() > covariance_beside_model().diagonal().array().sqrt()).any();
+    return (moved.abs() > covariance_parts().beside_model().diagonal().array().sqrt()).any();
   }
 
   // What the mesh does to the estimate, asked anew whenever the recording has doubled; in the background when a node runs.

@@ -68,7 +68,6 @@ class InputLinearisation {
   InputLinearisation(const InputLinearisation&) = delete;
   InputLinearisation& operator=(const InputLinearisation&) = delete;
 
-  Eigen::Index parameter_count() const { return p_; }
   Eigen::Index size() const { return size_; }
   double repeated() const { return repeated_; }  ///< recorded frames for each that is used
   const std::vector<Load>& loads() const { return loads_; }
