@@ -9,7 +9,7 @@ import yaml
 from scipy.spatial.transform import Rotation
 
 LOADS = ('gain', 'bias', 'drift', 'noise', 'delay', 'hysteresis', 'direction')
-CONSTANTS = {'density': 0.02, 'poisson_ratio': 0.01, 'gravity': 0.1, 'mesh_scale': 0.005, 'pose_rotation': 0.003,
+CONSTANTS = {'density': 0.04, 'poisson_ratio': 0.01, 'gravity': 0.1, 'mesh_scale': 0.005, 'pose_rotation': 0.003,
              'pose_offset': 1.0}  # the default tolerances; the last in standard deviations of the noise
 CORRELATION_TIME = 0.5  # s, of a load's noise
 LONGEST_DELAY = 0.1     # s, at level 1

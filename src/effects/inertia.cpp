@@ -26,7 +26,7 @@ EffectSpec inertia_spec() {
   spec.summary = "mass of the body (consistent mass matrix)";
   spec.formula = "-rho int N_a N_b dV a_b";
   spec.source = "Yang & Lin 2016, eq. 4, first term";
-  spec.parameters = {{"density", "rho", "kg/m^3", 1.0, 2e4, ParameterSpec::Default::required, 0.0, NAN, 1, 0.0, 0.02}};
+  spec.parameters = {{"density", "rho", "kg/m^3", 1.0, 2e4, ParameterSpec::Default::required, 0.0, NAN, 1, 0.0, 0.04}};
   return spec;
 }
 

@@ -12,6 +12,12 @@ constexpr double kProbe = 1e-4;  // of the body's size: displacement that the se
 
 }  // namespace
 
+bool sees_named_nodes(const Model& model, const Frame& frame) {
+  return !model.observes() && std::all_of(frame.observations.begin(), frame.observations.end(), [](const Observation& o) {
+    return o.kind == ObservationKind::vertices || o.kind == ObservationKind::markers;
+  });
+}
+
 void Ensemble::restart(const Eigen::MatrixXd& sigma_points, const RunStart& start) {
   theta_.clear();
   for (Eigen::Index i = 0; i < sigma_points.cols(); ++i) theta_.push_back(model_.theta(sigma_points.col(i)));
@@ -66,11 +72,28 @@ Eigen::MatrixXd predict_along(const Model& model, const std::vector<std::unique_
   const Eigen::Matrix3Xd& nodes = model.mesh().nodes;
   const double size = (nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff()).norm();
   Eigen::MatrixXd out(there.predicted.size(), shapes.cols());
+  const auto fill = [&](Eigen::Index i, double largest, Eigen::VectorXd& u, const auto& move) {
+    const double probe = kProbe * size / std::max(largest, 1e-300);
+    move(probe);
+    out.col(i) = (predict_frame(model, operators, frame, theta, u).predicted - there.predicted) / probe;
+  };
+  if (sees_named_nodes(model, frame)) {  // cheap: no more than those nodes is moved, one column after the other
+    const std::vector<int> nodes = observed_nodes(operators, {frame});
+    Eigen::VectorXd u = displacement;
+    for (Eigen::Index i = 0; i < shapes.cols(); ++i) {
+      double largest = 0.0;
+      for (const int node : nodes) largest = std::max(largest, shapes.col(i).segment<3>(3 * node).cwiseAbs().maxCoeff());
+      fill(i, largest, u, [&](double probe) {
+        for (const int node : nodes)
+          u.segment<3>(3 * node) = displacement.segment<3>(3 * node) + probe * shapes.col(i).segment<3>(3 * node);
+      });
+    }
+    return out;
+  }
   for_each_index(static_cast<std::size_t>(shapes.cols()), [&](std::size_t index) {
     const auto i = static_cast<Eigen::Index>(index);
-    const double probe = kProbe * size / std::max(shapes.col(i).cwiseAbs().maxCoeff(), 1e-300);
-    const Prediction moved = predict_frame(model, operators, frame, theta, displacement + probe * shapes.col(i));
-    out.col(i) = (moved.predicted - there.predicted) / probe;
+    Eigen::VectorXd u;
+    fill(i, shapes.col(i).cwiseAbs().maxCoeff(), u, [&](double probe) { u = displacement + probe * shapes.col(i); });
   });
   return out;
 }

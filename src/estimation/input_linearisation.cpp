@@ -13,8 +13,10 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr std::size_t kMostFrames = 150;  // of a long recording, evenly spread
-constexpr double kConstantStep = 0.5;     // of a tolerance, for its central difference
+constexpr std::size_t kMostFrames = 150;   // of a long recording, evenly spread
+constexpr double kConstantStep = 0.5;      // of a tolerance, for its central difference
+constexpr Eigen::Index kLowestModes = 6;   // along each of which the mesh's error is an unknown of its own
+constexpr double kWholeError = 4.0 / 3.0;  // of what a mesh refined once changes, at second order
 
 // Poisson's ratio is folded into one matrix while it is known; a model in which it is free keeps it apart.
 ModelSettings with_free_ratio(ModelSettings settings) {
@@ -52,11 +54,21 @@ Eigen::MatrixXd rigid_motions(const TetMesh& mesh) {
 void clean(InputLinearisation::Row& row) {
   for (Eigen::Index r = 0; r < row.error.size(); ++r) {
     const bool good = std::isfinite(row.error[r]) && std::isfinite(row.precision[r]) && row.parameters.row(r).allFinite() &&
-                      row.constants.row(r).allFinite() && row.poses.row(r).allFinite() && row.modes.row(r).allFinite();
+                      row.constants.row(r).allFinite() && row.direct.row(r).allFinite() && row.modes.row(r).allFinite();
     if (good) continue;
     row.error[r] = row.precision[r] = 0.0;
-    for (Eigen::MatrixXd* part : {&row.parameters, &row.constants, &row.poses, &row.modes}) part->row(r).setZero();
+    for (Eigen::MatrixXd* part : {&row.parameters, &row.constants, &row.direct, &row.modes}) part->row(r).setZero();
   }
+}
+
+Eigen::MatrixXd finite(const Eigen::MatrixXd& m) {
+  return m.array().isFinite().select(m, 0.0);
+}
+
+// Amplitudes of the modes that come closest to a change of the rows.
+Eigen::VectorXd along_modes(const Eigen::MatrixXd& modes, const Eigen::VectorXd& precision, const Eigen::VectorXd& change) {
+  const Eigen::VectorXd weight = finite(precision).cwiseSqrt();
+  return (weight.asDiagonal() * finite(modes)).colPivHouseholderQr().solve(weight.cwiseProduct(finite(change).col(0)));
 }
 
 }  // namespace
@@ -88,12 +100,16 @@ void NormalEquations::repeat(double times) {
 InputLinearisation::InputLinearisation(const MeshError::Question& question, InputModels& models)
     : q_(question), models_(models), p_(question.w.size()), size_(p_) {
   const std::size_t stride = (question.frames.size() + kMostFrames - 1) / kMostFrames;
-  for (std::size_t k = question.frames.size(); k > 0; k -= std::min(k, stride))
-    frames_.insert(frames_.begin(), &question.frames[k - 1]);
+  for (std::size_t k = question.frames.size(); k > 0; k -= std::min(k, stride)) frames_.insert(frames_.begin(), k - 1);
   repeated_ = static_cast<double>(question.frames.size()) / static_cast<double>(frames_.size());
+  motions_.resize(models.rigid.rows(), models.runs->basis().cols() + models.rigid.cols());
+  motions_ << models.runs->basis(), models.rigid;
   if (models.base.settings().exact_inputs) return;
   for (const auto& [topic, course] : models.uncertain.courses()) add_load(topic, course);
   for (std::size_t i = 0; i < models.base.settings().observations.size(); ++i) add_pose(i);
+  if (question.mesh_changes.empty()) return;
+  mesh_columns_ = kLowestModes + 1;
+  size_ += mesh_columns_;
 }
 
 InputLinearisation::~InputLinearisation() {
@@ -151,16 +167,14 @@ std::vector<Eigen::VectorXd> InputLinearisation::points(const Eigen::VectorXd& w
   return out;
 }
 
-InputLinearisation::Row InputLinearisation::row(const Frame& frame, const std::vector<Eigen::VectorXd>& thetas,
-                                                const Eigen::MatrixXd& u, const Eigen::MatrixXd& shapes,
-                                                const Eigen::VectorXd& z) const {
+InputLinearisation::Row InputLinearisation::row(std::size_t index, const std::vector<Eigen::VectorXd>& thetas,
+                                                const Eigen::MatrixXd& u, const Eigen::MatrixXd& mode_shapes,
+                                                const Eigen::VectorXd& z) {
+  const Frame& frame = q_.frames[index];
   const auto predict = [&](std::size_t i) {
     return predict_frame(models_.base, models_.operators, frame, thetas[i], u.col(static_cast<Eigen::Index>(i)));
   };
   const Prediction there = predict(0);
-  const auto along = [&](const Eigen::MatrixXd& motions) {
-    return predict_along(models_.base, models_.operators, frame, thetas[0], u.col(0), there, motions);
-  };
   const Eigen::Index rows = there.predicted.size();
   const auto np = static_cast<std::size_t>(p_), nc = models_.constants.size();
   Row out;
@@ -175,14 +189,35 @@ InputLinearisation::Row InputLinearisation::row(const Frame& frame, const std::v
     out.constants.col(static_cast<Eigen::Index>(i)) =
         (predict(high).predicted - predict(high + nc).predicted) / (2.0 * kConstantStep);
   }
-  out.modes = along(shapes);
-  out.poses = poses_.empty() ? Eigen::MatrixXd::Zero(rows, 0).eval() : pose_columns(frame, u.col(0), along(models_.rigid));
-  Prediction posed = there;
-  posed.predicted += out.poses * z.tail(out.poses.cols());
-  out.error = there.measured - posed.predicted;
-  out.precision = row_weights(posed).cwiseQuotient(there.sigma.cwiseAbs2());
+  const Eigen::MatrixXd& seen = motions_seen(frame, thetas[0], u.col(0), there);
+  out.modes = seen.leftCols(mode_shapes.rows()) * mode_shapes;
+  out.direct = Eigen::MatrixXd::Zero(rows, direct_columns());
+  if (!poses_.empty())
+    out.direct.leftCols(direct_columns() - mesh_columns_) =
+        pose_columns(frame, u.col(0), seen.rightCols(models_.rigid.cols()));
+  const Eigen::VectorXd precision = row_weights(there).cwiseQuotient(there.sigma.cwiseAbs2());
+  if (mesh_columns_ > 0) out.direct.rightCols(mesh_columns_) = mesh_columns(index, out.modes, precision);
+  Prediction corrected = there;
+  corrected.predicted += out.direct * z.tail(direct_columns());
+  out.error = there.measured - corrected.predicted;
+  out.precision = row_weights(corrected).cwiseQuotient(there.sigma.cwiseAbs2());
   clean(out);
   return out;
+}
+
+// Displacements of named nodes are linear in the motion, and the same nodes are seen again and again.
+const Eigen::MatrixXd& InputLinearisation::motions_seen(const Frame& frame, const Eigen::VectorXd& theta,
+                                                        const Eigen::VectorXd& u, const Prediction& there) {
+  const auto seen = [&] { return predict_along(models_.base, models_.operators, frame, theta, u, there, motions_); };
+  if (models_.base.nonlinear() || !sees_named_nodes(models_.base, frame)) return seen_ = seen();
+  std::vector<int> key;
+  for (const Observation& observation : frame.observations) {
+    key.push_back(observation.source);
+    key.push_back(static_cast<int>(observation.ids.size()));
+    key.insert(key.end(), observation.ids.data(), observation.ids.data() + observation.ids.size());
+  }
+  const auto known = named_.find(key);
+  return known != named_.end() ? known->second : named_.emplace(std::move(key), seen()).first->second;
 }
 
 Eigen::MatrixXd InputLinearisation::pose_columns(const Frame& frame, const Eigen::VectorXd& u,
@@ -203,6 +238,22 @@ Eigen::MatrixXd InputLinearisation::pose_columns(const Frame& frame, const Eigen
   return out;
 }
 
+// What the mesh changes, parted into what it changes along each of the lowest modes and the rest: the errors of a mesh
+// differ from mode to mode, and those that are left after a refinement are not its whole change times one number.
+Eigen::MatrixXd InputLinearisation::mesh_columns(std::size_t frame, const Eigen::MatrixXd& modes,
+                                                 const Eigen::VectorXd& precision) const {
+  const Eigen::Index rows = modes.rows(), count = std::min({kLowestModes, modes.cols(), rows});
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(rows, mesh_columns_);
+  Eigen::VectorXd change = kWholeError * q_.mesh_changes[frame];
+  if (change.size() != rows) return out;
+  change = finite(change);
+  const Eigen::MatrixXd lowest = finite(modes.leftCols(count));
+  const Eigen::VectorXd share = along_modes(lowest, precision, change);
+  out.leftCols(count) = lowest * share.asDiagonal();
+  out.col(mesh_columns_ - 1) = change - lowest * share;
+  return out;
+}
+
 // Shows every frame, linearised at z, with the modal amplitudes of the loads' errors.
 void InputLinearisation::each_row(const Eigen::VectorXd& z, const Visitor& visit) {
   correct_loads(z);
@@ -211,12 +262,12 @@ void InputLinearisation::each_row(const Eigen::VectorXd& z, const Visitor& visit
   std::vector<LoadErrorResponse> responses;
   for (const Load& load : loads_) responses.emplace_back(*models_.runs, thetas[0], q_.start, load.course, load.basis);
   const ReducedTrajectory at_rest(*models_.runs, thetas[0], q_.start);
-  const Eigen::MatrixXd shapes = at_rest.mode_shapes(static_cast<int>(at_rest.modes()->square.size()));
+  const Eigen::MatrixXd& mode_shapes = at_rest.modes()->shapes;  // in the runs' basis
   Eigen::MatrixXd u = Eigen::MatrixXd::Zero(models_.base.fem().dof_count(), static_cast<Eigen::Index>(thetas.size()));
-  Eigen::MatrixXd amplitudes(shapes.cols(), load_columns());
-  for (const Frame* frame : frames_) {
+  Eigen::MatrixXd amplitudes(mode_shapes.cols(), load_columns());
+  for (const std::size_t index : frames_) {
     std::vector<double> times;
-    for (const Eigen::VectorXd& theta : thetas) times.push_back(frame->time - models_.base.delay(theta));
+    for (const Eigen::VectorXd& theta : thetas) times.push_back(q_.frames[index].time - models_.base.delay(theta));
     all->advance(times);
     all->displacements(u);
     for (std::size_t i = 0; i < loads_.size(); ++i) {
@@ -224,7 +275,7 @@ void InputLinearisation::each_row(const Eigen::VectorXd& z, const Visitor& visit
       // The measured load is too large by B eta: the motion under the true one is smaller.
       amplitudes.middleCols(loads_[i].first - p_, loads_[i].basis.size()) = -responses[i].amplitudes();
     }
-    visit(row(*frame, thetas, u, shapes, z), amplitudes);
+    visit(row(index, thetas, u, mode_shapes, z), amplitudes);
   }
 }
 
@@ -233,7 +284,7 @@ NormalEquations InputLinearisation::at(const Eigen::VectorXd& z) {
   const Eigen::Index l = load_columns(), c = size_ - p_ - l;
   each_row(z, [&](const Row& row, const Eigen::MatrixXd& amplitudes) {
     Eigen::MatrixXd own(row.error.size(), p_ + c);
-    own << row.parameters, row.poses;
+    own << row.parameters, row.direct;
     const Eigen::MatrixXd weighted = row.precision.asDiagonal() * own, seen = row.precision.asDiagonal() * row.modes;
     const Eigen::MatrixXd direct = weighted.transpose() * own;
     const Eigen::MatrixXd across = (weighted.transpose() * row.modes) * amplitudes;

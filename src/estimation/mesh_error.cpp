@@ -121,7 +121,38 @@ struct MeshError::Studies {
     fine_runs =
         std::make_unique<ReducedModel>(*fine, of_linear_part(basis_beside(coarse.mesh(), fine->mesh())), known.finer);
   }
+
+  void prepare(const Question& q) {
+    drive(q, coarse);
+    drive(q, *fine);
+    const std::vector<int> nodes = observed_nodes(operators, q.frames);
+    coarse_runs->focus(nodes);
+    fine_runs->focus(nodes);
+  }
+
+  // Nodes of the coarse mesh keep their numbers in the finer one, whose run is seen through them.
+  std::vector<Prediction> predictions(const ReducedModel& runs, const Question& q, const Eigen::VectorXd& w) const {
+    const Eigen::VectorXd theta = coarse.theta(w);
+    const auto run = runs.start(theta, q.start);
+    std::vector<Prediction> out;
+    for (const Frame& frame : q.frames) {
+      run->advance(frame.time - coarse.delay(theta));
+      const Eigen::VectorXd u = run->displacement().head(coarse.fem().dof_count());
+      out.push_back(predict_frame(coarse, operators, frame, theta, u));
+    }
+    return out;
+  }
 };
+
+std::vector<Eigen::VectorXd> MeshError::changes(const Question& q, const Eigen::VectorXd& shift) {
+  Studies& s = *studies_;
+  s.prepare(q);
+  const std::vector<Prediction> truth = s.predictions(*s.fine_runs, q, q.w);
+  const std::vector<Prediction> own = s.predictions(*s.coarse_runs, q, q.w + shift);
+  std::vector<Eigen::VectorXd> out;
+  for (std::size_t k = 0; k < truth.size(); ++k) out.emplace_back(truth[k].predicted - own[k].predicted);
+  return out;
+}
 
 std::string MeshError::why_not(const TetMesh& mesh) {
   if (mesh.node_count() > kMostNodes) return "the mesh has more than " + std::to_string(kMostNodes) + " nodes";
@@ -166,20 +197,8 @@ Eigen::VectorXd MeshError::Answer::believed(double mean_square) const {
 
 MeshError::Answer MeshError::study(const Question& q) {
   Studies& s = *studies_;
-  drive(q, s.coarse);
-  drive(q, *s.fine);
-  const std::vector<int> nodes = observed_nodes(s.operators, q.frames);
-  s.coarse_runs->focus(nodes);
-  s.fine_runs->focus(nodes);
-  // Nodes of the coarse mesh keep their numbers in the finer one, whose run is seen through them.
-  std::vector<Prediction> truth;
-  const Eigen::VectorXd theta = s.coarse.theta(q.w);
-  const auto run = s.fine_runs->start(theta, q.start);
-  for (const Frame& frame : q.frames) {
-    run->advance(frame.time - s.fine->delay(theta));
-    const Eigen::VectorXd u = run->displacement().head(s.coarse.fem().dof_count());
-    truth.push_back(predict_frame(s.coarse, s.operators, frame, theta, u));
-  }
+  s.prepare(q);
+  const std::vector<Prediction> truth = s.predictions(*s.fine_runs, q, q.w);
   const auto run_coarse = [&](AnchoredFilter& filter, const Eigen::VectorXd& anchor) {
     filter.move_anchor(anchor, q.spread);
     Ensemble ensemble(s.coarse, *s.coarse_runs, s.operators);

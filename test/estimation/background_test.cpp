@@ -56,7 +56,7 @@ double revisits_within(Estimator& estimator, const std::vector<Frame>& frames) {
   double sum = 0.0;
   for (const Frame& frame : frames) {
     const std::map<std::string, double> seconds = estimator.step(frame).seconds;
-    sum += seconds.at("revisit") + seconds.at("input errors");
+    sum += seconds.at("revisit") + seconds.at("studies");
   }
   return sum;
 }

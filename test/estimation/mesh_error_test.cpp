@@ -44,6 +44,23 @@ TEST(MeshError, OfACoarseMeshIsCorrectedAndInTheInterval) {
   EXPECT_LT(std::abs(value(studied) - kTruth), 0.5 * std::abs(value(plain) - kTruth));
 }
 
+TEST(MeshError, ChangesAreLeastAtTheShift) {
+  const Model model(settings(true), coarse());
+  const Eigen::VectorXd w = model.prior_mean(), none = Eigen::VectorXd::Zero(w.size());
+  const MeshError::Question question(model, recording(20), w, 0.01 * model.prior_std(), model.prior_std());
+  MeshError study(model);
+  const Eigen::VectorXd shift = study.study(question).shift;
+  const auto size = [&](const Eigen::VectorXd& at) {
+    double square = 0.0;
+    for (const Eigen::VectorXd& change : study.changes(question, at)) square += change.squaredNorm();
+    return std::sqrt(square);
+  };
+  EXPECT_GT(size(shift), 0.0);
+  EXPECT_LT(size(shift), 0.8 * size(none));
+  EXPECT_LT(size(shift), size(1.3 * shift));
+  EXPECT_LT(size(shift), size(0.7 * shift));
+}
+
 TEST(MeshError, IsInTheIntervalOfAShortRecordingToo) {
   Estimator studied(settings(true), coarse());
   step_through(studied, recording(5));

@@ -51,6 +51,9 @@ Prediction predict_frame(const Model& model, const std::vector<std::unique_ptr<O
                          const Frame& frame, const Eigen::VectorXd& theta,
                          const Eigen::Ref<const Eigen::VectorXd>& displacement);
 
+/// The frame holds displacements of named nodes or markers only, which no parameter of a sensor changes.
+bool sees_named_nodes(const Model& model, const Frame& frame);
+
 /// d predicted rows / d amplitude of each of `shapes` (3n x count) about a displacement, rows x count; `there`: the
 /// prediction at the displacement itself.
 Eigen::MatrixXd predict_along(const Model& model, const std::vector<std::unique_ptr<ObservationOperator>>& operators,

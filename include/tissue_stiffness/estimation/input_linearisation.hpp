@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -26,7 +27,7 @@ struct InputModels {
 };
 
 /// Normal equations of the rows r = y - h(z), z = [w; eta]: p parameters, then the inputs' errors in units of their
-/// tolerances; summed over the frames, with the noise's precision R^-1.
+/// tolerances and the mesh's; summed over the frames, with the noise's precision R^-1.
 struct NormalEquations {
   Eigen::MatrixXd information;  ///< Z^T R^-1 Z
   Eigen::VectorXd gradient;     ///< Z^T R^-1 r
@@ -46,8 +47,8 @@ class InputLinearisation {
   /// One frame. The columns of the loads' errors are `modes` times their modal amplitudes.
   struct Row {
     Eigen::VectorXd error, precision;
-    Eigen::MatrixXd parameters, constants, poses;  ///< d row / d each
-    Eigen::MatrixXd modes;                         ///< d row / d amplitude of each mode
+    Eigen::MatrixXd parameters, constants, direct;  ///< d row / d each; direct: of the poses, then of the mesh
+    Eigen::MatrixXd modes;                          ///< d row / d amplitude of each mode
   };
   struct Load {
     std::string topic;
@@ -72,6 +73,8 @@ class InputLinearisation {
   double repeated() const { return repeated_; }  ///< recorded frames for each that is used
   const std::vector<Load>& loads() const { return loads_; }
   const std::vector<Pose>& poses() const { return poses_; }
+  /// First of the columns that say what the mesh may change; those are the last.
+  Eigen::Index first_of_mesh() const { return size_ - mesh_columns_; }
 
   /// Throws NumericalError when runs diverge.
   NormalEquations at(const Eigen::VectorXd& z);
@@ -83,18 +86,24 @@ class InputLinearisation {
   void add_pose(std::size_t source);
   void correct_loads(const Eigen::VectorXd& z);
   std::vector<Eigen::VectorXd> points(const Eigen::VectorXd& w) const;
-  Row row(const Frame& frame, const std::vector<Eigen::VectorXd>& thetas, const Eigen::MatrixXd& u,
-          const Eigen::MatrixXd& shapes, const Eigen::VectorXd& z) const;
+  Row row(std::size_t index, const std::vector<Eigen::VectorXd>& thetas, const Eigen::MatrixXd& u,
+          const Eigen::MatrixXd& mode_shapes, const Eigen::VectorXd& z);
+  const Eigen::MatrixXd& motions_seen(const Frame& frame, const Eigen::VectorXd& theta, const Eigen::VectorXd& u,
+                                      const Prediction& there);
   Eigen::MatrixXd pose_columns(const Frame& frame, const Eigen::VectorXd& u, const Eigen::MatrixXd& rigid) const;
-  Eigen::Index load_columns() const { return size_ - p_ - 6 * static_cast<Eigen::Index>(poses_.size()); }
-
+  Eigen::MatrixXd mesh_columns(std::size_t frame, const Eigen::MatrixXd& modes, const Eigen::VectorXd& precision) const;
+  Eigen::Index direct_columns() const { return 6 * static_cast<Eigen::Index>(poses_.size()) + mesh_columns_; }
+  Eigen::Index load_columns() const { return size_ - p_ - direct_columns(); }
   const MeshError::Question& q_;
   InputModels& models_;
-  std::vector<const Frame*> frames_;
+  std::vector<std::size_t> frames_;  ///< indices of those that are used
   double repeated_ = 1.0;
-  Eigen::Index p_ = 0, size_ = 0;
+  Eigen::Index p_ = 0, size_ = 0, mesh_columns_ = 0;
   std::vector<Load> loads_;
   std::vector<Pose> poses_;
+  Eigen::MatrixXd motions_;                            ///< the runs' basis, then the rigid motions
+  std::map<std::vector<int>, Eigen::MatrixXd> named_;  ///< rows / amplitude of each, by the named nodes that are seen
+  Eigen::MatrixXd seen_;                               ///< the same of any other frame
 };
 
 }  // namespace tissue_stiffness

@@ -13,10 +13,13 @@
 
 namespace tissue_stiffness {
 
-/// What uncertain inputs do to the parameters. The errors of the measured loads and of the sensors' poses are nuisance
-/// parameters eta ~ N(0, I), fitted with the model's parameters w to all frames (Gauss-Newton) and marginalised; declared
-/// constants are considered: they keep their values, and their tolerances widen the covariance by what they do to the
-/// estimate (Schmidt 1966; Jazwinski 1970, sec. 8.4). Of a nonlinear model the linear form runs, and nothing is fitted.
+/// What uncertain inputs do to the parameters. The errors of the measured loads and of the sensors' poses, and what a finer
+/// mesh would change, are nuisance parameters eta, fitted with the model's parameters w to all frames (Gauss-Newton) and
+/// marginalised; declared constants are considered: they keep their values, and their tolerances widen the covariance by
+/// what they do to the estimate (Schmidt 1966; Jazwinski 1970, sec. 8.4). A tolerance is somebody's word: an input's error
+/// has Student's distribution with 4 degrees of freedom and the tolerance as its scale, of which the variance, twice the
+/// scale's square, enters; a normal distribution of that variance has the same 95 % interval (2.78 scales). Of a nonlinear
+/// model the linear form runs, and nothing is fitted.
 class InputStudy {
  public:
   explicit InputStudy(const Model& model);
@@ -33,9 +36,11 @@ class InputStudy {
   };
   struct Answer {
     Eigen::VectorXd asked;                          ///< the question's parameters
-    Eigen::VectorXd w;                              ///< most probable parameters beside the nuisance, filter coordinates
+    Eigen::VectorXd w;                              ///< posterior mean beside the nuisance, filter coordinates
+    Eigen::VectorXd mode;                           ///< most probable parameters, with the corrections
     Eigen::MatrixXd from_noise;                     ///< covariance of w were every input exact
     Eigen::MatrixXd from_loads;                     ///< what the loads' and poses' errors add to it
+    Eigen::MatrixXd from_mesh;                      ///< what the mesh's changes add beside them
     Eigen::MatrixXd from_constants;                 ///< what the constants' tolerances add
     std::map<std::string, Correction> corrections;  ///< by topic
     std::vector<InputUncertainty> inputs;           ///< every error that was considered, for the reports

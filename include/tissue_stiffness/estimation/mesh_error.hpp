@@ -56,6 +56,8 @@ class MeshError {
     double start = 0.0;         ///< [s]
     double first_stamp = 0.0;   ///< of the recording [s]
     std::map<std::string, Course> courses;
+    /// What a finer mesh changes in the rows of each frame, see `changes`; empty: not known.
+    std::vector<Eigen::VectorXd> mesh_changes;
 
     /// About a model that has its loads.
     Question(const Model& model, std::vector<Frame> seen, Eigen::VectorXd at, Eigen::VectorXd around,
@@ -74,6 +76,8 @@ class MeshError {
   };
   /// Throws NumericalError when the fit does not settle.
   Answer study(const Question& question);
+  /// For each frame, the rows that the finer mesh predicts at w less those of the model's own mesh at w + shift.
+  std::vector<Eigen::VectorXd> changes(const Question& question, const Eigen::VectorXd& shift);
 
  private:
   struct Studies;

@@ -1,0 +1,225 @@
+#include "tissue_stiffness/estimation/input_posterior.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr int kMostIterations = 6;
+constexpr int kMostCuts = 3;
+constexpr double kSettled = 0.1;      // posterior standard deviations
+constexpr int kMostSteps = 4;         // of Gauss-Newton beside a held place on the line
+constexpr int kMostMarched = 14;      // points of the line to either side
+constexpr double kGrowth = 1.3;       // from one of their distances to the next
+constexpr double kImprobable = 16.0;  // -2 log posterior beyond the least
+constexpr int kMostImprobable = 3;    // such points in a row: a wall of a comb is not its end
+constexpr double kNegligible = 9.0;   // the same, beyond which the grid is left as it is
+constexpr double kResolved = 2.0;     // local standard deviations between two points
+constexpr std::size_t kMostPoints = 60;
+constexpr double kLinear = 3.0;    // fall of -2 log posterior by a step that the linear form foretells well
+constexpr double kFurthest = 3.0;  // prior standard deviations
+
+}  // namespace
+
+InputPosterior::InputPosterior(Rows rows, const Eigen::VectorXd& prior_mean, const Eigen::VectorXd& prior_std,
+                               const Eigen::VectorXd& nuisance_std)
+    : rows_(std::move(rows)),
+      p_(prior_mean.size()),
+      size_(p_ + nuisance_std.size()),
+      prior_mean_(prior_mean),
+      prior_std_(prior_std),
+      nuisance_std_(nuisance_std) {}
+
+void InputPosterior::set_nuisance_std(Eigen::Index first, Eigen::Index count, double std) {
+  nuisance_std_.segment(first - p_, count).setConstant(std);
+}
+
+double InputPosterior::widest_nuisance_std(Eigen::Index first, Eigen::Index count) const {
+  return nuisance_std_.segment(first - p_, count).maxCoeff();
+}
+
+Eigen::VectorXd InputPosterior::prior_information() const {
+  Eigen::VectorXd out(size_);
+  out << prior_std_.cwiseAbs2().cwiseInverse(), nuisance_std_.cwiseAbs2().cwiseInverse();
+  return out;
+}
+
+Eigen::VectorXd InputPosterior::from_prior(const Eigen::VectorXd& z) const {
+  Eigen::VectorXd out = -z;
+  out.head(p_) += prior_mean_;
+  return out;
+}
+
+double InputPosterior::cost(const Fit& fit, double scale) const {
+  return fit.normal.cost / scale + from_prior(fit.z).cwiseAbs2().dot(prior_information());
+}
+
+double InputPosterior::scale(const NormalEquations& normal) const {
+  return temperature_ * std::max(1.0, normal.cost / std::max(1.0, normal.rows));
+}
+
+Eigen::MatrixXd InputPosterior::information(const NormalEquations& normal) const {
+  Eigen::MatrixXd out = normal.information / scale(normal);
+  out.diagonal() += prior_information();
+  return out;
+}
+
+Eigen::MatrixXd InputPosterior::covariance(const NormalEquations& normal) const {
+  return information(normal).ldlt().solve(Eigen::MatrixXd::Identity(size_, size_));
+}
+
+double InputPosterior::learnt(const Eigen::MatrixXd& covariance, Eigen::Index i) const {
+  return std::max(0.0, 1.0 - covariance(i, i) / std::pow(nuisance_std(i), 2));
+}
+
+InputPosterior::Fit InputPosterior::at(const Eigen::VectorXd& w) {
+  Eigen::VectorXd z = Eigen::VectorXd::Zero(size_);
+  z.head(p_) = w;
+  return {z, rows_(z)};
+}
+
+InputPosterior::Fit InputPosterior::mode(const Eigen::VectorXd& w) {
+  Fit fit = at(w);
+  for (int k = 0; k < kMostIterations && improve(fit); ++k) {
+  }
+  return fit;
+}
+
+// One Gauss-Newton step, shortened while the cost does not fall; false at the end.
+bool InputPosterior::improve(Fit& fit) {
+  const double s = scale(fit.normal);
+  const Eigen::MatrixXd inverse_covariance = information(fit.normal);
+  const Eigen::VectorXd pull = fit.normal.gradient / s + prior_information().cwiseProduct(from_prior(fit.z));
+  const Eigen::VectorXd step = inverse_covariance.ldlt().solve(pull);
+  if (step.dot(pull) < kSettled * kSettled) return false;
+  double share = std::min(1.0, (prior_std_.array() / step.head(p_).array().abs().max(1e-300)).minCoeff());
+  for (int cut = 0; cut < kMostCuts; ++cut, share *= 0.3) {
+    const Eigen::VectorXd z = fit.z + share * step;
+    Fit next{z, rows_(z)};
+    if (!(cost(next, s) < cost(fit, s))) continue;
+    fit = std::move(next);
+    return true;
+  }
+  return false;
+}
+
+InputPosterior::Line InputPosterior::line(const Fit& mode) const {
+  const Eigen::MatrixXd own = covariance(mode.normal).topLeftCorner(p_, p_);
+  const Eigen::VectorXd per_prior = prior_std_.cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(per_prior.asDiagonal() * own * per_prior.asDiagonal());
+  const double widest = std::sqrt(axes.eigenvalues()[p_ - 1]);
+  Line out;
+  out.direction = widest * prior_std_.cwiseProduct(axes.eigenvectors().col(p_ - 1));
+  out.dual = own.ldlt().solve(out.direction);
+  out.scale = scale(mode.normal);
+  out.furthest = kFurthest / widest;
+  return out;
+}
+
+// Gauss-Newton on all of z with its place on the line held.
+InputPosterior::Point InputPosterior::most_probable(const Line& line, double along, Eigen::VectorXd z) {
+  Point out{along, 0.0, 0.0, {}};
+  for (int k = 0; k < kMostSteps; ++k) {
+    const Fit fit{z, rows_(z)};
+    Eigen::MatrixXd inverse_covariance = fit.normal.information / line.scale;
+    inverse_covariance.diagonal() += prior_information();
+    const Eigen::VectorXd pull = fit.normal.gradient / line.scale + prior_information().cwiseProduct(from_prior(z));
+    // The minimum over the plane dual . step = 0.
+    Eigen::MatrixXd sides(z.size(), 2);
+    sides.col(0) = pull;
+    sides.col(1).setZero();
+    sides.col(1).head(p_) = line.dual;
+    const Eigen::MatrixXd solved = inverse_covariance.ldlt().solve(sides);
+    const double compliance = sides.col(1).dot(solved.col(1));
+    const Eigen::VectorXd step = solved.col(0) - solved.col(1) * (sides.col(1).dot(solved.col(0)) / compliance);
+    const double gain = pull.dot(step);
+    out.cost = cost(fit, line.scale) - gain;
+    out.deviation = std::sqrt(compliance);
+    z += step;
+    if (gain < kLinear) break;
+  }
+  out.z = std::move(z);
+  return out;
+}
+
+// From the mode outwards, in steps that grow. Each point starts where the last two lead.
+void InputPosterior::march(const Line& line, double side, Points& points) {
+  Point last = points.front(), before = last;
+  double step = 1.0, least = last.cost;
+  int improbable = 0;
+  for (int k = 0; k < kMostMarched && improbable < kMostImprobable; ++k, step *= kGrowth) {
+    const double along = last.along + side * step;
+    if (std::abs(along) > line.furthest) return;
+    Eigen::VectorXd z = last.z;
+    if (before.along != last.along) z += (along - last.along) / (last.along - before.along) * (last.z - before.z);
+    z.head(p_) += line.direction * (along - last.along) - line.direction * line.dual.dot(z.head(p_) - last.z.head(p_));
+    before = std::move(last);
+    last = most_probable(line, along, std::move(z));
+    points.push_back(last);
+    least = std::min(least, last.cost);
+    improbable = last.cost > least + kImprobable ? improbable + 1 : 0;
+  }
+}
+
+// Halves the gaps that are wider than the narrowest maximum's deviation, where the posterior may have mass.
+void InputPosterior::refine(const Line& line, Points& points) {
+  while (points.size() < kMostPoints) {
+    double least = points.front().cost, finest = points.front().deviation;
+    for (const Point& point : points) {
+      least = std::min(least, point.cost);
+      finest = std::min(finest, point.deviation);
+    }
+    std::size_t widest = 0;
+    double most = kResolved;
+    for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+      const Point &a = points[k], &b = points[k + 1];
+      const double gap = (b.along - a.along) / finest;
+      const double bowl = std::min(a.cost, b.cost) - 0.25 * gap * gap;  // the least cost that the curvature allows between
+      if (bowl > least + kNegligible) continue;
+      if (gap > most) widest = k, most = gap;
+    }
+    if (most == kResolved) return;
+    const Point &a = points[widest], &b = points[widest + 1];
+    Point middle = most_probable(line, 0.5 * (a.along + b.along), 0.5 * (a.z + b.z));
+    points.insert(points.begin() + static_cast<std::ptrdiff_t>(widest) + 1, std::move(middle));
+  }
+}
+
+InputPosterior::Moments InputPosterior::integrate(const Fit& mode) {
+  const Line along = line(mode);
+  Points points{{0.0, cost(mode, along.scale), 1.0, mode.z}};
+  for (const double side : {1.0, -1.0}) march(along, side, points);
+  std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.along < b.along; });
+  refine(along, points);
+
+  double least = points.front().cost;
+  for (const Point& point : points) least = std::min(least, point.cost);
+  const std::size_t last = points.size() - 1;
+  Eigen::VectorXd weights(static_cast<Eigen::Index>(points.size()));  // trapezoidal rule
+  for (std::size_t k = 0; k <= last; ++k) {
+    const double width = points[std::min(k + 1, last)].along - points[k - std::min<std::size_t>(k, 1)].along;
+    weights[static_cast<Eigen::Index>(k)] = width * std::exp(0.5 * (least - points[k].cost));
+  }
+  weights /= weights.sum();
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(size_);
+  for (std::size_t k = 0; k <= last; ++k) mean += weights[static_cast<Eigen::Index>(k)] * points[k].z;
+  Eigen::MatrixXd spread = Eigen::MatrixXd::Zero(size_, size_);
+  for (std::size_t k = 0; k <= last; ++k) {
+    const Eigen::VectorXd apart = points[k].z - mean;
+    spread += weights[static_cast<Eigen::Index>(k)] * apart * apart.transpose();
+  }
+  // Law of total covariance: beside a held place on the line the linear form holds; the place itself has the spread.
+  Moments out{{mean, rows_(mean)}, Eigen::MatrixXd::Zero(size_, size_)};
+  const Eigen::VectorXd drift = covariance(out.mean.normal).leftCols(p_) * along.dual;
+  const double linear = along.dual.dot(drift.head(p_));
+  if (along.dual.dot(spread.topLeftCorner(p_, p_) * along.dual) > linear) {
+    out.beyond_linear = spread - drift * drift.transpose() / linear;
+  }
+  return out;
+}
+
+}  // namespace tissue_stiffness

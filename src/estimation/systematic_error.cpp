@@ -1,0 +1,118 @@
+#include "tissue_stiffness/estimation/systematic_error.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <utility>
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr double kFinerLeaves = 16.0 / 9.0;  // of the mean square that the finer mesh changes: at second order, the whole
+
+}  // namespace
+
+SystematicError::SystematicError(const Model& model) : model_(model) {}
+
+SystematicError::Corrected SystematicError::correct(const Filtered& filtered) const {
+  Corrected out{filtered.mean, {}, {}};
+  // Of a nonlinear model the mesh's shift is that of its linear form, which corrects nothing.
+  if (!model_.nonlinear()) out.mean -= mesh_shift();
+  if (input_shift_.size() > 0 && inputs_believed()) out.mean += input_shift_;
+  const Parts p = parts(filtered);
+  out.covariance = p.beside_model() + p.model;
+  for (Eigen::Index i = 0; i < out.mean.size(); ++i) {
+    const double all = out.covariance(i, i);
+    out.shares.push_back(
+        {p.noise(i, i) / all, p.mesh(i, i) / all, p.loads(i, i) / all, p.constants(i, i) / all, p.model(i, i) / all});
+  }
+  return out;
+}
+
+SystematicError::Parts SystematicError::parts(const Filtered& filtered) const {
+  const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(filtered.covariance.rows(), filtered.covariance.cols());
+  Parts out{filtered.covariance, mesh_doubt(model_, mesh_shift()), zero, zero, zero};
+  if (!inputs_) {  // nothing is known yet of what the inputs' errors do
+    if (!model_.settings().exact_inputs) out.loads = model_.prior_std().cwiseAbs2().asDiagonal();
+    return out;
+  }
+  out.loads = inputs_->from_loads;
+  out.mesh += inputs_->from_mesh;
+  if (input_shift_.size() > 0 && !inputs_believed()) out.loads += input_shift_ * input_shift_.transpose();
+  out.constants = inputs_->from_constants;
+  // The misfit may lie along what the parameters do, with all rows and frames alike (Kennedy & O'Hagan 2001).
+  const double discrepancy = std::max(test_.discrepancy(), unexplained(filtered.misfit_scale));
+  out.model = within_prior(discrepancy * inputs_->rows * inputs_->from_noise);
+  return out;
+}
+
+// Beside a misfit that does not pass, or has risen since it was tested, no interval is tighter than that misfit allows,
+// whatever the state: mean square of all frames' misfit under the present parameters beyond noise and mesh, in noise
+// variances.
+double SystematicError::unexplained(double misfit_scale) const {
+  const double tested = inputs_->fitted ? studied_misfit_scale_ : 1.0;
+  const bool passes = inputs_->implausible.empty() && (!inputs_->fitted || test_.passes());
+  if (passes && misfit_scale <= kFullSigmas * kFullSigmas * tested) return 0.0;
+  return std::max(0.0, misfit_scale - test_.noise_level() - of_mesh());
+}
+
+/// (C^-1 + P^-1)^-1: whatever is left open, the prior P still holds.
+Eigen::MatrixXd SystematicError::within_prior(const Eigen::MatrixXd& c) const {
+  const Eigen::MatrixXd prior = model_.prior_std().cwiseAbs2().asDiagonal();
+  return prior * (prior + c).ldlt().solve(c);
+}
+
+Eigen::VectorXd SystematicError::mesh_shift() const {
+  return mesh_shift_.size() > 0 ? mesh_shift_ : Eigen::VectorXd::Zero(model_.prior_std().size());
+}
+
+double SystematicError::of_mesh() const {
+  return kFinerLeaves * mesh_left_.value_or(0.0);
+}
+
+bool SystematicError::inputs_believed() const {
+  return inputs_->implausible.empty() && test_.passes();
+}
+
+bool SystematicError::left_study(const Filtered& filtered) const {
+  if (!inputs_ || !inputs_->fitted || input_shift_.size() == 0) return false;
+  const Eigen::ArrayXd moved = filtered.mean - runs_at_;
+  return (moved.abs() > parts(filtered).beside_model().diagonal().array().sqrt()).any();
+}
+
+void SystematicError::take_mesh(const MeshError::Answer& answer, double misfit_scale) {
+  mesh_shift_ = answer.believed(misfit_scale);
+  mesh_left_ = answer.left;
+  refresh_test();
+}
+
+void SystematicError::take_inputs(InputStudy::Answer answer, double misfit_scale) {
+  inputs_ = std::move(answer);
+  studied_misfit_scale_ = misfit_scale;
+  refresh_test();
+}
+
+void SystematicError::set_runs_at(const Eigen::VectorXd& w) {
+  runs_at_ = w;
+  input_shift_ = inputs_->w - w;
+}
+
+void SystematicError::drop_fit() {
+  if (inputs_) inputs_->fitted = false;
+  input_shift_.resize(0);
+}
+
+void SystematicError::reset() {
+  mesh_shift_.resize(0);
+  input_shift_.resize(0);
+  mesh_left_.reset();
+  inputs_.reset();
+  test_ = {};
+}
+
+void SystematicError::refresh_test() {
+  if (!inputs_) return;
+  test_ = inputs_->test;
+  test_.set_numerics(of_mesh());
+}
+
+}  // namespace tissue_stiffness

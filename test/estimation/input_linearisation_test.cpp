@@ -1,0 +1,100 @@
+// The columns of the inputs' errors are the derivatives of the rows.
+#include "tissue_stiffness/estimation/input_linearisation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bar.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr double kTruth = 20e3;
+constexpr int kFrames = 40;
+
+ModelSettings pushed() {
+  ModelSettings model = box_settings({"inertia: {density: 1000}", modulus(prior(kTruth, 3)), "fixed: {region: clamp}",
+                                      "viscous_damping: {beta: 4.0e-3}", "traction: {region: tip, topic: /wrench}"});
+  model.exact_inputs = false;
+  return model;
+}
+
+LoadSample wrench(double time) {
+  LoadSample sample{"/wrench", time, Eigen::VectorXd::Zero(6)};
+  sample.value[1] = 4e-3 * std::sin(6.0 * time);
+  sample.value[2] = -6e-3 * (1.0 - std::cos(4.0 * time));
+  return sample;
+}
+
+struct Setting {
+  ModelSettings settings = pushed();
+  TetMesh mesh = bar_mesh();
+  std::unique_ptr<Model> model;
+  std::unique_ptr<InputModels> models;
+  std::unique_ptr<MeshError::Question> question;
+
+  Setting() {
+    Experiment bar(settings, mesh, {kTruth});
+    model = std::make_unique<Model>(settings, mesh);
+    model->set_first_stamp(0.0);
+    for (int k = 0; k < 260; ++k) {
+      bar.add_load(wrench(0.005 * k));
+      model->courses().at("/wrench")->add(0.005 * k, wrench(0.005 * k).value);
+    }
+    const std::vector<Frame> frames = see_all(bar, bar.film(0.0, kFilmed, kFrames), kNoise, 7);
+    models = std::make_unique<InputModels>(*model);
+    const Eigen::VectorXd std = model->prior_std();
+    question = std::make_unique<MeshError::Question>(*model, frames, model->prior_mean(), 1e-3 * std, std);
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+      question->mesh_changes.push_back(1e-4 * Eigen::VectorXd::LinSpaced(3 * mesh.node_count(), -1.0, 1.0));
+    }
+    models->base.set_first_stamp(0.0);
+    models->uncertain.set_first_stamp(0.0);
+    for (const auto& [topic, course] : question->courses) *models->uncertain.courses().at(topic) = course;
+    models->runs->focus(observed_nodes(models->operators, frames));
+  }
+};
+
+struct Rows {
+  Eigen::VectorXd error;
+  Eigen::MatrixXd columns;
+};
+
+Rows rows_at(InputLinearisation& linearisation, const Eigen::VectorXd& z) {
+  std::vector<Rows> frames;
+  Eigen::Index count = 0;
+  linearisation.each_row(z, [&](const InputLinearisation::Row& row, const Eigen::MatrixXd& amplitudes) {
+    Eigen::MatrixXd columns(row.error.size(), z.size());
+    columns << row.parameters, row.modes * amplitudes, row.direct;
+    frames.push_back({row.error, columns});
+    count += row.error.size();
+  });
+  Rows out{Eigen::VectorXd(count), Eigen::MatrixXd(count, z.size())};
+  Eigen::Index first = 0;
+  for (const Rows& frame : frames) {
+    out.error.segment(first, frame.error.size()) = frame.error;
+    out.columns.middleRows(first, frame.error.size()) = frame.columns;
+    first += frame.error.size();
+  }
+  return out;
+}
+
+TEST(InputLinearisation, ColumnsAreTheDerivativesOfTheRows) {
+  Setting setting;
+  InputLinearisation linearisation(*setting.question, *setting.models);
+  Eigen::VectorXd z = Eigen::VectorXd::Zero(linearisation.size());
+  z[0] = setting.model->prior_mean()[0];
+  const Rows there = rows_at(linearisation, z);
+  for (Eigen::Index i = 0; i < z.size(); ++i) {
+    const double step = i == 0 ? 1e-3 : 0.05;
+    Eigen::VectorXd high = z, low = z;
+    high[i] += step;
+    low[i] -= step;
+    const Eigen::VectorXd change = (rows_at(linearisation, low).error - rows_at(linearisation, high).error) / (2.0 * step);
+    EXPECT_LT((change - there.columns.col(i)).norm(), 0.01 * there.columns.col(i).norm() + 1e-9) << i;
+  }
+}
+
+}  // namespace
+}  // namespace tissue_stiffness
