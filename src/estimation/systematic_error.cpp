@@ -11,38 +11,44 @@ constexpr double kFinerLeaves = 16.0 / 9.0;  // of the mean square that the fine
 
 }  // namespace
 
-SystematicError::SystematicError(const Model& model) : model_(model) {}
+SystematicError::SystematicError(const Model& model) : model_(model) {
+  refresh();
+}
 
 SystematicError::Corrected SystematicError::correct(const Filtered& filtered) const {
   Corrected out{filtered.mean, {}, {}};
   // Of a nonlinear model the mesh's shift is that of its linear form, which corrects nothing.
   if (!model_.nonlinear()) out.mean -= mesh_shift();
   if (input_shift_.size() > 0 && inputs_believed()) out.mean += input_shift_;
-  const Parts p = parts(filtered);
-  out.covariance = p.beside_model() + p.model;
+  out.covariance = filtered.covariance + parts_.all;
+  Eigen::MatrixXd of_model = Eigen::MatrixXd::Zero(out.mean.size(), out.mean.size());
+  // The misfit may lie along what the parameters do, with all rows and frames alike (Kennedy & O'Hagan 2001).
+  const double discrepancy = inputs_ ? std::max(test_.discrepancy(), unexplained(filtered.misfit_scale)) : 0.0;
+  if (discrepancy > 0.0) of_model = within_prior(discrepancy * inputs_->rows * inputs_->from_noise);
+  out.covariance += of_model;
   for (Eigen::Index i = 0; i < out.mean.size(); ++i) {
     const double all = out.covariance(i, i);
-    out.shares.push_back(
-        {p.noise(i, i) / all, p.mesh(i, i) / all, p.loads(i, i) / all, p.constants(i, i) / all, p.model(i, i) / all});
+    out.shares.push_back({filtered.covariance(i, i) / all, parts_.mesh(i, i) / all, parts_.loads(i, i) / all,
+                          parts_.constants(i, i) / all, of_model(i, i) / all});
   }
   return out;
 }
 
-SystematicError::Parts SystematicError::parts(const Filtered& filtered) const {
-  const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(filtered.covariance.rows(), filtered.covariance.cols());
-  Parts out{filtered.covariance, mesh_doubt(model_, mesh_shift()), zero, zero, zero};
+void SystematicError::refresh() {
+  const Eigen::VectorXd prior_std = model_.prior_std();
+  parts_.mesh = mesh_doubt(model_, mesh_shift());
+  parts_.loads = parts_.constants = Eigen::MatrixXd::Zero(prior_std.size(), prior_std.size());
   if (!inputs_) {  // nothing is known yet of what the inputs' errors do
-    if (!model_.settings().exact_inputs) out.loads = model_.prior_std().cwiseAbs2().asDiagonal();
-    return out;
+    if (!model_.settings().exact_inputs) parts_.loads = prior_std.cwiseAbs2().asDiagonal();
+  } else {
+    test_ = inputs_->test;
+    test_.set_numerics(of_mesh());
+    parts_.loads = inputs_->from_loads;
+    parts_.mesh += inputs_->from_mesh;
+    if (input_shift_.size() > 0 && !inputs_believed()) parts_.loads += input_shift_ * input_shift_.transpose();
+    parts_.constants = inputs_->from_constants;
   }
-  out.loads = inputs_->from_loads;
-  out.mesh += inputs_->from_mesh;
-  if (input_shift_.size() > 0 && !inputs_believed()) out.loads += input_shift_ * input_shift_.transpose();
-  out.constants = inputs_->from_constants;
-  // The misfit may lie along what the parameters do, with all rows and frames alike (Kennedy & O'Hagan 2001).
-  const double discrepancy = std::max(test_.discrepancy(), unexplained(filtered.misfit_scale));
-  out.model = within_prior(discrepancy * inputs_->rows * inputs_->from_noise);
-  return out;
+  parts_.all = parts_.mesh + parts_.loads + parts_.constants;
 }
 
 // Beside a misfit that does not pass, or has risen since it was tested, no interval is tighter than that misfit allows,
@@ -76,29 +82,31 @@ bool SystematicError::inputs_believed() const {
 bool SystematicError::left_study(const Filtered& filtered) const {
   if (!inputs_ || !inputs_->fitted || input_shift_.size() == 0) return false;
   const Eigen::ArrayXd moved = filtered.mean - runs_at_;
-  return (moved.abs() > parts(filtered).beside_model().diagonal().array().sqrt()).any();
+  return (moved.abs() > (filtered.covariance + parts_.all).diagonal().array().sqrt()).any();
 }
 
 void SystematicError::take_mesh(const MeshError::Answer& answer, double misfit_scale) {
   mesh_shift_ = answer.believed(misfit_scale);
   mesh_left_ = answer.left;
-  refresh_test();
+  refresh();
 }
 
 void SystematicError::take_inputs(InputStudy::Answer answer, double misfit_scale) {
   inputs_ = std::move(answer);
   studied_misfit_scale_ = misfit_scale;
-  refresh_test();
+  refresh();
 }
 
 void SystematicError::set_runs_at(const Eigen::VectorXd& w) {
   runs_at_ = w;
   input_shift_ = inputs_->w - w;
+  refresh();
 }
 
 void SystematicError::drop_fit() {
   if (inputs_) inputs_->fitted = false;
   input_shift_.resize(0);
+  refresh();
 }
 
 void SystematicError::reset() {
@@ -107,12 +115,7 @@ void SystematicError::reset() {
   mesh_left_.reset();
   inputs_.reset();
   test_ = {};
-}
-
-void SystematicError::refresh_test() {
-  if (!inputs_) return;
-  test_ = inputs_->test;
-  test_.set_numerics(of_mesh());
+  refresh();
 }
 
 }  // namespace tissue_stiffness

@@ -213,9 +213,10 @@ class UnscentedScheme : public Scheme {
     result.misfit.dof = innovation.dof;
     validity_.add(result.misfit);
     watch_.add(result.misfit.rms_sigma * result.misfit.rms_sigma, filter);
-    const SystematicError::Corrected corrected = systematic_.correct(filtered());
+    const SystematicError::Filtered now = filtered();
+    const SystematicError::Corrected corrected = systematic_.correct(now);
     settling_.add(corrected.mean, corrected.covariance.diagonal().cwiseSqrt());
-    StateJudgement judged = judge(result.misfit, corrected.covariance);
+    StateJudgement judged = judge(result.misfit, now, corrected.covariance);
     estimate_ = summarise(model_->free_parameters(), corrected.mean, corrected.covariance);
     estimate_.time = frame.time;
     estimate_.state = judged.state;
@@ -230,11 +231,12 @@ class UnscentedScheme : public Scheme {
     return {filter.mean(), track_->covariance(), filter.misfit_scale()};
   }
 
-  StateJudgement judge(const Misfit& misfit, const Eigen::MatrixXd& covariance) const {
+  StateJudgement judge(const Misfit& misfit, const SystematicError::Filtered& now,
+                       const Eigen::MatrixXd& covariance) const {
     const bool mesh_pending = !systematic_.mesh_known() && studies_.mesh_unknown().empty() && !more_follow();
-    return judge_state({*model_, misfit, track_->filter().misfit_scale(), watch_.suspicious() && !watch_.searched(),
-                        validity_.invalid(), stale_load(misfit.time), track_->start().motion != nullptr,
-                        restudying_ || systematic_.left_study(filtered()), settling_.settled(), mesh_pending, systematic_,
+    return judge_state({*model_, misfit, now.misfit_scale, watch_.suspicious() && !watch_.searched(), validity_.invalid(),
+                        stale_load(misfit.time), track_->start().motion != nullptr,
+                        restudying_ || systematic_.left_study(now), settling_.settled(), mesh_pending, systematic_,
                         covariance});
   }
 

@@ -27,11 +27,6 @@ class SystematicError {
     Eigen::MatrixXd covariance;
     double misfit_scale;
   };
-  /// Covariance by where it comes from.
-  struct Parts {
-    Eigen::MatrixXd noise, mesh, loads, constants, model;
-    Eigen::MatrixXd beside_model() const { return noise + mesh + loads + constants; }
-  };
   /// The estimate to publish.
   struct Corrected {
     Eigen::VectorXd mean;
@@ -63,11 +58,10 @@ class SystematicError {
   bool left_study(const Filtered& filtered) const;
 
  private:
-  Parts parts(const Filtered& filtered) const;
   double unexplained(double misfit_scale) const;
   Eigen::VectorXd mesh_shift() const;
   Eigen::MatrixXd within_prior(const Eigen::MatrixXd& c) const;
-  void refresh_test();
+  void refresh();
 
   const Model& model_;
   Eigen::VectorXd mesh_shift_;       ///< estimate less truth because of the mesh; empty: not known yet
@@ -77,6 +71,10 @@ class SystematicError {
   Eigen::VectorXd runs_at_;      ///< those parameters
   double studied_misfit_scale_ = 1.0;
   MisfitTest test_;
+  /// Covariance by where it comes from, beside noise and model, as of the last refresh; empty before.
+  struct {
+    Eigen::MatrixXd mesh, loads, constants, all;
+  } parts_;
 };
 
 }  // namespace tissue_stiffness
