@@ -13,7 +13,7 @@ class PeriodElongation : public Effect {
 
 // Simulators take one to several steps a frame. Every simulation has a trace of it, which nobody need know of.
 std::vector<Proposal> propose(const ProposalContext& context) {
-  if (context.holds("period_elongation") || context.within_noise) return {};
+  if (context.holds("period_elongation")) return {};
   const double step = 0.25 * context.frame_interval, longest = 0.5 * context.frame_interval;
   return {{"period_elongation: {step_squared: " + normal(0.0, longest * longest) + "}", "step_squared",
            "period_elongation: {step_squared: " + log_normal(step * step, 4.0) + "}"}};

@@ -5,33 +5,17 @@
 namespace tissue_stiffness::effects {
 namespace {
 
-// int N_a dA over the facets, divided by their area.
-Eigen::VectorXd mean_weights(const TetMesh& mesh, const std::vector<int>& facets) {
-  const FacetQuadrature rule(static_cast<int>(mesh.facets.rows()));
-  Eigen::VectorXd weights = Eigen::VectorXd::Zero(mesh.node_count());
-  for (const int f : facets) {
-    const FacetNodes x = facet_nodes(mesh, f);
-    for (int q = 0; q < rule.points(); ++q) {
-      const double area = rule.weight(q) * rule.normal(x, q).norm();
-      for (Eigen::Index a = 0; a < x.cols(); ++a) weights[mesh.facets(a, f)] += area * rule.shape(q)[a];
-    }
-  }
-  return weights / weights.sum();
-}
-
 class Traction : public Effect {
  public:
   Traction(const Value& arguments, const EffectContext& context)
       : course_(load_course(arguments, LoadInput::Kind::wrench, context)) {
-    weights_ = mean_weights(context.mesh, find_surface(arguments.at("region"), context.regions).facets);
+    weights_ = facet_mean(context.mesh, find_surface(arguments.at("region"), context.regions).facets);
   }
 
   void linear_terms(LinearTerms& out) const override {
     for (int i = 0; i < 3; ++i) {
-      Eigen::VectorXd pattern = Eigen::VectorXd::Zero(3 * weights_.size());
-      for (Eigen::Index a = 0; a < weights_.size(); ++a) pattern[3 * a + i] = weights_[a];
       LoadTerm load;
-      load.pattern = std::move(pattern);
+      load.pattern = along_axis(weights_, i);
       load.coefficient = [](const Parameters& p) { return p[0]; };
       load.course = course_;
       load.component = i;

@@ -95,4 +95,23 @@ std::vector<int> facet_local_nodes(const TetMesh& mesh, int facet) {
   return local;
 }
 
+Eigen::VectorXd facet_mean(const TetMesh& mesh, const std::vector<int>& facets) {
+  const FacetQuadrature rule(static_cast<int>(mesh.facets.rows()));
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(mesh.node_count());
+  for (const int f : facets) {
+    const FacetNodes x = facet_nodes(mesh, f);
+    for (int q = 0; q < rule.points(); ++q) {
+      const double area = rule.weight(q) * rule.normal(x, q).norm();
+      for (Eigen::Index a = 0; a < x.cols(); ++a) weights[mesh.facets(a, f)] += area * rule.shape(q)[a];
+    }
+  }
+  return weights / weights.sum();
+}
+
+Eigen::VectorXd along_axis(const Eigen::VectorXd& weights, int axis) {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(3 * weights.size());
+  for (Eigen::Index a = 0; a < weights.size(); ++a) out[3 * a + axis] = weights[a];
+  return out;
+}
+
 }  // namespace tissue_stiffness

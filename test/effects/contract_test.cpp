@@ -48,6 +48,7 @@ std::string example(const EffectSpec& spec, const ParameterSpec& parameter) {
       {"strain_stiffening.exponent", "5"},
       {"density_error.relative", "0.2"},
       {"force_scale.relative", "0.2"},
+      {"load_offset.force", "[0.01, 0.02, -0.01]"},
       {"image_scale.ratio", "1.1"},
       {"time_offset.offset", "0.004"},
       {"contour_bias.bias", "0.001"},
@@ -103,6 +104,8 @@ std::vector<std::string> bar_with(const std::string& name, const Arguments& argu
   effects.push_back("fixed: {region: clamp}");
   effects.push_back("gravity: {acceleration: [0.5, 1, -2]}");
   effects.push_back("traction: {region: tip, topic: /push, scale: 0.005}");
+  if (name == "load_rotation" && arguments.count("region") > 0 && arguments.at("region") != "tip")
+    effects.push_back("traction: {region: " + arguments.at("region") + ", topic: /push, scale: 0.005}");
   if (!name.empty()) effects.push_back(entry(name, arguments));
   return effects;
 }

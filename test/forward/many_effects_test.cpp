@@ -79,6 +79,10 @@ TEST(ManyEffects, TangentsOfTheReducedModelAreThoseOfTheFullOne) {
       EXPECT_TRUE(a.isZero(0.0)) << name;
       continue;
     }
+    if (b.isZero(0.0)) {  // it begins with the run's end
+      EXPECT_LT(a.norm(), 1e-3 * a0.norm()) << name;
+      continue;
+    }
     const double error = (a - b).norm() / b.norm();
     std::printf("tangent of %s: %.1e off\n", name.c_str(), error);
     EXPECT_LT(error, 0.25) << name;

@@ -40,4 +40,10 @@ SparseMatrix facet_mass(const TetMesh& mesh, const std::vector<int>& facets);
 /// Place of each of a facet's nodes in the tetrahedron behind it, for Discretisation::add_block.
 std::vector<int> facet_local_nodes(const TetMesh& mesh, int facet);
 
+/// int N_a dA / A over facets, one number a node of the mesh: the nodal share of a force that is spread evenly.
+Eigen::VectorXd facet_mean(const TetMesh& mesh, const std::vector<int>& facets);
+
+/// The 3n vector whose component `axis` (0, 1, 2) of node a is weights[a]; the others are 0.
+Eigen::VectorXd along_axis(const Eigen::VectorXd& weights, int axis);
+
 }  // namespace tissue_stiffness

@@ -1,0 +1,61 @@
+// The zero of a force sensor: a constant force beside the measured one.
+#include <algorithm>
+
+#include "tissue_stiffness/effects/registry.hpp"
+#include "tissue_stiffness/fem/facet_quadrature.hpp"
+
+namespace tissue_stiffness::effects {
+namespace {
+
+class LoadOffset : public Effect {
+ public:
+  LoadOffset(const Value& arguments, const EffectContext& context)
+      : weights_(facet_mean(context.mesh, find_surface(arguments.at("region"), context.regions).facets)) {}
+
+  bool shareable() const override { return true; }
+  void linear_terms(LinearTerms& out) const override {
+    for (int i = 0; i < 3; ++i) {
+      LoadTerm load;
+      load.pattern = along_axis(weights_, i);
+      load.coefficient = [i](const Parameters& p) { return p[i]; };
+      out.loads.push_back(std::move(load));
+    }
+  }
+
+ private:
+  Eigen::VectorXd weights_;
+};
+
+// A force that bends the body by a hundredth of its size or less.
+std::vector<Proposal> propose(const ProposalContext& context) {
+  const Eigen::Vector3d edges = context.high() - context.low();
+  const double scale = 1e-3 * context.young_modulus * edges.prod() / edges.maxCoeff();
+  std::vector<Proposal> list;
+  for (const EffectSettings* traction : context.all("traction")) {
+    const std::string name = traction->arguments.at("region").as_text();
+    if (context.names("load_offset", name)) continue;
+    const std::string entry = "load_offset: {region: " + name + ", force: " + normal(Eigen::Vector3d::Zero(), scale) + "}";
+    list.push_back({entry, "force", entry, name});
+  }
+  return list;
+}
+
+}  // namespace
+
+EffectSpec load_offset_spec() {
+  EffectSpec spec;
+  spec.name = "load_offset";
+  spec.summary = "a constant force, spread evenly over a patch: the zero of a force sensor, or what leans on the patch";
+  spec.formula = "F_0 int N_a dA / A";
+  spec.source = "systematic error of a load's sensor: its zero";
+  spec.parameters = {{"force", "F_0", "N", -1e4, 1e4, ParameterSpec::Default::required, 0.0, 0.0, 3}};
+  spec.keys = {{"region", "facets it acts on"}};
+  spec.proposals = propose;
+  return spec;
+}
+
+std::unique_ptr<Effect> make_load_offset(const Value& arguments, const EffectContext& context) {
+  return std::make_unique<LoadOffset>(arguments, context);
+}
+
+}  // namespace tissue_stiffness::effects

@@ -1,0 +1,81 @@
+// A force sensor whose axes are not the model's.
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "tissue_stiffness/effects/registry.hpp"
+#include "tissue_stiffness/fem/facet_quadrature.hpp"
+
+namespace tissue_stiffness::effects {
+namespace {
+
+Eigen::Matrix3d rotation(const Parameters& angles) {
+  const Eigen::Vector3d turn = angles.head<3>();
+  const double angle = turn.norm();
+  if (angle == 0.0) return Eigen::Matrix3d::Identity();
+  return Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
+}
+
+// The course of the traction on that region.
+std::shared_ptr<Course> course_on(const Value& region, const EffectContext& context) {
+  for (const EffectSettings& effect : context.settings.effects) {
+    if (effect.name != "traction" || effect.arguments.at("region").as_text() != region.as_text()) continue;
+    return load_course(effect.arguments, LoadInput::Kind::wrench, context);
+  }
+  throw InputError(region.path(), region.shown(), "the region of a `traction` effect");
+}
+
+class LoadRotation : public Effect {
+ public:
+  LoadRotation(const Value& arguments, const EffectContext& context)
+      : weights_(facet_mean(context.mesh, find_surface(arguments.at("region"), context.regions).facets)),
+        course_(course_on(arguments.at("region"), context)) {}
+
+  // What the turned force has beyond the measured one.
+  void linear_terms(LinearTerms& out) const override {
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        LoadTerm load;
+        load.pattern = along_axis(weights_, i);
+        load.coefficient = [i, j](const Parameters& p) { return rotation(p)(i, j) - (i == j ? 1.0 : 0.0); };
+        load.course = course_;
+        load.component = j;
+        out.loads.push_back(std::move(load));
+      }
+    }
+  }
+
+ private:
+  Eigen::VectorXd weights_;
+  std::shared_ptr<Course> course_;
+};
+
+std::vector<Proposal> propose(const ProposalContext& context) {
+  std::vector<Proposal> list;
+  for (const EffectSettings* traction : context.all("traction")) {
+    const std::string name = traction->arguments.at("region").as_text();
+    if (context.names("load_rotation", name)) continue;
+    const std::string entry = "load_rotation: {region: " + name + ", angles: " + normal(Eigen::Vector3d::Zero(), 0.1) + "}";
+    list.push_back({entry, "angles", entry, name});
+  }
+  return list;
+}
+
+}  // namespace
+
+EffectSpec load_rotation_spec() {
+  EffectSpec spec;
+  spec.name = "load_rotation";
+  spec.summary = "the measured force of a `traction` is turned: the axes of its sensor are not the model's";
+  spec.formula = "(R(a) - I) F(t) int N_a dA / A";
+  spec.source = "an error of the sensor's mounting or of a transform";
+  spec.parameters = {{"angles", "a", "rad", -3.2, 3.2, ParameterSpec::Default::required, 0.0, 0.0, 3}};
+  spec.keys = {{"region", "region of a `traction` effect"}};
+  spec.proposals = propose;
+  return spec;
+}
+
+std::unique_ptr<Effect> make_load_rotation(const Value& arguments, const EffectContext& context) {
+  return std::make_unique<LoadRotation>(arguments, context);
+}
+
+}  // namespace tissue_stiffness::effects
