@@ -9,6 +9,7 @@
 #include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/forward/extra_force.hpp"
 #include "tissue_stiffness/forward/for_each_index.hpp"
+#include "tissue_stiffness/settings/extend_model.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -153,7 +154,6 @@ std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd&
     if (!spec.proposals || std::find(ignore.begin(), ignore.end(), spec.name) != ignore.end()) continue;
     for (Proposal& proposal : spec.proposals(context)) {
       all.push_back({spec.name, std::move(proposal), {}});
-      all.back().of_simulation = spec.of_simulation;
       for (const ParameterSpec& parameter : spec.parameters) {
         if (parameter.name != all.back().proposal.amplitude) continue;
         all.back().absent = parameter.absent;
@@ -196,14 +196,30 @@ std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd&
   return all;
 }
 
-std::vector<std::string> entries_of_simulation(const Study& base, const Eigen::VectorXd& w) {
-  const ProposalContext context = context_of(base, w, false);
+std::vector<std::string> entries_of_time_steps(const Study& study, const Eigen::VectorXd& w) {
+  const ProposalContext context = context_of(study, w, false);
   std::vector<std::string> entries;
   for (const EffectSpec& spec : effect_specs()) {
     if (!spec.of_simulation) continue;
-    for (Proposal& proposal : spec.proposals(context)) entries.push_back(std::move(proposal.refine));
+    for (const Proposal& proposal : spec.proposals(context)) entries.push_back(proposal.yaml);
   }
   return entries;
+}
+
+Eigen::MatrixXd tangents_of_time_steps(const Study& study, const Eigen::VectorXd& w, const Study::Rows& rows) {
+  const std::vector<std::string> entries = entries_of_time_steps(study, w);
+  if (entries.empty()) return Eigen::MatrixXd(rows.error.size(), 0);
+  const Study extended(extend_model(study.model().settings(), entries), study, {});
+  const Eigen::VectorXd start = extended.extend(study, w), std = extended.model().prior_std();
+  const std::vector<Eigen::Index> added = added_parameters(extended, study);
+  Study::Rows rest = rows;
+  rest.predicted = extended.predicted(start);
+  const double moves = motion(rest);
+  Eigen::MatrixXd out(rows.error.size(), static_cast<Eigen::Index>(added.size()));
+  for (std::size_t j = 0; j < added.size(); ++j) {
+    out.col(static_cast<Eigen::Index>(j)) = std[added[j]] * tangent(extended, rest, moves, start, added[j]);
+  }
+  return out;
 }
 
 Eigen::MatrixXd base_tangents(const Study& base, const Eigen::VectorXd& w, const Eigen::VectorXd& std,

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <optional>
 #include <utility>
 
 #include "tissue_stiffness/diagnosis/finding.hpp"
@@ -23,9 +25,8 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr std::size_t kFewestFrames = 18;
-constexpr double kBaseSpread = 0.1;     // prior standard deviations, of the sigma points of the first fit
-constexpr double kLeastDeficit = 0.01;  // of the mean squared error in sigmas: the stated noise is too large
-constexpr double kWorthAdding = 0.2;
+constexpr double kBaseSpread = 0.1;    // prior standard deviations, of the sigma points of the first fit
+constexpr std::size_t kGrown = 2;      // leaders that are tried as one of several effects
 constexpr double kAddedSpread = 0.02;  // and of a model's that starts from a refit
 
 Fitted fit_model(const ModelSettings& settings, const TetMesh& mesh, const Recording& recording) {
@@ -68,12 +69,6 @@ bool same_body(const Model& model, const Model& next) {
   });
 }
 
-// The noise that the model file states, and what the mesh adds to it: there is nothing left to look for.
-bool is_noise(const Study::Rows& rows, double of_mesh) {
-  const double square = rows.error.squaredNorm() / rows.count();
-  return square > 1.0 - kLeastDeficit && square < kExplained * kExplained * unavoidable_mean_square(of_mesh);
-}
-
 void describe_residual(const Fitted& model, double floor, Diagnosis& out) {
   out.where = where_it_fails(*model.study, model.rows);
   out.when = when_it_fails(*model.study, model.rows);
@@ -86,10 +81,18 @@ void describe_residual(const Fitted& model, double floor, Diagnosis& out) {
   out.metres = {total, sigma, floor * sigma, std::sqrt(std::max(0.0, total * total - sigma * sigma))};
 }
 
-// Of the held-out error beyond noise. Where nothing explains the error, what takes less of it is not what is missing.
-bool takes_a_part(const Fitted& model, const Refit& refit, const Recording& recording) {
-  const auto beyond = [](double sigmas) { return std::max(0.0, sigmas * sigmas - 1.0); };
-  return beyond(refit.held_out_sigmas) < (1.0 - kWorthAdding) * beyond(rms_sigmas(model.rows, recording, true));
+std::string to_string(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::adequate:
+      return "adequate";
+    case Verdict::missing:
+      return "missing";
+    case Verdict::numerics:
+      return "numerics";
+    case Verdict::unexplained:
+      return "unexplained";
+  }
+  return "unfinished";
 }
 
 BestExplanation best_of(const Fitted& model, const Finding& finding) {
@@ -115,7 +118,7 @@ Eigen::MatrixXd doubt_of_nonlinear(const Fitted& fitted, const Recording& record
 
 // The model's parameters as the best explanation has them: without it they make up for what is missing.
 Eigen::VectorXd believed(const Fitted& model, const Finding& finding) {
-  if (finding.verdict != "missing") return model.fit.w;
+  if (finding.verdict != Verdict::missing) return model.fit.w;
   return model.study->model().coordinates(finding.refits.front().parameters, model.fit.w);
 }
 
@@ -134,14 +137,20 @@ class Search {
     options_.progress("fit of the given model", 0, 0);
     model_ = fit_model(settings, mesh, recording_);
     describe_residual(model_, std::numeric_limits<double>::quiet_NaN(), out_);
+    options_.progress("compare the given model with the recording", 0, 0);
     add_step();
     finding_ = look(model_, {}, options_, {}, {}, [&](std::vector<MissingEffect> candidates) {
       out_.candidates = std::move(candidates);
       publish();
     });
-    out_.verdict = out_.final_verdict = finding_.verdict;
+    if (finding_.verdict == Verdict::unexplained) grow();
+    out_.verdict = out_.final_verdict = to_string(finding_.verdict);
+    out_.adequate = finding_.comparison.given.probability;
+    out_.none_of_these = finding_.comparison.none_of_these;
+    out_.z = finding_.comparison.given.z;
     out_.set = finding_.set;
-    out_.best = best_of(model_, finding_);
+    out_.best = best_of(model_, grown_ ? *grown_ : finding_);
+    if (grown_) out_.best.effects.insert(out_.best.effects.begin(), finding_.set.front());
     out_.candidates = finding_.effects;
     out_.next_experiment = next_experiment(finding_.set);
     out_.sigmas.numerical = finding_.floor;
@@ -156,17 +165,18 @@ class Search {
     const std::size_t asked = options_.add.size();
     const std::size_t most = asked + static_cast<std::size_t>(options_.automatic ? options_.most_steps : 0);
     for (std::size_t k = 0; k < most; ++k) {
-      if (k >= asked && !lacks_something()) break;
+      if (k >= asked && finding_.verdict != Verdict::missing) break;
       const std::vector<Refit> refits =
           k < asked ? look(model_, {options_.add[k]}, options_, finding_.finer, finding_.library).refits : finding_.refits;
-      if (refits.empty() || (k >= asked && !worth_adding(refits.front()))) break;
+      if (refits.empty()) break;
       const Library library = add(refits.front());
-      if (k + 1 >= asked && is_noise(model_.rows, finding_.floor)) {
+      if (k + 1 >= asked && nothing_left()) {
         out_.final_verdict = "adequate";
         break;
       }
-      finding_ = look(model_, {}, options_, finding_.finer, library);
-      out_.final_verdict = finding_.verdict;
+      finding_ = grown_ ? std::move(*grown_) : look(model_, {}, options_, finding_.finer, library);
+      grown_.reset();
+      out_.final_verdict = to_string(finding_.verdict);
     }
   }
 
@@ -181,11 +191,46 @@ class Search {
   }
 
  private:
-  bool lacks_something() const { return finding_.verdict == "missing" || finding_.verdict == "unexplained"; }
+  bool lacks_something() const { return finding_.verdict == Verdict::missing || finding_.verdict == Verdict::unexplained; }
 
-  bool worth_adding(const Refit& refit) const {
-    return proven(model_, refit) && (finding_.verdict != "unexplained" || takes_a_part(model_, refit, recording_));
+  // Several effects may be missing, of which none explains the error alone. Each leader in turn is taken for one of them:
+  // if it and what is then found explain the error, both are missing.
+  void grow() {
+    for (std::size_t i = 0; i < std::min(kGrown, finding_.refits.size()); ++i) {
+      Refit& leader = finding_.refits[i];
+      options_.progress("what is missing beside " + leader.effects.front(), 0, 0);
+      auto next = std::make_shared<Fitted>(extended(model_, leader));
+      const bool same = same_body(model_.study->model(), next->study->model());
+      Finding deeper = look(*next, {}, options_, finding_.finer, same ? finding_.library : Library());
+      leader.model = next;
+      if (deeper.verdict != Verdict::missing) continue;
+      std::rotate(finding_.refits.begin(), finding_.refits.begin() + static_cast<std::ptrdiff_t>(i),
+                  finding_.refits.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+      finding_.verdict = Verdict::missing;
+      finding_.set = finding_.refits.front().effects;
+      finding_.set.insert(finding_.set.end(), deeper.set.begin(), deeper.set.end());
+      take_over(deeper.effects);
+      grown_ = std::move(deeper);
+      return;
+    }
   }
+
+  // What was found beside the leader takes the place of what was found without it.
+  void take_over(const std::vector<MissingEffect>& deeper) {
+    std::vector<MissingEffect>& known = finding_.effects;
+    for (const MissingEffect& effect : deeper) {
+      if (std::count(finding_.set.begin(), finding_.set.end(), effect.effect) == 0) continue;
+      const auto at = std::find_if(known.begin(), known.end(), [&](const auto& k) { return k.effect == effect.effect; });
+      if (at == known.end()) {
+        known.push_back(effect);
+      } else if (effect.effect != finding_.set.front()) {
+        *at = effect;
+      }
+    }
+  }
+
+  // The model leaves no structure beyond chance: there is nothing left to look for.
+  bool nothing_left() const { return !(finding_.models->test(explain(model_)).discrepancy() > 0.0); }
 
   // The library of tangents that the next look may take over.
   Library add(const Refit& best) {
@@ -220,8 +265,9 @@ class Search {
   const Recording& recording_;
   DiagnosisOptions options_;
   Diagnosis& out_;
-  Fitted given_, model_;  ///< given_ is empty as long as model_ is the given one
-  Finding finding_;       ///< of model_
+  Fitted given_, model_;          ///< given_ is empty as long as model_ is the given one
+  Finding finding_;               ///< of model_
+  std::optional<Finding> grown_;  ///< of model_ with the best refit; empty where that explains the error alone
 };
 
 }  // namespace

@@ -1,7 +1,12 @@
 #include "tissue_stiffness/diagnosis/finding.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <utility>
 
+#include "tissue_stiffness/diagnosis/missing_force.hpp"
 #include "tissue_stiffness/diagnosis/refit_list.hpp"
 #include "tissue_stiffness/diagnosis/refit_search.hpp"
 #include "tissue_stiffness/types/error.hpp"
@@ -9,8 +14,7 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kTwin = 0.9;           // cosine above which two effects look alike
-constexpr double kHeldOutGain = 0.995;  // of the held-out rms: what an accepted effect must fall below
+constexpr double kTwin = 0.9;  // cosine above which two effects look alike
 
 void require_proposed(const FirstLook& look, const std::vector<std::string>& wanted) {
   for (const std::string& effect : wanted) {
@@ -20,29 +24,59 @@ void require_proposed(const FirstLook& look, const std::vector<std::string>& wan
   }
 }
 
-std::string judge(const FirstLook& look, const std::vector<Refit>& refits) {
-  const double left = refits.empty() ? look.cost : refits.front().cost;
-  // An effect has to explain more than the mesh's error, which another mesh would change.
-  const bool gained =
-      !refits.empty() && proven(look.base, refits.front()) && look.cost - left > look.floor * look.floor * look.rows;
-  // Within the noise, what the mesh explains about as well is no sign of an effect.
-  if (look.noise() && (!gained || look.by_mesh > 0.5 * (look.cost - left))) return "adequate";
-  if (look.numerics()) return "numerics";
-  return gained && look.explained_by(refits.front()) ? "missing" : "unexplained";
+// How many ways of an effect the library proposes.
+double ways_of(const FirstLook& look, const std::string& effect) {
+  const auto same = [&](const Candidate& c) { return c.effect == effect; };
+  return static_cast<double>(
+      std::max<std::ptrdiff_t>(1, std::count_if(look.candidates.begin(), look.candidates.end(), same)));
 }
 
-std::vector<std::string> set_of(const FirstLook& look, const std::vector<Refit>& refits) {
+// Beforehand the given model is as probable as all effects together, and those are alike, whatever the ways each has.
+double log_prior(const FirstLook& look, const Refit& refit) {
+  const double effects = static_cast<double>(std::max<std::size_t>(1, look.ranked.size()));
+  double out = 0.0;
+  for (const std::string& effect : refit.effects) out -= std::log(effects * ways_of(look, effect));
+  return out;
+}
+
+Comparison compare(const FirstLook& look, const RefitList& refits) {
+  const ModelComparison& models = refits.comparison();
+  const double effects = static_cast<double>(std::max<std::size_t>(1, look.ranked.size()));
+  const double base = refits.log_evidence_of_base();
+  const MisfitTest given = models.test(refits.base());
+  std::vector<double> weights{0.0};
+  for (const Refit& r : refits.all()) weights.push_back(refits.log_evidence(r) - base + log_prior(look, r));
+  // The force acts on the residual of the fit; what the fit costs, and its weights, are the given model's.
+  const double force = log_evidence_of_random_force(*look.base.study, look.base.fit.w, models.noise_variance());
+  const double numerics = models.log_likelihood(refits.base()) - models.log_likelihood(look.base.rows);
+  weights.push_back(force - numerics - std::log(effects));
+  const std::vector<double> probability = posterior(weights);
+  Comparison out;
+  out.given = {{}, probability.front(), given.z(), given.passes()};
+  out.passes_without_mesh = models.test_of(look.base.rows.error, static_cast<double>(look.base.fit.w.size())).passes();
+  for (std::size_t i = 0; i < refits.all().size(); ++i) {
+    const MisfitTest test = refits.test(refits.all()[i]);
+    out.others.push_back({refits.all()[i].effects, probability[1 + i], test.z(), test.passes()});
+  }
+  out.none_of_these = probability.back();
+  return out;
+}
+
+// Effects of the fewest named explanations that hold the believed part of their probability, most probable first.
+std::vector<std::string> set_of(const Comparison& comparison) {
+  std::vector<const Explanation*> order;
+  double all = 0.0, held = 0.0;
+  for (const Explanation& e : comparison.others) {
+    order.push_back(&e);
+    all += e.probability;
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto* a, const auto* b) { return a->probability > b->probability; });
   std::vector<std::string> set;
-  if (refits.empty()) return set;
-  const double variance = std::max(1.0, refits.front().cost_beside_numerics / look.rows);
-  const double best = evidence(refits.front(), look.rows, variance);
-  const double by_a_finer_mesh = kRemainder * look.floor * look.floor * look.rows;
-  for (const Refit& r : refits) {
-    const bool larger = r.effects.size() > refits.front().effects.size();
-    const bool alike = best - evidence(r, look.rows, variance) < kSameEvidence ||
-                       r.cost_beside_numerics - refits.front().cost_beside_numerics < by_a_finer_mesh;
-    if (larger || !alike) continue;
-    for (const std::string& effect : r.effects) {
+  for (const Explanation* e : order) {
+    if (held > kComparison.believed * all) break;
+    held += e->probability;
+    for (const std::string& effect : e->effects) {
       if (std::find(set.begin(), set.end(), effect) == set.end()) set.push_back(effect);
     }
   }
@@ -97,11 +131,19 @@ std::vector<MissingEffect> describe(const FirstLook& look, const std::vector<Ref
   return out;
 }
 
-}  // namespace
-
-bool proven(const Fitted& base, const Refit& refit) {
-  return refit.held_out_sigmas < kHeldOutGain * rms_sigmas(base.rows, base.study->recording(), true);
+// Probability of all explanations with an effect, and the test of the most probable one.
+void tell_belief(const Comparison& comparison, MissingEffect& effect) {
+  double most = -1.0;
+  for (const Explanation& e : comparison.others) {
+    if (std::count(e.effects.begin(), e.effects.end(), effect.effect) == 0) continue;
+    effect.probability += e.probability;
+    if (e.probability <= most) continue;
+    most = e.probability;
+    effect.z = e.z;
+  }
 }
+
+}  // namespace
 
 Finding look(const Fitted& base, const std::vector<std::string>& wanted, const DiagnosisOptions& options,
              const FinerMesh& finer, const Library& library, const CandidatesSoFar& so_far) {
@@ -110,10 +152,14 @@ Finding look(const Fitted& base, const std::vector<std::string>& wanted, const D
   Finding out;
   so_far(describe(look, {}));
   const auto refitted = [&](const std::vector<Refit>& refits) { so_far(describe(look, refits)); };
-  out.refits = search_refits(look, wanted, options, refitted);
-  out.verdict = judge(look, out.refits);
-  if (out.verdict == "missing" || out.verdict == "unexplained") out.set = set_of(look, out.refits);
+  RefitList refits = search_refits(look, wanted, options, refitted);
+  out.comparison = compare(look, refits);
+  out.models = std::make_shared<const ModelComparison>(refits.comparison());
+  out.refits = refits.take();
+  out.verdict = judge(out.comparison);
+  if (out.verdict == Verdict::missing || out.verdict == Verdict::unexplained) out.set = set_of(out.comparison);
   out.effects = describe(look, out.refits);
+  for (MissingEffect& effect : out.effects) tell_belief(out.comparison, effect);
   out.floor = look.floor;
   out.finer = look.finer;
   out.library = look.library;

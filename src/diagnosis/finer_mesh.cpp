@@ -39,12 +39,13 @@ FinerMesh finer_mesh(const Fitted& base, const Study* known) {
   return out;
 }
 
-double cost_on_finer_mesh(const Fitted& base, const Refit& refit, const Study* known) {
-  const auto fine = on_finer_mesh(*base.study, extend_model(base.study->model().settings(), refit.entries), known);
-  const Eigen::VectorXd start = fine->model().coordinates(refit.parameters, fine->model().prior_mean());
-  const BatchFit fit =
-      fine->fit(fine->scan_near(start, fine->tuning_shared_with(*base.study)).w, fine->spread_beyond(*base.study));
-  return fine->rows(fit.w).error.squaredNorm();
+Fitted fit_on_finer_mesh(const Study& known, const ModelSettings& settings, const std::map<std::string, double>& start) {
+  Fitted out;
+  out.study = std::make_unique<Study>(settings, known);
+  const Model& model = out.study->model();
+  out.fit = out.study->fit(model.coordinates(start, model.prior_mean()), kSpread * model.prior_std());
+  out.rows = out.study->rows(out.fit.w);
+  return out;
 }
 
 }  // namespace tissue_stiffness

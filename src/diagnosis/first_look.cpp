@@ -3,21 +3,24 @@
 #include <algorithm>
 #include <utility>
 
+#include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/forward/for_each_index.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kAdequate = 1.1;       // rms in sigmas up to which a residual may be noise
-constexpr double kNumerics = 0.8;       // of the structured part, from which a finer mesh explains it
-constexpr double kExplains = 0.85;      // of it: less is no explanation
-constexpr double kNearly = 0.8;         // unless what is left is little beside the noise
-constexpr double kLittle = 0.1;         // of the noise's sum of squares
-constexpr double kPairExplains = 0.97;  // two effects imitate most of a third: gravity with a delay 94 % of viscoelasticity
-
 // Of the sum of squares: a mesh's change that would add more to it is none of the error's. The fit on the finer mesh has
 // ended in another minimum, or what is missing has led both fits astray.
 constexpr double kElsewhere = 0.2;
+
+// What a simulated recording has of its making is no missing physics, unless it is asked for.
+std::vector<std::string> not_looked_for(const DiagnosisOptions& options) {
+  std::vector<std::string> out = options.ignore;
+  for (const EffectSpec& spec : effect_specs()) {
+    if (spec.of_simulation && std::count(options.add.begin(), options.add.end(), spec.name) == 0) out.push_back(spec.name);
+  }
+  return out;
+}
 
 }  // namespace
 
@@ -27,53 +30,38 @@ FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Fine
       cost(fitted.rows.error.squaredNorm()),
       first(earlier.change.size() == 0),
       library(std::move(known_library)),
-      finer(std::move(earlier)) {
+      finer(std::move(earlier)),
+      explained(explain(base)),
+      comparison(base, Eigen::VectorXd::Zero(base.rows.error.size())),
+      test(comparison.test(explained)) {
+  if (!test.passes()) explained = explain(base, true);
   const std::string step = "tangents of the library, and what a finer mesh would change";
   options.progress(step, 0, 0);
   const Study::Rows& r = base.rows;
   const auto worsens = [&](const Eigen::VectorXd& by) { return (r.error - by).squaredNorm() > (1.0 + kElsewhere) * cost; };
-  const bool within_noise = noise() && options.add.empty();  // who asks for effects by name may have any
+  const bool within_noise = test.passes() && options.add.empty();  // who asks for effects by name may have any
   run_side_by_side(
       [&] {
         candidates = find_candidates(
-            *base.study, base.fit.w, within_noise, options.ignore,
+            *base.study, base.fit.w, within_noise, not_looked_for(options),
             [&](std::size_t done, std::size_t total) { options.progress(step, done, total); }, library);
-        known = base_tangents(*base.study, base.fit.w, base.fit.covariance.diagonal().cwiseSqrt(), r);
       },
       [&] {
         if (!finer.change.any() || worsens(finer.change)) finer = finer_mesh(base, finer.study.get());
       });
   if (worsens(finer.change)) finer.change.setZero();
   by_mesh = cost - (r.error - finer.change).squaredNorm();
+  known = explained.linearisation.columns;
   floor = Scorer(r.error, known, r.offsets, 1.0).remaining(finer.change);
+  comparison = ModelComparison(base, finer.change);
+  test = comparison.test(explained);
   // An effect has to explain what the mesh does not.
-  scorer = std::make_unique<Scorer>(r.error - finer.change, known, r.offsets, 1.0, kRemainder * finer.change);
+  scorer = std::make_unique<Scorer>(explained.error - finer.change, known, r.offsets, 1.0, kRemainder * finer.change);
   ranked = rank(*scorer, candidates, kRemainder * floor);
 }
 
 double FirstLook::structured() const {
   return std::max(0.0, cost - rows);
-}
-
-double FirstLook::unavoidable() const {
-  return unavoidable_mean_square(floor) * rows;
-}
-
-bool FirstLook::noise() const {
-  return cost < kAdequate * kAdequate * rows;
-}
-
-bool FirstLook::numerics() const {
-  return by_mesh > kNumerics * structured();
-}
-
-bool FirstLook::explained_by(const Refit& refit) const {
-  const double of_mesh = floor * floor * rows;
-  const auto takes = [&](double share, double left) { return left < std::max((1.0 - share) * structured(), of_mesh); };
-  const double left = refit.cost - rows;
-  const double alone = left < of_mesh + kLittle * rows ? kNearly : kExplains;
-  return takes(refit.effects.size() > 1 ? kPairExplains : alone, left) ||
-         takes(kPairExplains, refit.cost_beside_steps - rows);
 }
 
 }  // namespace tissue_stiffness

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "tissue_stiffness/forward/for_each_index.hpp"
@@ -152,6 +153,11 @@ ForcePrior likeliest_force_prior(const std::vector<ModalTransition>& transitions
     best.walk[i] *= walk;
   }
   return best;
+}
+
+double log_of_tried_priors(Eigen::Index modes) {
+  return std::log(static_cast<double>(std::size(kLevels) * std::size(kWalks))) +
+         static_cast<double>(modes) * std::log(static_cast<double>(std::size(kOwn)));
 }
 
 }  // namespace tissue_stiffness

@@ -91,6 +91,10 @@ struct Modes {
   std::vector<double> spans;                 ///< before each frame [s]
   std::vector<ModalTransition> transitions;  ///< to each frame
   Eigen::MatrixXd displacement;              ///< modes x frames
+  /// Root mean square of the forces that move the modes.
+  double scale() const {
+    return std::sqrt((square.asDiagonal() * displacement).squaredNorm() / static_cast<double>(displacement.size()));
+  }
 };
 
 Modes modes_of(const Study& study, const Eigen::VectorXd& w) {
@@ -128,14 +132,14 @@ double squares(const FrameEvidence& e, const Eigen::VectorXd& q) {
 }
 
 std::vector<FrameEvidence> evidence_of(const Study& study, const Eigen::VectorXd& w, const Study::Rows& rows,
-                                       const Eigen::MatrixXd& shapes) {
+                                       const Eigen::MatrixXd& shapes, double variance) {
   const Eigen::MatrixXd along = study.rows_along(w, shapes, rows);
   std::vector<FrameEvidence> out;
   for (std::size_t k = 0; k + 1 < rows.offsets.size(); ++k) {
     const Eigen::Index from = rows.offsets[k], size = rows.offsets[k + 1] - from;
     const auto h = along.middleRows(from, size);
     const auto e = rows.error.segment(from, size);
-    out.push_back({h.transpose() * h, h.transpose() * e, e.squaredNorm()});
+    out.push_back({h.transpose() * h / variance, h.transpose() * e / variance, e.squaredNorm() / variance});
   }
   return out;
 }
@@ -147,10 +151,8 @@ MissingForce missing_force(const Study& study, const Eigen::VectorXd& w) {
   const TetMesh& mesh = study.model().mesh();
   const Modes modes = modes_of(study, w);
   const Study::Rows rows = study.rows(w);
-  const std::vector<FrameEvidence> evidence = evidence_of(study, w, rows, modes.shapes);
-  const double scale = std::sqrt((modes.square.asDiagonal() * modes.displacement).squaredNorm() /
-                                 static_cast<double>(modes.displacement.size()));
-  const ForcePrior prior = likeliest_force_prior(modes.transitions, evidence, scale);
+  const std::vector<FrameEvidence> evidence = evidence_of(study, w, rows, modes.shapes, 1.0);
+  const ForcePrior prior = likeliest_force_prior(modes.transitions, evidence, modes.scale());
   const SmoothedForce best = smooth_force(modes.transitions, evidence, prior);
   const double without = rows.error.squaredNorm();
   MissingForce out;
@@ -187,6 +189,15 @@ MissingForce missing_force(const Study& study, const Eigen::VectorXd& w) {
                  {"velocity", share_along(force, v.leftCols(kept))}};
   out.words = in_words(out);
   return out;
+}
+
+double log_evidence_of_random_force(const Study& study, const Eigen::VectorXd& w, double noise_variance) {
+  const Modes modes = modes_of(study, w);
+  const Study::Rows rows = study.rows(w);
+  const std::vector<FrameEvidence> evidence = evidence_of(study, w, rows, modes.shapes, noise_variance);
+  const ForcePrior prior = likeliest_force_prior(modes.transitions, evidence, modes.scale());
+  const double deviance = smooth_force(modes.transitions, evidence, prior).deviance;
+  return 0.5 * (rows.error.squaredNorm() / noise_variance - deviance) - log_of_tried_priors(modes.shapes.cols());
 }
 
 }  // namespace tissue_stiffness

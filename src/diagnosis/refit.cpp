@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "tissue_stiffness/diagnosis/fit_entries.hpp"
+#include "tissue_stiffness/diagnosis/model_comparison.hpp"
 #include "tissue_stiffness/diagnosis/ranking.hpp"
 #include "tissue_stiffness/settings/extend_model.hpp"
 #include "tissue_stiffness/types/error.hpp"
@@ -11,10 +12,9 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kSpread = 0.05;           // prior standard deviations, around the fit of a beginning
-constexpr double kPromise = 0.1;           // of the structured part: what quick runs have to explain before a full one
-constexpr double kMostOfMesh = 4.0 / 3.0;  // what ever finer meshes change: Richardson's, at second order
-constexpr double kShares[] = {0.6, 1.0};   // of the training frames, fitted one after the other from a fit of the beginning
+constexpr double kSpread = 0.05;          // prior standard deviations, around the fit of a beginning
+constexpr double kPromise = 0.1;          // of the structured part: what quick runs have to explain before a full one
+constexpr double kShares[] = {0.6, 1.0};  // of the training frames, fitted one after the other from a fit of the beginning
 
 struct Start {
   Eigen::VectorXd w, spread;
@@ -101,33 +101,9 @@ double structured(const Study::Rows& rows) {
   return rows.error.squaredNorm() - rows.count();
 }
 
-double cost_beside(const Eigen::VectorXd& error, const Eigen::VectorXd& mesh_change) {
-  const double size = mesh_change.squaredNorm();
-  const double share = size > 0.0 ? std::clamp(mesh_change.dot(error) / size, 0.0, kMostOfMesh) : 0.0;
-  return (error - share * mesh_change).squaredNorm();
-}
-
-// The base with these entries, from these parameters, and what a simulation's time steps do besides. `known`: parameters
-// that are estimated without.
-CostBesideSteps beside_steps(const Fitted& base, std::vector<std::string> entries,
-                             const std::map<std::string, double>& parameters, std::size_t known,
-                             const Eigen::VectorXd& mesh_change) {
-  const Study& of = *base.study;
-  const std::vector<std::string> steps = entries_of_simulation(of, base.fit.w);
-  if (steps.empty()) return {};
-  entries.insert(entries.end(), steps.begin(), steps.end());
-  const Study study(extend_model(of.model().settings(), entries), of);
-  const Model& model = study.model();
-  const Eigen::VectorXd start = model.coordinates(parameters, model.prior_mean());
-  const BatchFit fit = study.quick_fit(study.scan_near(start, study.tuning_shared_with(of)).w, study.spread_beyond(of));
-  const Study::Rows rows = study.rows(fit.w);
-  const double price = static_cast<double>(model.free_parameters().size() - known) * std::log(rows.count());
-  return {rows.error.squaredNorm() + price, cost_beside(rows.error, mesh_change) + price};
-}
-
 }  // namespace
 
-Refit refit(const Fitted& base, const std::vector<Addition>& additions, const Eigen::VectorXd& mesh_change, double rival) {
+Refit refit(const Fitted& base, const std::vector<Addition>& additions, double rival) {
   const Study& known = *base.study;
   auto model = std::make_shared<Fitted>();
   ModelSettings settings = known.model().settings();
@@ -165,29 +141,11 @@ Refit refit(const Fitted& base, const std::vector<Addition>& additions, const Ei
   out.p_value =
       prediction_p_value(held_out_squares(base.rows, known.recording()) - held_out_squares(rows, known.recording()));
   out.fitted = start->fit.cost;
-  out.cost = out.cost_beside_steps = rows.error.squaredNorm();
-  out.cost_beside_numerics = cost_beside(rows.error, mesh_change);
+  out.cost = rows.error.squaredNorm();
+  out.explained = explain(*model);
   out.added_parameters = static_cast<int>(study.model().free_parameters().size() - known.model().free_parameters().size());
   if (!only_quick) out.model = std::move(model);
   return out;
-}
-
-void Refit::allow_for_steps() {
-  cost_beside_steps = std::min(cost, beside_steps->cost);
-  cost_beside_numerics = std::min(cost_beside_numerics, beside_steps->beside_mesh);
-}
-
-CostBesideSteps cost_beside_steps(const Fitted& base, const Refit& refit, const Eigen::VectorXd& mesh_change) {
-  const std::size_t known = base.study->model().free_parameters().size() + static_cast<std::size_t>(refit.added_parameters);
-  return beside_steps(base, refit.proposals, refit.parameters, known, mesh_change);
-}
-
-CostBesideSteps cost_beside_steps(const Fitted& base) {
-  const Model& model = base.study->model();
-  CostBesideSteps left = beside_steps(base, {}, model.values(base.fit.w), model.free_parameters().size(),
-                                      Eigen::VectorXd::Zero(base.rows.error.size()));
-  left.cost = std::min(left.cost, base.rows.error.squaredNorm());
-  return left;
 }
 
 }  // namespace tissue_stiffness

@@ -8,15 +8,15 @@
 
 #include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/forward/for_each_index.hpp"
+#include "tissue_stiffness/settings/extend_model.hpp"
 #include "tissue_stiffness/types/error.hpp"
 #include "tissue_stiffness/types/stop_request.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kMeshCounts = 0.2;  // rms of its error [sigma] from which leaders are compared on a finer one
-constexpr std::size_t kLeaders = 4;  // that are
-constexpr double kClose = 0.9;       // of what the best refit explains: as good, but for the numerics
+constexpr std::size_t kRivals = 3;   // that are fitted on the finer mesh
+constexpr double kFinerMesh = 0.25;  // of a mesh's error that one of half its size has left, at second order
 constexpr double kReach = 1.05;      // times the best cost so far: fewer parameters may make up for less than that
 
 std::string names_of(const std::vector<Addition>& additions) {
@@ -26,10 +26,6 @@ std::string names_of(const std::vector<Addition>& additions) {
 }
 
 }  // namespace
-
-double evidence(const Refit& refit, double rows, double variance) {
-  return -0.5 * refit.cost_beside_numerics / variance - 0.5 * refit.added_parameters * std::log(rows);
-}
 
 std::ptrdiff_t parameters_of(const std::vector<Addition>& additions) {
   ModelSettings alone;
@@ -42,16 +38,16 @@ std::ptrdiff_t parameters_of(const std::vector<Addition>& additions) {
   return count;
 }
 
-bool RefitList::holds(const std::string& effect) const {
-  return std::any_of(refits_.begin(), refits_.end(), [&](const Refit& r) { return r.effects.front() == effect; });
+MisfitTest RefitList::test(const Refit& refit) const {
+  return comparison_.test(refit.explained);
 }
 
-bool RefitList::mesh_counts() const {
-  return look_.floor > kMeshCounts;
+double RefitList::log_evidence_of_base() const {
+  return comparison_.log_evidence(base_);
 }
 
-bool RefitList::is_noise(double cost) const {
-  return cost <= kExplained * kExplained * look_.unavoidable();
+double RefitList::log_evidence(const Refit& refit) const {
+  return comparison_.log_evidence(refit.explained);
 }
 
 void RefitList::try_each(std::size_t count, const std::function<std::string(std::size_t)>& name,
@@ -90,7 +86,7 @@ void RefitList::add(std::vector<std::vector<Addition>> list) {
   try {
     try_each(
         trials.size(), [&](std::size_t i) { return "refit with " + names_of(trials[i].second); },
-        [&](std::size_t i) { done[i] = refit(look_.base, trials[i].second, look_.finer.change, rival); });
+        [&](std::size_t i) { done[i] = refit(look_.base, trials[i].second, rival); });
   } catch (const Interrupted&) {
     keep(std::move(done));
     throw;
@@ -100,70 +96,46 @@ void RefitList::add(std::vector<std::vector<Addition>> list) {
 
 void RefitList::keep(std::vector<std::optional<Refit>> done) {
   for (std::optional<Refit>& refit : done) {
-    if (refit) refits_.push_back(std::move(*refit));
+    if (!refit) continue;
+    comparison_.note(refit->explained.error);
+    refits_.push_back(std::move(*refit));
   }
   sort();
   for (std::size_t i = 1; i < refits_.size(); ++i) refits_[i].model.reset();
   so_far_(refits_);
 }
 
-double RefitList::left_beside_steps() {
-  if (!left_beside_steps_) left_beside_steps_ = cost_beside_steps(look_.base).cost;
-  return *left_beside_steps_;
-}
-
-// Alone: nothing has to be missing beside them.
-void RefitList::add_steps() {
-  std::vector<std::vector<Addition>> list;
-  for (const Ranked& r : look_.ranked) {
-    if (r.best->of_simulation && !holds(r.effect)) list.push_back({{r.best, r.score.amplitude}});
-  }
-  add(list);
-}
-
-void RefitList::compare_beside_steps() {
-  if (refits_.empty() || best().way->of_simulation || look_.base.study->model().nonlinear()) return;
-  std::vector<Refit*> leaders;
-  for (Refit& r : refits_) {
-    const bool close = look_.cost - r.cost > kClose * (look_.cost - best().cost);
-    if (r.way->linear && close && leaders.size() < kLeaders) leaders.push_back(&r);
-  }
-  std::vector<Refit*> todo;
-  std::copy_if(leaders.begin(), leaders.end(), std::back_inserter(todo), [](const Refit* r) { return !r->beside_steps; });
-  if ((leaders.size() < 2 && !leaves_more_than_noise()) || todo.empty()) return;
-  if (left_beside_steps() < best().cost) return add_steps();
-  for (Refit* r : todo) r->beside_steps.emplace();
-  try_each(
-      todo.size(), [&](std::size_t i) { return "beside time steps: " + todo[i]->effects.front(); },
-      [&](std::size_t i) { *todo[i]->beside_steps = cost_beside_steps(look_.base, *todo[i], look_.finer.change); });
-  if (std::any_of(leaders.begin(), leaders.end(), [&](const Refit* r) { return is_noise(r->beside_steps->cost); })) {
-    for (Refit* r : leaders) r->allow_for_steps();
-  }
-  sort();
-}
-
 void RefitList::compare_on_finer_mesh() {
-  if (refits_.size() < 2 || !mesh_counts()) return;
-  std::vector<Refit*> leaders;
-  for (Refit& r : refits_) {
-    if (leaders.size() < kLeaders && r.way->linear) leaders.push_back(&r);
+  const Study* finer = look_.finer.study.get();
+  if (finer == nullptr || empty() || !comparison_.test(base_).passes()) return;
+  if (comparison_.test_of(look_.base.rows.error, static_cast<double>(look_.base.fit.w.size())).passes()) return;
+  const double given = log_evidence_of_base();
+  std::vector<Refit*> rivals;
+  for (Refit& refit : refits_) {
+    if (log_evidence(refit) > given && refit.way->linear && rivals.size() < kRivals) rivals.push_back(&refit);
   }
+  if (rivals.empty()) return;
+  const Study& study = *look_.base.study;
+  const ModelSettings& settings = study.model().settings();
+  base_ = explain(fit_on_finer_mesh(*finer, settings, study.model().values(look_.base.fit.w)));
+  comparison_ = ModelComparison(look_.base, kFinerMesh * look_.finer.change);
   try_each(
-      leaders.size(), [&](std::size_t i) { return "on a finer mesh: " + leaders[i]->effects.front(); },
-      [&](std::size_t i) {  // a fit that ends in another minimum there speaks against nothing
-        double& cost = leaders[i]->cost_beside_numerics;
-        cost = std::min(cost, cost_on_finer_mesh(look_.base, *leaders[i], look_.finer.study.get()));
+      rivals.size(), [&](std::size_t i) { return "on a finer mesh: " + rivals[i]->effects.front(); },
+      [&](std::size_t i) {
+        Refit& refit = *rivals[i];
+        refit.explained = explain(fit_on_finer_mesh(*finer, extend_model(settings, refit.proposals), refit.parameters));
       });
+  for (const Refit* refit : rivals) comparison_.note(refit->explained.error);
   sort();
 }
 
 void RefitList::sort() {
-  double lowest = look_.cost;
-  for (const Refit& r : refits_) lowest = std::min(lowest, r.cost_beside_numerics);
-  const double variance = std::max(1.0, lowest / look_.rows);
-  std::stable_sort(refits_.begin(), refits_.end(), [&](const Refit& a, const Refit& b) {
-    return evidence(a, look_.rows, variance) > evidence(b, look_.rows, variance);
-  });
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t i = 0; i < refits_.size(); ++i) order.emplace_back(-log_evidence(refits_[i]), i);
+  std::stable_sort(order.begin(), order.end());
+  std::vector<Refit> sorted;
+  for (const auto& [evidence, i] : order) sorted.push_back(std::move(refits_[i]));
+  refits_ = std::move(sorted);
   drop_worse_ways();
 }
 

@@ -45,9 +45,12 @@ double MisfitTest::excess() const {
   return along_ / dof - noise_level() - numerics_ * rows_ / std::max(1.0, along_dof_);
 }
 
+double MisfitTest::memory() const {
+  return square_ > 0.0 ? std::clamp(product_ / square_, 0.0, kMostMemory) : 0.0;
+}
+
 double MisfitTest::deviation() const {
-  const double memory = square_ > 0.0 ? std::clamp(product_ / square_, 0.0, kMostMemory) : 0.0;
-  const double repeated = (1.0 + memory * memory) / (1.0 - memory * memory);
+  const double square = memory() * memory(), repeated = (1.0 + square) / (1.0 - square);
   return noise_level() * std::sqrt(2.0 * repeated / std::max(1.0, along_dof_ - fitted_));
 }
 

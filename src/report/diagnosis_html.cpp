@@ -33,7 +33,7 @@ std::string verdict_badge(const std::string& verdict) {
   const bool open = verdict == "missing" || verdict == "unfinished";
   const std::string colour = verdict == "adequate" ? "good" : open ? "warn" : "bad";
   const std::string text = verdict == "missing"      ? "an effect is missing"
-                           : verdict == "numerics"   ? "mesh too coarse to tell"
+                           : verdict == "numerics"   ? "adequate but for the numerics"
                            : verdict == "adequate"   ? "model adequate"
                            : verdict == "unfinished" ? "no verdict yet"
                                                      : "error not explained";
@@ -120,8 +120,9 @@ std::string gain(double explained) {
   return explained > 5e-4 ? percent(explained) : "nothing";
 }
 
-std::string chance(double p) {
-  return p > 0.0 ? "p = " + short_number(p, 2) : "p < 1e-300";
+/// "probability 94 %, leaves z = 1.2".
+std::string belief(const MissingEffect& c) {
+  return "probability " + short_number(100.0 * c.probability, 2) + " %, leaves z = " + short_number(c.z, 2);
 }
 
 /// "the motion dies away faster ...: viscous damping would remove 91 % of the misfit (...)".
@@ -162,15 +163,15 @@ std::string effect_card(const MissingEffect& c, bool in_set) {
   return "<li" + std::string(in_set ? " class=\"chosen\"" : "") + "><h3>" + escape_html(capital(effect_title(c.effect))) +
          "<span>" + (c.explained > 5e-4 ? percent(c.explained) : "0 %") +
          "</span></h3><div class=\"bar\"><i style=\"width:" + width + "%\"></i></div>" + paragraph(story(c)) +
-         "<p class=\"soft\">log evidence " + short_number(c.log_bayes_factor, 3) + " · " + escape_html(chance(c.p_value)) +
-         " · size " + short_number(c.size, 2) + " sigma · " + escape_html(parameter_words(c)) + "</p></li>";
+         "<p class=\"soft\">" + belief(c) + " · size " + short_number(c.size, 2) + " sigma · " +
+         escape_html(parameter_words(c)) + "</p></li>";
 }
 
 std::string effect_row(const MissingEffect& c) {
   const auto cell = [](const std::string& text) { return "<td class=\"n\">" + escape_html(text) + "</td>"; };
   return "<tr><td>" + escape_html(effect_title(c.effect)) + "</td>" + cell(percent(c.explained)) +
-         cell(millimetres(c.held_out_rms_after)) + cell(short_number(c.log_bayes_factor, 3)) +
-         cell(short_number(c.p_value, 2)) + "<td>" + escape_html(twin_words(c)) + "</td></tr>";
+         cell(millimetres(c.held_out_rms_after)) + cell(short_number(100.0 * c.probability, 2) + " %") +
+         cell(short_number(c.z, 2)) + "<td>" + escape_html(twin_words(c)) + "</td></tr>";
 }
 
 std::string ranking(const Diagnosis& d) {
@@ -189,8 +190,8 @@ std::string ranking(const Diagnosis& d) {
       "missing", "What could be missing",
       "<ol class=\"effects\">" + cards + "</ol>" + apart + "<details><summary>All " + std::to_string(d.candidates.size()) +
           " effects that were tried</summary><div class=\"scroll\"><table><tr><th>effect</th><th "
-          "class=\"n\">explains</th><th class=\"n\">held-out error after</th><th class=\"n\">log evidence</th><th "
-          "class=\"n\">p</th><th>looks like (cosine)</th></tr>" +
+          "class=\"n\">explains</th><th class=\"n\">held-out error after</th><th class=\"n\">probability</th><th "
+          "class=\"n\">z</th><th>looks like (cosine)</th></tr>" +
           rows + "</table></div></details>");
 }
 

@@ -28,6 +28,8 @@ json candidate_json(const MissingEffect& c) {
           {"p_value", number(c.p_value)},
           {"size", number(c.size)},
           {"explained", number(c.explained)},
+          {"probability", number(c.probability)},
+          {"z", number(c.z)},
           {"held_out_rms_before", number(c.held_out_rms_before)},
           {"held_out_rms_after", number(c.held_out_rms_after)},
           {"confusable_with", twins}};
@@ -92,6 +94,9 @@ std::string diagnosis_json(const Diagnosis& d) {
   json root = {{"complete", d.interrupted.empty()},
                {"verdict", d.verdict},
                {"set", d.set},
+               {"probability_adequate", number(d.adequate)},
+               {"none_of_these", number(d.none_of_these)},
+               {"z", number(d.z)},
                {"best",
                 {{"effects", d.best.effects},
                  {"explained", number(d.best.explained)},

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <filesystem>
 #include <iterator>
+#include <utility>
+#include <vector>
 
 #include "tissue_stiffness/report/effect_words.hpp"
 #include "tissue_stiffness/report/text.hpp"
@@ -12,8 +14,28 @@
 namespace tissue_stiffness {
 namespace {
 
+constexpr double kTold = 0.005;  // probability
+
 std::string millimetres(double metres) {
   return std::isfinite(metres) ? short_number(1e3 * metres, 3) + " mm" : "-";
+}
+
+// "Probabilities: viscous damping 94 %, viscoelasticity 5 %, none of these 1 %."
+std::string probabilities(const Diagnosis& d) {
+  std::vector<std::pair<double, std::string>> all;
+  const auto add = [&all](double probability, const std::string& name) {
+    if (probability >= kTold) all.emplace_back(probability, name);  // not where it is unknown
+  };
+  add(d.none_of_these, "none of these");
+  add(d.adequate, "the model as given");
+  for (const MissingEffect& c : d.candidates) add(c.probability, effect_title(c.effect));
+  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::string text;
+  for (const auto& [probability, name] : all) {
+    text +=
+        (text.empty() ? " Probabilities: " : ", ") + name + " " + std::to_string(std::lround(100.0 * probability)) + " %";
+  }
+  return text.empty() ? text : text + ".";
 }
 
 }  // namespace
@@ -21,7 +43,10 @@ std::string millimetres(double metres) {
 std::string diagnosis_sentence(const Diagnosis& d) {
   if (d.verdict == "unfinished") return "There is no verdict yet: the search for what is missing was interrupted.";
   if (d.verdict == "adequate") return "The model is adequate: what it leaves is noise.";
-  if (d.verdict == "numerics") return "The mesh is too coarse to tell: a finer one would change more than any effect.";
+  if (d.verdict == "numerics") {
+    return "The model is adequate but for the numerics: the mesh, or a simulated recording's time steps, explain what it "
+           "leaves.";
+  }
   if (d.best.effects.empty()) return "The error has structure, but no effect of the library explains it.";
   const bool together = d.best.effects.size() > 1;
   const std::vector<std::string>& found = d.best.effects;
@@ -30,6 +55,8 @@ std::string diagnosis_sentence(const Diagnosis& d) {
           (together ? ". They" : ". It") + " would remove " + short_number(100.0 * d.best.explained, 3) +
           " % of the squared error (held-out error " + millimetres(d.steps.front().held_out_rms) + " to " +
           millimetres(d.best.held_out_rms) + ").";
+  text += probabilities(d);
+  if (d.verdict == "unexplained") text += " None of them explains the data.";
   std::vector<std::string> others;
   std::copy_if(d.set.begin(), d.set.end(), std::back_inserter(others),
                [&](const std::string& effect) { return std::count(found.begin(), found.end(), effect) == 0; });

@@ -146,7 +146,7 @@ std::string PanelState::misfit() const {
 Badge PanelState::verdict() const {
   static const std::map<std::string, Badge> badges{{"adequate", {"nothing", 0x2a8f57}},
                                                    {"missing", {"found", 0xc77700}},
-                                                   {"numerics", {"mesh too coarse to tell", 0x7a8088}},
+                                                   {"numerics", {"adequate but for the numerics", 0x7a8088}},
                                                    {"unexplained", {"unexplained", 0xc0392b}}};
   if (!diagnosed_) return {"not looked yet", 0x7a8088};
   if (stale()) return {"changed since the last look", 0x7a8088};

@@ -36,11 +36,11 @@ void print_diagnosis(const Diagnosis& d, const Paint& paint, std::ostream& out) 
   out << line("error         %s%.3f mm rms: noise %.3f, beyond noise %.3f, of the mesh %.3f\n", "", 1e3 * d.metres.total,
               1e3 * d.metres.noise, 1e3 * d.metres.structured, 1e3 * d.metres.numerical);
   if (!d.force.words.empty()) out << "missing force " << d.force.words << "\n";
-  out << paint.bold("candidate                 explains   held-out [mm]   log evidence          p") << "\n";
+  out << paint.bold("candidate                 explains   held-out [mm]   probability         z") << "\n";
   for (std::size_t i = 0; i < d.candidates.size() && i < kShown; ++i) {
     const MissingEffect& c = d.candidates[i];
-    out << line("%-24s %8.1f %%  %14.3f  %13.1f  %9.2g\n", c.effect, 100.0 * c.explained, 1e3 * c.held_out_rms_after,
-                c.log_bayes_factor, c.p_value);
+    out << line("%-24s %8.1f %%  %14.3f  %11.1f %%  %8.1f\n", c.effect, 100.0 * c.explained, 1e3 * c.held_out_rms_after,
+                100.0 * c.probability, c.z);
   }
   out << paint.bold("model                     held-out [mm]   fitted [mm]   noise [mm]") << "\n";
   std::size_t known = 0;

@@ -69,12 +69,8 @@ TEST(Diagnose, DoesNotLookForWhatItIsToldToIgnore) {
   options.automatic = true;
   const Diagnosis d = diagnose_bar(film({"viscous_damping: {beta: 6.0e-3}"}, 1), options);
   EXPECT_EQ(d.verdict, "unexplained");
-  for (std::size_t k = 1; k < d.steps.size(); ++k) {  // nothing is added for a few percent
-    const auto beyond_noise = [&](const DiagnosisStep& s) {
-      return std::pow(s.held_out_rms, 2) - std::pow(s.noise_floor, 2);
-    };
-    EXPECT_LT(beyond_noise(d.steps[k]), 0.8 * beyond_noise(d.steps[k - 1])) << d.steps[k].effects.back();
-  }
+  EXPECT_EQ(d.steps.size(), 1U) << "nothing is added that does not explain the error";
+  EXPECT_EQ(d.final_verdict, "unexplained");
   for (const MissingEffect& effect : d.candidates) EXPECT_NE(effect.effect, "viscous_damping");
   options.ignore = {"magic"};
   EXPECT_NE(refusal([&] { diagnose_bar(film({}, 1), options); }).find("magic"), std::string::npos);
@@ -133,15 +129,17 @@ Recording simulate(const std::vector<std::string>& hidden, double step, unsigned
 }
 
 // A step a frame: swings of the second mode take a tenth longer.
-TEST(Diagnose, KnowsASimulationByItsTimeSteps) {
-  constexpr double step = 0.02;
-  const Diagnosis d = diagnose_bar(simulate({}, step, 8), {});
-  EXPECT_EQ(d.verdict, "missing");
-  ASSERT_FALSE(d.set.empty());
-  EXPECT_EQ(d.set.front(), "period_elongation");
-  const auto& found = d.candidates.front().parameters;
-  EXPECT_NEAR(std::sqrt(found.at("period_elongation.step_squared")), step, 0.1 * step);
-  EXPECT_NEAR(found.at("elasticity.young_modulus") / kTruth, 1.0, 0.003);
+TEST(Diagnose, TakesTheTimeStepsOfASimulationForNumerics) {
+  constexpr double step = 0.01;  // half a frame
+  const Recording recording = simulate({}, step, 8);
+  const Diagnosis d = diagnose_bar(recording, {});
+  EXPECT_EQ(d.verdict, "numerics");
+  EXPECT_TRUE(d.set.empty());
+  DiagnosisOptions options;
+  options.add = {"period_elongation"};
+  const auto known = diagnose_bar(recording, options).steps.back().parameters;
+  EXPECT_NEAR(std::sqrt(known.at("period_elongation.step_squared")), step, 0.1 * step);
+  EXPECT_NEAR(known.at("elasticity.young_modulus") / kTruth, 1.0, 0.003);
 }
 
 // Late fast swings look more like the other damping.
@@ -242,15 +240,6 @@ std::vector<Told> refits_told(const Recording& recording, Diagnosis& d) {
 }
 
 // Damping explains most of the error; what the small mass adds to it shows once damping is in the model.
-TEST(Diagnose, TriesNoPairsWhereASingleEffectExplains) {
-  Diagnosis d;
-  const auto told = refits_told(film({"viscous_damping: {beta: 6.0e-3}", "added_mass: {region: tip, mass: 0.001}"}, 6), d);
-  for (const Told& refit : told) EXPECT_EQ(refit.what.find(" and "), std::string::npos) << refit.what;
-  ASSERT_EQ(d.steps.size(), 3U);
-  EXPECT_GT(d.steps[1].held_out_rms, 1.02 * d.steps[1].noise_floor);
-  EXPECT_EQ(d.final_verdict, "adequate");
-}
-
 TEST(Diagnose, CountsTheRefitsOfEachRound) {
   Diagnosis d;
   const auto told = refits_told(film({"viscous_damping: {beta: 6.0e-3}"}, 1), d);
@@ -304,7 +293,7 @@ TEST(Diagnose, FindsTheMeshsChangeOutAnewWhereAnEarlierLookHasItWrong) {
 }
 
 // Fibres imitate the mesh's error besides, and explain more than the springs that are there.
-TEST(Diagnose, ComparesLeadersOnAFinerMeshWhereItsErrorCounts) {
+TEST(Diagnose, NamesAnEffectBesideTheErrorOfTheMesh) {
   std::vector<std::string> effects = bar("{prior: 20.0e3, factor: 3}");
   ModelSettings settings = box_settings(effects);
   effects.push_back("foundation: {region: top, stiffness: 80}");
@@ -313,13 +302,7 @@ TEST(Diagnose, ComparesLeadersOnAFinerMeshWhereItsErrorCounts) {
   const Recording recording = film_finer(box_settings(effects), coarse, noise);
   settings.mesh.discretisation_error = true;
   settings.observations.front().noise = noise;
-  DiagnosisOptions options;
-  int compared = 0;
-  options.progress = [&](const std::string& what, std::size_t, std::size_t) {
-    if (what.find("on a finer mesh: ") == 0) ++compared;
-  };
-  const Diagnosis d = diagnose(settings, coarse, recording, options);
-  EXPECT_GT(compared, 1);
+  const Diagnosis d = diagnose(settings, coarse, recording, {});
   EXPECT_EQ(d.verdict, "missing");
   ASSERT_FALSE(d.set.empty());
   EXPECT_EQ(d.set.front(), "foundation");

@@ -58,21 +58,5 @@ TEST(Rank, TestsOneSideOfWhatHasOneSign) {
   EXPECT_EQ(wrong, 0);
 }
 
-TEST(RankPairs, FindsTwoThatOnlyExplainTheErrorTogether) {
-  const Eigen::MatrixXd x = normal_numbers(6, 3);
-  // a and b nearly cancel, so that either alone sees little of the residual, and a decoy sees more.
-  const Eigen::VectorXd a = x.col(0), b = -x.col(0) + 0.3 * x.col(1);
-  const Eigen::VectorXd residual = normal_numbers(1, 4) + 3.0 * (a + b);
-  const std::vector<Candidate> candidates{candidate("decoy", x.col(1) + 2.0 * x.col(2)), candidate("a", a),
-                                          candidate("b", b), candidate("other", x.col(3)), candidate("b", x.col(4))};
-  const std::vector<RankedPair> pairs = rank_pairs(scorer(residual), candidates);
-  ASSERT_EQ(pairs.size(), 6U);
-  EXPECT_EQ(pairs.front().first.way->effect, "a");
-  EXPECT_EQ(pairs.front().second.way, &candidates[2]);
-  EXPECT_NEAR(pairs.front().first.amplitude[0], 3.0, 0.4);
-  EXPECT_NEAR(pairs.front().second.amplitude[0], 3.0, 0.4);
-  EXPECT_GT(pairs.front().gain, 5.0);
-}
-
 }  // namespace
 }  // namespace tissue_stiffness

@@ -259,6 +259,9 @@ Diagnosis example_diagnosis() {
              {{"viscous_damping"}, {{"elasticity.young_modulus", 12e3}}, 1e-4, 1.1e-4, 1e-4}};
   d.final_verdict = "adequate";
   d.final_effects = {"viscous_damping"};
+  d.candidates.front().probability = 0.94;
+  d.candidates.front().z = 1.2;
+  d.none_of_these = 0.01;
   d.entries = {"viscous_damping: {beta: 1}"};
   d.estimate.state = EstimateState::converged;
   d.estimate.parameters = {{"elasticity.young_modulus", "Pa", 12e3, 77.0, 11.85e3, 12.15e3}};
@@ -269,6 +272,8 @@ TEST(DiagnosisSentence, NamesWhatIsMissingAndWhatFitsAsWell) {
   Diagnosis d = example_diagnosis();
   EXPECT_EQ(diagnosis_sentence(d).find("Missing: viscous damping (the motion dies away"), 0u);
   EXPECT_NE(diagnosis_sentence(d).find("fit as well: mass damping. To tell them apart"), std::string::npos);
+  EXPECT_NE(diagnosis_sentence(d).find(" Probabilities: viscous damping 94 %, none of these 1 %."), std::string::npos);
+  d.candidates.front().probability = d.none_of_these = 0.0;
   d.set = {"rigid_drift", "viscous_damping", "mass_damping"};
   d.best = {{"rigid_drift", "viscous_damping"}, 0.95, 2e-4};
   EXPECT_EQ(diagnosis_sentence(d),
@@ -288,8 +293,8 @@ TEST(DiagnosisHtml, TellsTheStoryInOrder) {
   for (const std::string fragment :
        {"an effect is missing", "12.00 kPa", "95 %: 11.85 to 12.15 kPa", "The given model says 19.00 kPa", "id=\"replay\"",
         "id=\"fails\"", "quick vibrations", "would remove 91.0 % of the squared error", "0.300 mm to 0.110 mm",
-        "it looks like mass damping", "p &lt; 1e-300", "would remove nothing", "excite two modes", "id=\"staircase\"",
-        "<ins>  - &lt;b&gt;</ins>", "diagnose model.yaml x.bag"}) {
+        "it looks like mass damping", "probability 94 %, leaves z = 1.2", "would remove nothing", "excite two modes",
+        "id=\"staircase\"", "<ins>  - &lt;b&gt;</ins>", "diagnose model.yaml x.bag"}) {
     const std::size_t found = page.find(fragment, at);
     EXPECT_NE(found, std::string::npos) << fragment;
     if (found != std::string::npos) at = found;

@@ -20,8 +20,7 @@ struct Candidate {
   double absent = 0.0;                                      ///< parameter value that its amplitude is counted from
   double lower = -std::numeric_limits<double>::infinity();  ///< bounds of the amplitude
   double upper = std::numeric_limits<double>::infinity();
-  bool linear = true;          ///< quick to refit
-  bool of_simulation = false;  ///< no physics (EffectSpec)
+  bool linear = true;  ///< quick to refit
 
   /// Within the bounds: nothing is explained by a negative damping.
   bool allows(const Eigen::VectorXd& amplitude) const;
@@ -46,8 +45,12 @@ std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd&
                                        const std::vector<std::string>& ignore, const CountProgress& progress,
                                        Library& library);
 
-/// Entries for what a recording has of its making where it is itself simulated, and the base model does not allow for.
-std::vector<std::string> entries_of_simulation(const Study& base, const Eigen::VectorXd& w);
+/// Entries for the time steps of a simulated recording, which the model does not allow for.
+std::vector<std::string> entries_of_time_steps(const Study& study, const Eigen::VectorXd& w);
+
+/// What the time steps of a simulated recording do to the rows of a model that does not allow for them: one column a
+/// prior's standard deviation of the squared step [sigma]. No columns where the model has them.
+Eigen::MatrixXd tangents_of_time_steps(const Study& study, const Eigen::VectorXd& w, const Study::Rows& rows);
 
 /// d rows / d w of the fitted base model, in sigmas: N x free parameters.
 Eigen::MatrixXd base_tangents(const Study& base, const Eigen::VectorXd& w, const Eigen::VectorXd& std,

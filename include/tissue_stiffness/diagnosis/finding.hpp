@@ -1,24 +1,28 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "tissue_stiffness/diagnosis/diagnose.hpp"
 #include "tissue_stiffness/diagnosis/finer_mesh.hpp"
+#include "tissue_stiffness/diagnosis/model_comparison.hpp"
 #include "tissue_stiffness/diagnosis/ranking.hpp"
 
 namespace tissue_stiffness {
 
 /// What one look at a fitted model finds missing.
 struct Finding {
-  std::string verdict;  ///< adequate, missing, numerics or unexplained
-  std::vector<std::string> set;
+  Verdict verdict;
+  Comparison comparison;
+  std::vector<std::string> set;        ///< effects of the fewest explanations that hold the believed probability
   std::vector<MissingEffect> effects;  ///< best first
   std::vector<Refit> refits;           ///< best first
   double floor = 0.0;                  ///< rms of what a finer mesh would change [sigma]
   FinerMesh finer;
   Library library;  ///< that the tangents were read from
+  std::shared_ptr<const ModelComparison> models;
 };
 
 /// Hears of the candidates, best first, whenever more is known of them.
@@ -32,8 +36,5 @@ Finding look(
     const Fitted& base, const std::vector<std::string>& wanted, const DiagnosisOptions& options,
     const FinerMesh& finer = {}, const Library& library = {},
     const CandidatesSoFar& so_far = [](std::vector<MissingEffect>) {});
-
-/// Held-out frames agree that the refit is better than the base.
-bool proven(const Fitted& base, const Refit& refit);
 
 }  // namespace tissue_stiffness

@@ -1,9 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <map>
 #include <memory>
+#include <string>
 
-#include "tissue_stiffness/diagnosis/ranking.hpp"
 #include "tissue_stiffness/diagnosis/study.hpp"
 
 namespace tissue_stiffness {
@@ -19,7 +20,7 @@ struct FinerMesh {
 /// null.
 FinerMesh finer_mesh(const Fitted& base, const Study* known = nullptr);
 
-/// Sum of squared errors over sigma of the refit's model on that mesh, fitted again.
-double cost_on_finer_mesh(const Fitted& base, const Refit& refit, const Study* known);
+/// A model on the mesh of `known`, fitted from these parameters.
+Fitted fit_on_finer_mesh(const Study& known, const ModelSettings& settings, const std::map<std::string, double>& start);
 
 }  // namespace tissue_stiffness

@@ -6,17 +6,10 @@
 
 #include "tissue_stiffness/diagnosis/diagnose.hpp"
 #include "tissue_stiffness/diagnosis/finer_mesh.hpp"
+#include "tissue_stiffness/diagnosis/model_comparison.hpp"
 #include "tissue_stiffness/diagnosis/ranking.hpp"
 
 namespace tissue_stiffness {
-
-/// rms over what has to be left, of a fit that need not be bettered.
-constexpr double kExplained = 1.02;
-
-/// Mean square [sigma^2] of noise, and of what the mesh itself does, whose rms is `floor` [sigma].
-constexpr double unavoidable_mean_square(double floor) {
-  return 1.0 + floor * floor;
-}
 
 /// What a fitted model's error shows before anything is refitted: the library, ranked by its tangents, and the mesh's part.
 struct FirstLook {
@@ -36,11 +29,13 @@ struct FirstLook {
   std::unique_ptr<Scorer> scorer;  ///< of the error that the mesh does not explain
   std::vector<Ranked> ranked;
 
-  double structured() const;   ///< sum of squares beyond noise
-  double unavoidable() const;  ///< sum of squares that is no more than noise and what the mesh itself does
-  bool noise() const;          ///< the error may be noise
-  bool numerics() const;       ///< a finer mesh explains it
-  bool explained_by(const Refit& refit) const;
+  Explained explained;         ///< the base as it is compared
+  ModelComparison comparison;  ///< of the base with others
+  MisfitTest test;             ///< of the base's error, beside the numerics'
+
+  double structured() const;  ///< sum of squares beyond noise
+  /// The base leaves structure beyond chance.
+  bool structured_beyond_chance() const { return test.discrepancy() > 0.0; }
 };
 
 constexpr double kRemainder = 1.0 / 3.0;  // of a finer mesh's change: what it leaves of the error at second order

@@ -47,4 +47,7 @@ SmoothedForce smooth_force(const std::vector<ModalTransition>& transitions, cons
 ForcePrior likeliest_force_prior(const std::vector<ModalTransition>& transitions,
                                  const std::vector<FrameEvidence>& evidence, double scale);
 
+/// Log of the number of priors that it tries for so many modes.
+double log_of_tried_priors(Eigen::Index modes);
+
 }  // namespace tissue_stiffness

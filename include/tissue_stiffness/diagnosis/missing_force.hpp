@@ -12,4 +12,9 @@ namespace tissue_stiffness {
 /// likelier than noise. What is not linear in the model acts as it does in the free run.
 MissingForce missing_force(const Study& study, const Eigen::VectorXd& w);
 
+/// Log evidence of the residual being the work of such a force, whatever it is, beyond that of its being noise of this
+/// variance [sigma^2]: the force's marginal likelihood (Schweppe 1965) at its best prior, less the log of the number of
+/// priors that were tried.
+double log_evidence_of_random_force(const Study& study, const Eigen::VectorXd& w, double noise_variance);
+
 }  // namespace tissue_stiffness

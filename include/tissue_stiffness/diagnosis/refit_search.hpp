@@ -11,7 +11,7 @@ namespace tissue_stiffness {
 /// best leaves more than noise the search goes on: other ways and kinds of the leaders, fits that begin with the
 /// recording's beginning, pairs. Each stage is one function. Refits run side by side.
 /// `so_far` hears of every stage's, also where the search is interrupted.
-std::vector<Refit> search_refits(const FirstLook& look, const std::vector<std::string>& wanted,
-                                 const DiagnosisOptions& options, const RefitsSoFar& so_far);
+RefitList search_refits(const FirstLook& look, const std::vector<std::string>& wanted, const DiagnosisOptions& options,
+                        const RefitsSoFar& so_far);
 
 }  // namespace tissue_stiffness

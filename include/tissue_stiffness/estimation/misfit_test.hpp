@@ -33,6 +33,8 @@ class MisfitTest {
   double structured_dof() const { return along_dof_; }
   /// Mean square of the residuals across the shapes a degree of freedom, in noise variances, at least 1.
   double noise_level() const;
+  /// Correlation of consecutive frames' residuals across the shapes, 0 to 0.95.
+  double memory() const;
   bool empty() const { return frames_ == 0; }
 
   static constexpr double tolerated = 1.0;  ///< noise variances: unexplained motion below one frame's noise

@@ -18,9 +18,11 @@ struct MissingEffect {
   double log_bayes_factor = 0.0;             ///< over all ways in which the effect may be missing
   /// Of its amplitude being zero, to first order; once it was refitted, of predicting held-out frames no better.
   double p_value = 1.0;
-  double size = 0.0;                                                     ///< rms of what it explains [sigma]
-  double explained = 0.0;                                                ///< share of the residual's sum of squares
-  double held_out_rms_before = 0.0;                                      ///< [m]
+  double size = 0.0;                                    ///< rms of what it explains [sigma]
+  double explained = 0.0;                               ///< share of the residual's sum of squares
+  double probability = 0.0;                             ///< of the explanations that hold it; 0 without a refit
+  double z = std::numeric_limits<double>::quiet_NaN();  ///< of the test of what the most probable of them leaves
+  double held_out_rms_before = 0.0;                     ///< [m]
   double held_out_rms_after = std::numeric_limits<double>::quiet_NaN();  ///< [m]; NaN without a refit
   struct Twin {
     std::string effect;
@@ -80,6 +82,10 @@ struct Diagnosis {
   std::string verdict = "unfinished";
   std::vector<std::string> set;  ///< the winner and what the data cannot tell from it
   BestExplanation best;
+  double adequate = std::numeric_limits<double>::quiet_NaN();  ///< probability of the given model
+  double none_of_these =
+      std::numeric_limits<double>::quiet_NaN();         ///< probability that no effect of the library explains it
+  double z = std::numeric_limits<double>::quiet_NaN();  ///< of the test of the given model's residual
   std::vector<MissingEffect> candidates;
   std::string where, when;
   ErrorParts metres, sigmas;

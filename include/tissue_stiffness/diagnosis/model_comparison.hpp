@@ -1,0 +1,108 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "tissue_stiffness/diagnosis/study.hpp"
+#include "tissue_stiffness/estimation/misfit_test.hpp"
+
+namespace tissue_stiffness {
+
+/// The numbers that a comparison decides by.
+struct ComparisonNumbers {
+  double believed = 0.95;         ///< posterior probability that the set of explanations holds
+  double whole_mesh = 4.0 / 3.0;  ///< of what a mesh refined once changes, at second order: one standard deviation
+  double unknown_mesh = 0.02;     ///< of the motion: one standard deviation of the mesh's error where it cannot be computed
+  double worthwhile = 5.0;        ///< log evidence from which on an unknown is fitted
+  double most_numerics = 3.0;     ///< standard deviations of an error of the numerics
+  int mesh_modes = 12;            ///< lowest modes along which the mesh's error is an unknown of its own
+  int test_modes = 12;            ///< lowest modes that the test of the residual looks along
+};
+constexpr ComparisonNumbers kComparison{};
+
+/// A model's rows about its fit, as far as they are linear in unit normal variables u: columns (N x k) [sigma] of its free
+/// parameters, each times its prior's standard deviation, and of the time steps that a simulated recording is made with.
+struct Linearisation {
+  Eigen::MatrixXd columns;
+  Eigen::Index parameters = 0;    ///< the first of them; the others are numerics
+  Eigen::VectorXd prior;          ///< mean of u, counted from the fit
+  Eigen::VectorXd mesh_error;     ///< of a model whose finer mesh's change is not known; else empty
+  double log_root_weights = 0.0;  ///< sum of log sqrt(weight): a row of weight q has the noise's variance over q
+};
+/// Sum of the logarithms of the roots of the rows' robust weights.
+double log_root_weights(const Study::Rows& rows);
+Linearisation linearise(const Fitted& fitted);
+
+/// A fitted model as it is compared: its residual and the rows about it.
+struct Explained {
+  Eigen::VectorXd error;  ///< of each row [sigma]
+  Linearisation linearisation;
+};
+/// Where the time steps of a simulated recording matter to a linear model they are fitted with it: what they do to a body
+/// that rings for long is not linear in them. `far`: also where no tangent shows it.
+Explained explain(const Fitted& fitted, bool far = false);
+
+/// Compares models of one recording by their residuals e at their fits, over all rows, in the noise's stated standard
+/// deviations times the roots of their robust weights q:
+///   e ~ N(J u, s I),  u ~ N(prior, I),  J = [columns, D],  s = v (1 + m) / (1 - m),  log p += sum log sqrt(q).
+/// D: what a finer mesh changes, parted into its shares along the lowest modes and the rest. v: mean square across the
+/// lowest modes, which missing physics hardly moves, and m: that part's memory from frame to frame; both are those of the
+/// model that leaves least there. Laplace's approximation of the evidence (MacKay 2003, eq. 28.10) with the numerics as
+/// further unknowns.
+class ModelComparison {
+ public:
+  /// `mesh_change`: what a finer mesh changes of the base's rows [sigma].
+  ModelComparison(const Fitted& base, const Eigen::VectorXd& mesh_change);
+
+  /// Takes note of how little a residual leaves across the lowest modes.
+  void note(const Eigen::VectorXd& error);
+  double noise_variance() const { return noise_variance_; }  ///< s
+  /// log p(e), but for a constant that all models share.
+  double log_evidence(const Explained& model) const;
+  /// log p(e | u) at the most probable u, and that of a residual without unknowns; but for the same constant.
+  double log_likelihood(const Explained& model) const;
+  double log_likelihood(const Study::Rows& rows) const;
+  /// The test of what the most probable u leaves of a residual: missing physics moves the body along its lowest modes.
+  MisfitTest test(const Explained& model) const;
+  /// The same of the residual itself, of a model with that many parameters.
+  MisfitTest test_of(const Eigen::VectorXd& error, double fitted) const;
+
+ private:
+  struct Solution {
+    double log_evidence;
+    Eigen::VectorXd left;  ///< e - J u at the most probable u
+  };
+  Solution solve(const Eigen::VectorXd& error, const Linearisation& model) const;
+
+  Eigen::VectorXd used_;  ///< 1 where a row says something, else 0
+  std::vector<Eigen::Index> offsets_;
+  Eigen::MatrixXd along_;  ///< rows / amplitude of each mode
+  Eigen::MatrixXd mesh_;   ///< D
+  double noise_variance_ = 0.0;
+};
+
+/// Probabilities that are proportional to exp(log_weights).
+std::vector<double> posterior(const std::vector<double>& log_weights);
+
+/// One hypothesis after the comparison.
+struct Explanation {
+  std::vector<std::string> effects;  ///< empty: the given model
+  double probability = 0.0;
+  double z = 0.0;       ///< of the residual's test beside the mesh's error
+  bool passes = false;  ///< that test
+};
+struct Comparison {
+  Explanation given;
+  bool passes_without_mesh = false;  ///< the given model's residual, with the error of the mesh in it
+  std::vector<Explanation> others;
+  double none_of_these = 0.0;  ///< probability
+};
+
+enum class Verdict { adequate, missing, numerics, unexplained };
+/// `adequate`: the given model is within the believed set and its residual passes. `numerics`: it passes only beside the
+/// mesh's error. `missing`: it is not in that set, a named explanation is the most probable, and its residual passes.
+/// Otherwise `unexplained`.
+Verdict judge(const Comparison& comparison);
+
+}  // namespace tissue_stiffness

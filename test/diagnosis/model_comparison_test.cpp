@@ -1,0 +1,160 @@
+// The likelihood beside the mesh's error, the evidence, and what is judged from the probabilities.
+#include "tissue_stiffness/diagnosis/model_comparison.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <numeric>
+#include <sstream>
+
+#include "../box_model.hpp"
+#include "verification/experiment.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr double kNoise = 1e-4;
+
+class CleanBar : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const ModelSettings settings =
+        box_settings({"inertia: {density: 1000}",
+                      "elasticity: {law: linear, poisson_ratio: 0.45, young_modulus: {prior: 20.0e3, factor: 3}}",
+                      "fixed: {region: clamp}", "gravity: {acceleration: [0.5, 1, -3]}"});
+    const Experiment experiment(settings, bar_mesh(), {20e3});
+    recording_.frames = see_all(experiment, experiment.film(0.0, 0.02, 20), kNoise, 1);
+    base_.study = std::make_unique<Study>(settings, bar_mesh(), recording_);
+    const Model& model = base_.study->model();
+    base_.fit = base_.study->fit(model.prior_mean(), 0.1 * model.prior_std());
+    base_.rows = base_.study->rows(base_.fit.w);
+  }
+
+  Eigen::VectorXd slow() const {  // bends the bar to and fro, as missing physics does
+    Eigen::VectorXd out = base_.rows.predicted;
+    return out * (3.0 / std::sqrt(out.squaredNorm() / static_cast<double>(out.size())));
+  }
+
+  Recording recording_;
+  Fitted base_;
+};
+
+// A model without anything to fit.
+Explained rigid(const Eigen::VectorXd& error) {
+  Explained out{error, {}};
+  out.linearisation.columns.resize(error.size(), 0);
+  return out;
+}
+
+TEST_F(CleanBar, CountsWhiteNoiseOfTheStatedSizeOnce) {
+  const ModelComparison models(base_, Eigen::VectorXd::Zero(base_.rows.error.size()));
+  EXPECT_NEAR(models.noise_variance(), 1.0, 0.15);
+  const Eigen::VectorXd& e = base_.rows.error;
+  const Eigen::VectorXd more = e + 0.1 * slow();
+  EXPECT_NEAR(models.log_evidence(rigid(e)) - models.log_evidence(rigid(more)),
+              0.5 * (more.squaredNorm() - e.squaredNorm()) / models.noise_variance(), 1e-6);
+}
+
+// Noise that is stated as two thirds of what it is makes no misfit: its size is read across the lowest modes.
+TEST_F(CleanBar, ReadsTheNoisesSizeWhereMissingPhysicsHardlyActs) {
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(base_.rows.error.size());
+  base_.rows.error *= 1.5;
+  const ModelComparison models(base_, none);
+  EXPECT_NEAR(models.noise_variance(), 2.25, 0.3);
+  EXPECT_TRUE(models.test(rigid(base_.rows.error)).passes());
+  EXPECT_FALSE(models.test(rigid(base_.rows.error + slow())).passes());
+}
+
+// What a finer mesh would change costs no more than its prior: an effect that imitates it gains next to nothing.
+TEST_F(CleanBar, MarginalisesWhatAFinerMeshChanges) {
+  const Eigen::VectorXd change = slow();
+  const ModelComparison models(base_, change);
+  const Explained here = rigid(base_.rows.error), off = rigid(base_.rows.error + change);
+  EXPECT_LT(models.log_evidence(here) - models.log_evidence(off), 4.0);
+  EXPECT_GT(0.5 * (off.error.squaredNorm() - here.error.squaredNorm()), 1000.0);
+  EXPECT_TRUE(models.test(off).passes());
+  EXPECT_FALSE(models.test_of(off.error, 1.0).passes());
+}
+
+TEST_F(CleanBar, BelievesNoNumericsBeyondThreeStandardDeviations) {
+  const Eigen::VectorXd change = slow();
+  const ModelComparison models(base_, change);
+  const Explained far = rigid(base_.rows.error + 20.0 * change);
+  EXPECT_GT(models.log_evidence(rigid(base_.rows.error)) - models.log_evidence(far), 1e4);
+  EXPECT_FALSE(models.test(far).passes());
+}
+
+// One column x with prior N(m, 1) beside white noise: the evidence is that of N(x m, s I + x x^T).
+TEST_F(CleanBar, HasTheEvidenceOfALinearModel) {
+  const ModelComparison models(base_, Eigen::VectorXd::Zero(base_.rows.error.size()));
+  const double s = models.noise_variance(), mean = -0.7;
+  const Eigen::VectorXd x = 0.05 * slow();
+  Explained model{base_.rows.error + 1.2 * x, {x, 1, Eigen::VectorXd::Constant(1, mean), {}, 0.0}};
+  const Eigen::VectorXd r = model.error - mean * x;
+  const double square = x.squaredNorm(), along = x.dot(r);
+  const double expected = -0.5 * ((r.squaredNorm() - along * along / (s + square)) / s + std::log1p(square / s));
+  EXPECT_NEAR(models.log_evidence(model), expected, 1e-6 * std::abs(expected));
+  const double before = models.log_evidence(model);
+  model.linearisation.log_root_weights = -12.5;  // rows that a model calls outliers are not explained for nothing
+  EXPECT_NEAR(models.log_evidence(model), before - 12.5, 1e-9);
+}
+
+TEST_F(CleanBar, SumsTheRootsOfItsRobustWeights) {
+  EXPECT_NEAR(log_root_weights(base_.rows), 0.0, 2.0);
+  base_.rows.used.head(10).setConstant(0.5);
+  base_.rows.used.segment(10, 5).setZero();  // rows that say nothing
+  EXPECT_NEAR(log_root_weights(base_.rows), 10.0 * std::log(0.5), 2.0);
+}
+
+TEST(Posterior, AddsUpToOneInTheRatioOfTheEvidence) {
+  const std::vector<double> p = posterior({-1e5, -1e5 + std::log(3.0), -2e5});
+  EXPECT_NEAR(std::accumulate(p.begin(), p.end(), 0.0), 1.0, 1e-12);
+  EXPECT_NEAR(p[1] / p[0], 3.0, 1e-9);
+  EXPECT_EQ(p[2], 0.0);
+}
+
+TEST(ComparisonNumbers, AreThoseOfTheMethodsTable) {
+  std::ifstream file(std::string(TISSUE_STIFFNESS_SOURCE_DIR) + "/doc/method.md");
+  const std::string page((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  ASSERT_FALSE(page.empty());
+  const auto row = [&](const std::string& names, const std::string& value) {
+    EXPECT_NE(page.find("| " + names + " | " + value + " |"), std::string::npos) << names << " " << value;
+  };
+  const auto text = [](double value) {
+    std::ostringstream out;
+    out << value;
+    return out.str();
+  };
+  row("`believed`", text(kComparison.believed));
+  row("`whole_mesh`", text(3.0 * kComparison.whole_mesh) + "/3");
+  row("`unknown_mesh`", text(kComparison.unknown_mesh));
+  row("`worthwhile`", text(kComparison.worthwhile));
+  row("`most_numerics`", text(kComparison.most_numerics));
+  EXPECT_EQ(kComparison.mesh_modes, kComparison.test_modes);
+  row("`mesh_modes`, `test_modes`", text(kComparison.test_modes));
+}
+
+TEST(Judge, NeedsBothAProbabilityAndAFit) {
+  const auto verdict = [](double given, bool given_passes, double named, bool named_passes, double none) {
+    Comparison c;
+    c.given = {{}, given, 0.0, given_passes};
+    c.passes_without_mesh = given_passes;
+    c.others = {{{"a"}, named, 0.0, named_passes}};
+    c.none_of_these = none;
+    return judge(c);
+  };
+  EXPECT_EQ(verdict(0.9, true, 0.1, true, 0.0), Verdict::adequate);
+  EXPECT_EQ(verdict(0.1, true, 0.9, true, 0.0), Verdict::adequate);  // it is within the believed set
+  EXPECT_EQ(verdict(0.01, true, 0.99, true, 0.0), Verdict::missing);
+  EXPECT_EQ(verdict(0.0, false, 1.0, false, 0.0), Verdict::unexplained);
+  EXPECT_EQ(verdict(0.0, false, 0.4, true, 0.6), Verdict::unexplained);
+  EXPECT_EQ(verdict(1.0, false, 0.0, true, 0.0), Verdict::unexplained);
+  Comparison mesh;
+  mesh.given = {{}, 1.0, 0.0, true};
+  EXPECT_EQ(judge(mesh), Verdict::numerics);
+}
+
+}  // namespace
+}  // namespace tissue_stiffness
