@@ -53,8 +53,10 @@ DiagnosisStep step_of(const Fitted& model, const Recording& recording, const std
   DiagnosisStep step;
   step.effects = effects;
   step.parameters = model.study->model().values(model.fit.w);
-  step.train_rms = rms_error(model.rows, recording, false);
-  step.held_out_rms = rms_error(model.rows, recording, true);
+  Study::Rows compared = model.rows;
+  compared.error = explain(model).error;
+  step.train_rms = rms_error(compared, recording, false);
+  step.held_out_rms = rms_error(compared, recording, true);
   step.noise_floor = noise_floor(model.rows);
   return step;
 }

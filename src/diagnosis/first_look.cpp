@@ -47,7 +47,7 @@ FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Fine
             [&](std::size_t done, std::size_t total) { options.progress(step, done, total); }, library);
       },
       [&] {
-        if (!finer.change.any() || worsens(finer.change)) finer = finer_mesh(base, finer.study.get());
+        if (finer.study || !finer.change.any() || worsens(finer.change)) finer = finer_mesh(base, finer.study.get());
       });
   if (worsens(finer.change)) finer.change.setZero();
   by_mesh = cost - (r.error - finer.change).squaredNorm();

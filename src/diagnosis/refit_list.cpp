@@ -110,6 +110,8 @@ void RefitList::compare_on_finer_mesh() {
   if (finer == nullptr || empty() || !comparison_.test(base_).passes()) return;
   if (comparison_.test_of(look_.base.rows.error, static_cast<double>(look_.base.fit.w.size())).passes()) return;
   const double given = log_evidence_of_base();
+  // What gains more than the mesh's change does not imitate it.
+  if (log_evidence(best()) - given > 0.5 * look_.by_mesh / comparison_.noise_variance()) return;
   std::vector<Refit*> rivals;
   for (Refit& refit : refits_) {
     if (log_evidence(refit) > given && refit.way->linear && rivals.size() < kRivals) rivals.push_back(&refit);

@@ -28,7 +28,7 @@ class Search {
     }
     refit_from_tangents();
     refits_.compare_on_finer_mesh();
-    if (!look_.structured_beyond_chance()) return std::move(refits_);
+    if (!wide()) return std::move(refits_);
     if (refits_.leaves_more_than_noise()) refit_other_ways();
     if (refits_.leaves_more_than_noise()) refit_from_beginning();
     if (refits_.leaves_more_than_noise()) refit_other_kinds();
@@ -43,6 +43,9 @@ class Search {
   void refit_other_kinds();
   std::vector<const Candidate*> different_ways() const;
   std::vector<Refit> leaders() const;
+  /// Something is to be explained that tangents may not show. What a model that already has an effect leaves is small
+  /// once it passes its test, and tangents are taken at the right place.
+  bool wide() const { return look_.first ? look_.test.discrepancy() > 0.0 : !look_.test.passes(); }
   /// Runs in full take long: none for an effect whose tangent explains next to nothing.
   bool worth_full_runs(const Ranked& r) const {
     return r.best->linear || r.score.explained * look_.cost > kPromise * look_.structured();
@@ -65,7 +68,7 @@ void Search::refit_wanted(const std::vector<std::string>& wanted) {
 void Search::refit_from_tangents() {
   std::vector<std::vector<Addition>> first, others;
   for (const Ranked& r : look_.ranked) {
-    if (!worth_full_runs(r) || (!look_.structured_beyond_chance() && r.evidence < kSameEvidence)) continue;
+    if (!worth_full_runs(r) || (!wide() && r.evidence < kSameEvidence)) continue;
     (first.empty() ? first : others).push_back({{r.best, r.score.amplitude}});
   }
   refits_.add(first);

@@ -13,8 +13,8 @@ namespace tissue_stiffness {
 
 /// What a fitted model's error shows before anything is refitted: the library, ranked by its tangents, and the mesh's part.
 struct FirstLook {
-  /// `earlier`: what an earlier look at the same recording found of a finer mesh; its change is found out now where it is
-  /// empty or zero, or makes the error much larger. `library`: see find_candidates.
+  /// `earlier`: the finer mesh of an earlier look at the same recording; what it changes is found out for this model.
+  /// `library`: see find_candidates.
   FirstLook(const Fitted& fitted, const DiagnosisOptions& options, FinerMesh earlier, Library library = {});
 
   const Fitted& base;
@@ -34,8 +34,6 @@ struct FirstLook {
   MisfitTest test;             ///< of the base's error, beside the numerics'
 
   double structured() const;  ///< sum of squares beyond noise
-  /// The base leaves structure beyond chance.
-  bool structured_beyond_chance() const { return test.discrepancy() > 0.0; }
 };
 
 constexpr double kRemainder = 1.0 / 3.0;  // of a finer mesh's change: what it leaves of the error at second order
