@@ -53,6 +53,7 @@ Comparison compare(const FirstLook& look, const RefitList& refits) {
   const std::vector<double> probability = posterior(weights);
   Comparison out;
   out.given = {{}, probability.front(), given.z(), given.passes()};
+  out.structured = given.discrepancy() > 0.0;
   out.passes_without_mesh = models.test_of(look.base.rows.error, static_cast<double>(look.base.fit.w.size())).passes();
   for (std::size_t i = 0; i < refits.all().size(); ++i) {
     const MisfitTest test = refits.test(refits.all()[i]);

@@ -207,7 +207,7 @@ std::vector<double> posterior(const std::vector<double>& log_weights) {
 }
 
 Verdict judge(const Comparison& c) {
-  const bool given = c.given.probability > 1.0 - kComparison.believed;
+  const bool given = !c.structured || c.given.probability > 1.0 - kComparison.believed;
   if (given) return c.given.passes ? (c.passes_without_mesh ? Verdict::adequate : Verdict::numerics) : Verdict::unexplained;
   const auto best = std::max_element(c.others.begin(), c.others.end(), [](const Explanation& a, const Explanation& b) {
     return a.probability < b.probability;

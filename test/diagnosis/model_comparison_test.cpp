@@ -151,6 +151,13 @@ TEST(Judge, NeedsBothAProbabilityAndAFit) {
   EXPECT_EQ(verdict(0.0, false, 1.0, false, 0.0), Verdict::unexplained);
   EXPECT_EQ(verdict(0.0, false, 0.4, true, 0.6), Verdict::unexplained);
   EXPECT_EQ(verdict(1.0, false, 0.0, true, 0.0), Verdict::unexplained);
+  Comparison noise;  // what is no more than noise needs no name
+  noise.given = {{}, 0.0, 0.0, true};
+  noise.passes_without_mesh = true;
+  noise.others = {{{"a"}, 1.0, 0.0, true}};
+  EXPECT_EQ(judge(noise), Verdict::missing);
+  noise.structured = false;
+  EXPECT_EQ(judge(noise), Verdict::adequate);
   Comparison mesh;
   mesh.given = {{}, 1.0, 0.0, true};
   EXPECT_EQ(judge(mesh), Verdict::numerics);

@@ -94,15 +94,16 @@ struct Explanation {
 };
 struct Comparison {
   Explanation given;
+  bool structured = true;            ///< the given model leaves structure beyond chance
   bool passes_without_mesh = false;  ///< the given model's residual, with the error of the mesh in it
   std::vector<Explanation> others;
   double none_of_these = 0.0;  ///< probability
 };
 
 enum class Verdict { adequate, missing, numerics, unexplained };
-/// `adequate`: the given model is within the believed set and its residual passes. `numerics`: it passes only beside the
-/// mesh's error. `missing`: it is not in that set, a named explanation is the most probable, and its residual passes.
-/// Otherwise `unexplained`.
+/// `adequate`: the given model leaves no structure beyond chance, or is within the believed set and its residual passes.
+/// `numerics`: it passes only beside the mesh's error. `missing`: it is not in that set, a named explanation is the most
+/// probable, and its residual passes. Otherwise `unexplained`.
 Verdict judge(const Comparison& comparison);
 
 }  // namespace tissue_stiffness
