@@ -19,7 +19,7 @@ constexpr double kFar = 0.05;    // of the motion: a larger change is no tangent
 constexpr double kNear = 0.01;   // and the one that is tried instead
 constexpr int kMostProbes = 4;
 
-ProposalContext context_of(const Study& base, const Eigen::VectorXd& w, bool within_noise) {
+ProposalContext context_of(const Study& base, const Eigen::VectorXd& w) {
   const Model& model = base.model();
   double modulus = 0.0, ratio = 0.0, density = 0.0;
   const Eigen::VectorXd theta = model.theta(w);
@@ -37,8 +37,7 @@ ProposalContext context_of(const Study& base, const Eigen::VectorXd& w, bool wit
           ratio,
           density,
           duration / static_cast<double>(frames.size()),
-          duration,
-          within_noise};
+          duration};
 }
 
 Eigen::VectorXd difference(const Eigen::VectorXd& changed, const Study::Rows& base, double amplitude) {
@@ -47,14 +46,7 @@ Eigen::VectorXd difference(const Eigen::VectorXd& changed, const Study::Rows& ba
 
 // How far the rows go from where the first frame has them, rms over all [sigma].
 double motion(const Study::Rows& rows) {
-  const std::vector<Eigen::Index>& at = rows.offsets;
-  double square = 0.0;
-  for (std::size_t k = 1; k + 1 < at.size(); ++k) {
-    const Eigen::Index count = at[k + 1] - at[k];
-    if (count != at[1]) continue;
-    square += (rows.predicted.segment(at[k], count) - rows.predicted.head(count)).squaredNorm();
-  }
-  return std::sqrt(square / static_cast<double>(rows.predicted.size()));
+  return motion_of(rows).norm() / std::sqrt(static_cast<double>(rows.predicted.size()));
 }
 
 // d rows / d w_j. A slender body answers to what leaves a stout one alone: the step is cut until the answer is small beside
@@ -145,10 +137,9 @@ double Candidate::p_value(const Score& score) const {
   return possible ? 0.5 * score.p_value : 1.0 - 0.5 * score.p_value;
 }
 
-std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd& w, bool within_noise,
-                                       const std::vector<std::string>& ignore, const CountProgress& progress,
-                                       Library& library) {
-  const ProposalContext context = context_of(base, w, within_noise);
+std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd& w, const std::vector<std::string>& ignore,
+                                       const CountProgress& progress, Library& library) {
+  const ProposalContext context = context_of(base, w);
   std::vector<Candidate> all;
   for (const EffectSpec& spec : effect_specs()) {
     if (!spec.proposals || std::find(ignore.begin(), ignore.end(), spec.name) != ignore.end()) continue;
@@ -197,7 +188,7 @@ std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd&
 }
 
 std::vector<std::string> entries_of_time_steps(const Study& study, const Eigen::VectorXd& w) {
-  const ProposalContext context = context_of(study, w, false);
+  const ProposalContext context = context_of(study, w);
   std::vector<std::string> entries;
   for (const EffectSpec& spec : effect_specs()) {
     if (!spec.of_simulation) continue;

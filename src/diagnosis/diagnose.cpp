@@ -30,31 +30,26 @@ constexpr std::size_t kGrown = 2;      // leaders that are tried as one of sever
 constexpr double kAddedSpread = 0.02;  // and of a model's that starts from a refit
 
 Fitted fit_model(const ModelSettings& settings, const TetMesh& mesh, const Recording& recording) {
-  Fitted out;
-  out.study = std::make_unique<Study>(settings, mesh, recording);
-  const Eigen::VectorXd start = out.study->scan(out.study->model().prior_mean());
-  out.fit = out.study->fit(start, kBaseSpread * out.study->model().prior_std());
-  out.rows = out.study->rows(out.fit.w);
-  return out;
+  auto study = std::make_unique<Study>(settings, mesh, recording);
+  const Eigen::VectorXd start = study->scan(study->model().prior_mean());
+  return fit_study(std::move(study), start, kBaseSpread);
 }
 
 // The refit's model; run in full where that was not worth it before.
 Fitted extended(const Fitted& base, const Refit& refit) {
   if (refit.model) return std::move(*refit.model);
-  Fitted out;
-  out.study = std::make_unique<Study>(extend_model(base.study->model().settings(), refit.entries), *base.study);
-  const Model& model = out.study->model();
-  out.fit = out.study->fit(model.coordinates(refit.parameters, model.prior_mean()), kAddedSpread * model.prior_std());
-  out.rows = out.study->rows(out.fit.w);
-  return out;
+  auto study = std::make_unique<Study>(extend_model(base.study->model().settings(), refit.entries), *base.study);
+  const Model& model = study->model();
+  return fit_study(std::move(study), model.coordinates(refit.parameters, model.prior_mean()), kAddedSpread);
 }
 
-DiagnosisStep step_of(const Fitted& model, const Recording& recording, const std::vector<std::string>& effects) {
+DiagnosisStep step_of(const Fitted& model, const Explained& explained, const Recording& recording,
+                      const std::vector<std::string>& effects) {
   DiagnosisStep step;
   step.effects = effects;
   step.parameters = model.study->model().values(model.fit.w);
   Study::Rows compared = model.rows;
-  compared.error = explain(model).error;
+  compared.error = explained.error;
   step.train_rms = rms_error(compared, recording, false);
   step.held_out_rms = rms_error(compared, recording, true);
   step.noise_floor = noise_floor(model.rows);
@@ -232,7 +227,7 @@ class Search {
   }
 
   // The model leaves no structure beyond chance: there is nothing left to look for.
-  bool nothing_left() const { return !(finding_.models->test(explain(model_)).discrepancy() > 0.0); }
+  bool nothing_left() const { return !(finding_.models->test(explained_).discrepancy() > 0.0); }
 
   // The library of tangents that the next look may take over.
   Library add(const Refit& best) {
@@ -249,7 +244,8 @@ class Search {
   }
 
   void add_step() {
-    out_.steps.push_back(step_of(model_, recording_, out_.final_effects));
+    explained_ = explain(model_);
+    out_.steps.push_back(step_of(model_, explained_, recording_, out_.final_effects));
     estimate(Eigen::MatrixXd::Zero(model_.fit.w.size(), model_.fit.w.size()));
     publish();
   }
@@ -268,6 +264,7 @@ class Search {
   DiagnosisOptions options_;
   Diagnosis& out_;
   Fitted given_, model_;          ///< given_ is empty as long as model_ is the given one
+  Explained explained_;           ///< model_ as it is compared
   Finding finding_;               ///< of model_
   std::optional<Finding> grown_;  ///< of model_ with the best refit; empty where that explains the error alone
 };

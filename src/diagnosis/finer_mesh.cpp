@@ -40,12 +40,9 @@ FinerMesh finer_mesh(const Fitted& base, const Study* known) {
 }
 
 Fitted fit_on_finer_mesh(const Study& known, const ModelSettings& settings, const std::map<std::string, double>& start) {
-  Fitted out;
-  out.study = std::make_unique<Study>(settings, known);
-  const Model& model = out.study->model();
-  out.fit = out.study->fit(model.coordinates(start, model.prior_mean()), kSpread * model.prior_std());
-  out.rows = out.study->rows(out.fit.w);
-  return out;
+  auto study = std::make_unique<Study>(settings, known);
+  const Model& model = study->model();
+  return fit_study(std::move(study), model.coordinates(start, model.prior_mean()), kSpread);
 }
 
 }  // namespace tissue_stiffness

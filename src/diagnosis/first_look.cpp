@@ -39,11 +39,10 @@ FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Fine
   options.progress(step, 0, 0);
   const Study::Rows& r = base.rows;
   const auto worsens = [&](const Eigen::VectorXd& by) { return (r.error - by).squaredNorm() > (1.0 + kElsewhere) * cost; };
-  const bool within_noise = test.passes() && options.add.empty();  // who asks for effects by name may have any
   run_side_by_side(
       [&] {
         candidates = find_candidates(
-            *base.study, base.fit.w, within_noise, not_looked_for(options),
+            *base.study, base.fit.w, not_looked_for(options),
             [&](std::size_t done, std::size_t total) { options.progress(step, done, total); }, library);
       },
       [&] {
@@ -53,7 +52,7 @@ FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Fine
   by_mesh = cost - (r.error - finer.change).squaredNorm();
   known = explained.linearisation.columns;
   floor = Scorer(r.error, known, r.offsets, 1.0).remaining(finer.change);
-  comparison = ModelComparison(base, finer.change);
+  comparison.allow_for_mesh(finer.change);
   test = comparison.test(explained);
   // An effect has to explain what the mesh does not.
   scorer = std::make_unique<Scorer>(explained.error - finer.change, known, r.offsets, 1.0, kRemainder * finer.change);

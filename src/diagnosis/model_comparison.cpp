@@ -45,17 +45,6 @@ Eigen::MatrixXd parted(const Eigen::VectorXd& change, const Eigen::MatrixXd& alo
   return out;
 }
 
-// What the model predicts beyond its first frame; 0 in frames that see something else.
-Eigen::VectorXd motion_of(const Study::Rows& rows) {
-  Eigen::VectorXd out = Eigen::VectorXd::Zero(rows.predicted.size());
-  const Eigen::Index first = rows.offsets[1];
-  for (std::size_t k = 0; k + 1 < rows.offsets.size(); ++k) {
-    const Eigen::Index from = rows.offsets[k], size = rows.offsets[k + 1] - from;
-    if (size == first) out.segment(from, size) = rows.predicted.segment(from, size) - rows.predicted.head(first);
-  }
-  return out.cwiseProduct(rows.used);
-}
-
 // Of a linear model, and the fall of its deviance: all unknowns of the linearisation at the noise as stated.
 Eigen::VectorXd most_probable(const Linearisation& model, const Eigen::VectorXd& error, Eigen::Index unknowns,
                               double& deviance) {
@@ -85,7 +74,7 @@ Linearisation linearise(const Fitted& fitted) {
   out.columns << own * prior.asDiagonal(), steps;
   out.prior = Eigen::VectorXd::Zero(out.columns.cols());
   out.prior.head(w.size()) = (model.prior_mean() - w).cwiseQuotient(prior);
-  if (model.nonlinear()) out.mesh_error = kComparison.unknown_mesh * motion_of(fitted.rows);
+  if (model.nonlinear()) out.mesh_error = kComparison.unknown_mesh * motion_of(fitted.rows).cwiseProduct(fitted.rows.used);
   out.parameters = w.size();
   out.log_root_weights = log_root_weights(fitted.rows);
   return out;
@@ -124,11 +113,13 @@ Explained explain(const Fitted& fitted, bool far) {
 }
 
 ModelComparison::ModelComparison(const Fitted& base, const Eigen::VectorXd& mesh_change)
-    : used_((base.rows.used.array() > 0.0).cast<double>()),
-      offsets_(base.rows.offsets),
-      along_(lowest_modes(base)),
-      mesh_(parted(kComparison.whole_mesh * mesh_change, along_, offsets_)) {
+    : used_((base.rows.used.array() > 0.0).cast<double>()), offsets_(base.rows.offsets), along_(lowest_modes(base)) {
+  allow_for_mesh(mesh_change);
   note(base.rows.error);
+}
+
+void ModelComparison::allow_for_mesh(const Eigen::VectorXd& change) {
+  mesh_ = parted(kComparison.whole_mesh * change, along_, offsets_);
 }
 
 void ModelComparison::note(const Eigen::VectorXd& error) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "tissue_stiffness/estimation/compare.hpp"
 #include "tissue_stiffness/estimation/coordinate_scan.hpp"
@@ -298,29 +299,34 @@ Eigen::Index Study::index(const std::string& parameter) const {
   return -1;
 }
 
-namespace {
+Fitted fit_study(std::unique_ptr<Study> study, const Eigen::VectorXd& start, double spread) {
+  Fitted out;
+  out.fit = study->fit(start, spread * study->model().prior_std());
+  out.rows = study->rows(out.fit.w);
+  out.study = std::move(study);
+  return out;
+}
 
-template <typename Scale>
-double root_mean_square(const Study::Rows& rows, const Recording& recording, bool held_out, const Scale& scale) {
+Eigen::VectorXd motion_of(const Study::Rows& rows) {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(rows.predicted.size());
+  const Eigen::Index first = rows.offsets[1];
+  for (std::size_t k = 0; k + 1 < rows.offsets.size(); ++k) {
+    const Eigen::Index from = rows.offsets[k], size = rows.offsets[k + 1] - from;
+    if (size == first) out.segment(from, size) = rows.predicted.segment(from, size) - rows.predicted.head(first);
+  }
+  return out;
+}
+
+double rms_error(const Study::Rows& rows, const Recording& recording, bool held_out) {
   double sum = 0.0, count = 0.0;
   for (std::size_t k = 0; k < recording.frames.size(); ++k) {
     if (recording.held_out(k) != held_out) continue;
     for (Eigen::Index r = rows.offsets[k]; r < rows.offsets[k + 1]; ++r) {
-      sum += std::pow(scale(r) * rows.error[r], 2);
+      sum += std::pow(rows.sigma[r] * rows.error[r], 2);
       count += rows.used[r] > 0.0 ? 1.0 : 0.0;
     }
   }
   return std::sqrt(sum / count);
-}
-
-}  // namespace
-
-double rms_error(const Study::Rows& rows, const Recording& recording, bool held_out) {
-  return root_mean_square(rows, recording, held_out, [&](Eigen::Index r) { return rows.sigma[r]; });
-}
-
-double rms_sigmas(const Study::Rows& rows, const Recording& recording, bool held_out) {
-  return root_mean_square(rows, recording, held_out, [](Eigen::Index) { return 1.0; });
 }
 
 Eigen::VectorXd held_out_squares(const Study::Rows& rows, const Recording& recording) {

@@ -18,7 +18,7 @@ const std::string kObservations =
     "[{vertices: {topic: /vertices, noise: 1.0e-4}}, {points: {topic: /points, noise: 1.0e-4}}]";
 
 std::vector<Proposal> proposals_of(const EffectSpec& spec, const Model& model) {
-  const ProposalContext context{model.settings(), model.mesh(), model.regions(), 3e4, 0.4, 1000.0, 0.02, 2.0, false};
+  const ProposalContext context{model.settings(), model.mesh(), model.regions(), 3e4, 0.4, 1000.0, 0.02, 2.0};
   return spec.proposals ? spec.proposals(context) : std::vector<Proposal>{};
 }
 

@@ -22,7 +22,7 @@ double since(Clock::time_point start) {
 }
 
 std::vector<std::string> linear_proposals(const Model& base, const std::vector<std::string>& effects) {
-  const ProposalContext context{base.settings(), base.mesh(), base.regions(), 3e4, 0.45, 1000.0, 0.02, 0.4, false};
+  const ProposalContext context{base.settings(), base.mesh(), base.regions(), 3e4, 0.45, 1000.0, 0.02, 0.4};
   std::vector<std::string> list;
   for (const EffectSpec& spec : effect_specs()) {
     if (!spec.proposals) continue;

@@ -35,15 +35,13 @@ struct Library {
 
 using CountProgress = std::function<void(std::size_t done, std::size_t total)>;
 
-/// Everything that the library proposes for the fitted base model, but for effects to `ignore` and, `within_noise`, for
-/// those that only a visible error asks for. The tangents of all linear ones come from one reduced model that holds them
-/// all at their absent values, those of the others from one at first order. What is not linear in the base is left out of
-/// it. `library`: that of an earlier look, from before the base had effects that leave the body's own mass and stiffness
-/// alone, whose vectors are taken over, or empty; replaced by this look's. `progress` hears how many of them are done, from
-/// any thread.
-std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd& w, bool within_noise,
-                                       const std::vector<std::string>& ignore, const CountProgress& progress,
-                                       Library& library);
+/// Everything that the library proposes for the fitted base model, but for effects to `ignore`. The tangents of all linear
+/// ones come from one reduced model that holds them all at their absent values, those of the others from one at first
+/// order. What is not linear in the base is left out of it. `library`: that of an earlier look, from before the base had
+/// effects that leave the body's own mass and stiffness alone, whose vectors are taken over, or empty; replaced by this
+/// look's. `progress` hears how many of them are done, from any thread.
+std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd& w, const std::vector<std::string>& ignore,
+                                       const CountProgress& progress, Library& library);
 
 /// Entries for the time steps of a simulated recording, which the model does not allow for.
 std::vector<std::string> entries_of_time_steps(const Study& study, const Eigen::VectorXd& w);

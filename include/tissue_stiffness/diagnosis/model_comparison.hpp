@@ -55,6 +55,8 @@ class ModelComparison {
   /// `mesh_change`: what a finer mesh changes of the base's rows [sigma].
   ModelComparison(const Fitted& base, const Eigen::VectorXd& mesh_change);
 
+  /// Replaces that change.
+  void allow_for_mesh(const Eigen::VectorXd& change);
   /// Takes note of how little a residual leaves across the lowest modes.
   void note(const Eigen::VectorXd& error);
   double noise_variance() const { return noise_variance_; }  ///< s

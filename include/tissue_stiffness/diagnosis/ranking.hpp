@@ -47,17 +47,15 @@ BeginningFit fit_beginning(const Fitted& base, const Candidate& way);
 struct Refit {
   const Candidate* way = nullptr;  ///< of the first effect
   std::vector<std::string> effects;
-  std::vector<std::string> proposals;                ///< entries that it was fitted with
-  std::vector<std::string> entries;                  ///< for the model file: estimated parameters with their fit as prior
-  std::map<std::string, double> parameters;          ///< of the whole model, by name
-  double train_rms = 0.0, held_out_rms = 0.0;        ///< [m]
-  double train_sigmas = 0.0, held_out_sigmas = 0.0;  ///< the same over sigma
-  double p_value = 1.0;                              ///< of predicting the held-out frames no better
-  double fitted = 0.0;                               ///< cost of the training frames and the prior
-  double cost = 0.0;                                 ///< sum of squared errors over sigma, all frames
-  Explained explained;                               ///< as it is compared
-  int added_parameters = 0;
-  std::shared_ptr<Fitted> model;  ///< null where it was only run quickly, and of all but the best
+  std::vector<std::string> proposals;        ///< entries that it was fitted with
+  std::vector<std::string> entries;          ///< for the model file: estimated parameters with their fit as prior
+  std::map<std::string, double> parameters;  ///< of the whole model, by name
+  double held_out_rms = 0.0;                 ///< [m]
+  double p_value = 1.0;                      ///< of predicting the held-out frames no better
+  double fitted = 0.0;                       ///< cost of the training frames and the prior
+  double cost = 0.0;                         ///< sum of squared errors over sigma, all frames
+  Explained explained;                       ///< as it is compared
+  std::shared_ptr<Fitted> model;             ///< null where it was only run quickly, and of all but the best
 };
 
 /// Fits the training frames by simulation, from the base's fit and the proposals' own starts: in full, but where

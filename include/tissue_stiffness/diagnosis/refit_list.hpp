@@ -19,7 +19,7 @@ std::ptrdiff_t parameters_of(const std::vector<Addition>& additions);
 /// Hears of all refits so far, best first, whenever there are more.
 using RefitsSoFar = std::function<void(const std::vector<Refit>&)>;
 
-/// The refits of one look: best first, one an effect (or pair).
+/// The refits of one look: best first, one an effect.
 class RefitList {
  public:
   RefitList(const FirstLook& look, const DiagnosisOptions& options, RefitsSoFar so_far)

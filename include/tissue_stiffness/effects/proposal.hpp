@@ -21,7 +21,6 @@ struct ProposalContext {
   double density;                    ///< [kg/m^3]
   double frame_interval;             ///< [s]
   double duration;                   ///< of the recording [s]
-  bool within_noise;                 ///< the model's error may be noise
   std::vector<double> periods = {};  ///< rhythms to try [s]; empty: some that fit the recording
 
   bool holds(const std::string& effect) const;
