@@ -54,12 +54,16 @@ void Progress::finish() {
   drawn_ = false;
 }
 
-StepProgress::StepProgress(std::ostream& out, Progress::Style style, std::string what)
-    : out_(out), style_(style), what_(std::move(what)), start_(std::chrono::steady_clock::now()) {}
+StepProgress::StepProgress(std::ostream& out, Progress::Style style, std::string what, Clock clock)
+    : out_(out), style_(style), what_(std::move(what)), clock_(std::move(clock)), start_(clock_()) {}
+
+double StepProgress::steady_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 void StepProgress::show(const std::string& step, std::size_t done, std::size_t total) {
   if (style_ == Progress::Style::quiet) return;
-  const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  const double elapsed = clock_() - start_;
   const bool goes_on = step == last_step_ && done > 0;
   if (goes_on && elapsed - last_shown_ < (style_ == Progress::Style::bar ? kBarInterval : kLineInterval)) return;
   last_shown_ = elapsed;

@@ -5,13 +5,13 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <random>
 #include <stdexcept>
 
 #include "../figures.hpp"
+#include "../processor_time.hpp"
 #include "tissue_stiffness/filter/consistency.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
@@ -209,12 +209,12 @@ TEST_F(UnscentedFilters, ManyMeasurementsAreCheap) {
   SquareRootUnscentedFilter filter(Eigen::VectorXd::Zero(l), Eigen::MatrixXd::Identity(l, l));
   const Eigen::VectorXd truth = random(l, 1), y = h * truth + 0.1 * random(m, 1);
   const Noise noise = Noise::independent(Eigen::VectorXd::Constant(m, 0.1));
-  const auto start = std::chrono::steady_clock::now();
+  const double start = processor_seconds();
   filter.update(y, h * filter.sigma_points(), noise);
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  RecordProperty("milliseconds", std::to_string(1e3 * elapsed.count()));
+  const double elapsed = processor_seconds() - start;
+  RecordProperty("milliseconds", std::to_string(1e3 * elapsed));
   EXPECT_LT((filter.mean() - truth).norm(), 0.05);
-  EXPECT_LT(elapsed.count(), 0.5);  // a dense 2000 x 2000 covariance alone takes longer
+  EXPECT_LT(elapsed, 0.5);  // a dense 2000 x 2000 covariance alone takes longer
 }
 
 }  // namespace

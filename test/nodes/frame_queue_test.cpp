@@ -15,7 +15,9 @@ ros::Time at(double seconds) {
 
 class FrameQueueTest : public testing::Test {
  protected:
-  FrameQueue queue{Seconds(0.05), 3};
+  explicit FrameQueueTest(Seconds patience = Seconds(0.05)) : queue(patience, 3) {}
+
+  FrameQueue queue;
 
   void frame(double seconds, const std::string& topic = "contour") {
     queue.add_observation(topic, at(seconds), [] { return Observation(); });
@@ -29,6 +31,11 @@ class FrameQueueTest : public testing::Test {
     const auto work = queue.take();
     return (work->stamp - ros::Time(1000.0)).toSec();
   }
+};
+
+class PatientFrameQueueTest : public FrameQueueTest {
+ protected:
+  PatientFrameQueueTest() : FrameQueueTest(Seconds(1e6)) {}
 };
 
 TEST_F(FrameQueueTest, HandsFramesOutInOrderOfTime) {
@@ -46,7 +53,7 @@ TEST_F(FrameQueueTest, OneStampIsOneFrame) {
   EXPECT_EQ(queue.take()->observations.size(), 2U);
 }
 
-TEST_F(FrameQueueTest, AFrameWaitsForTheLoadBehindIt) {
+TEST_F(PatientFrameQueueTest, AFrameWaitsForTheLoadBehindIt) {
   queue.expect("pressure");
   load(0.0);
   frame(0.1);
@@ -54,11 +61,9 @@ TEST_F(FrameQueueTest, AFrameWaitsForTheLoadBehindIt) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
     load(0.12);
   });
-  const auto begin = std::chrono::steady_clock::now();
-  const auto work = queue.take();
+  const auto work = queue.take();  // runs into the test's timeout if the frame does not go with its load
   late.join();
   EXPECT_EQ(work->loads.size(), 2U);
-  EXPECT_LT(Seconds(std::chrono::steady_clock::now() - begin).count(), 0.045);
 }
 
 TEST_F(FrameQueueTest, AMissingLoadHoldsAFrameOnlyForAWhile) {

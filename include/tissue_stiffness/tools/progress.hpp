@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <functional>
 #include <iosfwd>
 #include <string>
 
@@ -37,7 +38,13 @@ class Progress {
 /// and while one step goes on a line every 5 s.
 class StepProgress {
  public:
-  StepProgress(std::ostream& out, Progress::Style style, std::string what);
+  /// The seconds since some fixed time.
+  using Clock = std::function<double()>;
+
+  StepProgress(std::ostream& out, Progress::Style style, std::string what, Clock clock = steady_seconds);
+
+  /// The time of std::chrono::steady_clock [s].
+  static double steady_seconds();
 
   /// A step begins; `done` of `total` alike are over (0 of 0: nobody counts). A `done` of 0 begins a new count.
   void show(const std::string& step, std::size_t done = 0, std::size_t total = 0);
@@ -48,7 +55,8 @@ class StepProgress {
   std::ostream& out_;
   Progress::Style style_;
   std::string what_;
-  std::chrono::steady_clock::time_point start_;
+  Clock clock_;
+  double start_;                ///< [s]
   double counted_since_ = 0.0;  ///< when the count began [s]
   double last_shown_ = 0.0;
   std::string last_step_;
