@@ -131,12 +131,6 @@ bool Candidate::allows(const Eigen::VectorXd& amplitude) const {
   return amplitude.size() == 0 || (amplitude.minCoeff() >= lower && amplitude.maxCoeff() <= upper);
 }
 
-double Candidate::p_value(const Score& score) const {
-  if (score.amplitude.size() != 1 || (lower < 0.0 && upper > 0.0)) return score.p_value;
-  const bool possible = lower < 0.0 ? score.amplitude[0] <= 0.0 : score.amplitude[0] >= 0.0;
-  return possible ? 0.5 * score.p_value : 1.0 - 0.5 * score.p_value;
-}
-
 std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd& w, const std::vector<std::string>& ignore,
                                        const CountProgress& progress, Library& library) {
   const ProposalContext context = context_of(base, w);

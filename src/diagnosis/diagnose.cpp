@@ -38,7 +38,7 @@ Fitted fit_model(const ModelSettings& settings, const TetMesh& mesh, const Recor
 // The refit's model; run in full where that was not worth it before.
 Fitted extended(const Fitted& base, const Refit& refit) {
   if (refit.model) return std::move(*refit.model);
-  auto study = std::make_unique<Study>(extend_model(base.study->model().settings(), refit.entries), *base.study);
+  auto study = std::make_unique<Study>(extend_model(base.study->model().settings(), {refit.entry}), *base.study);
   const Model& model = study->model();
   return fit_study(std::move(study), model.coordinates(refit.parameters, model.prior_mean()), kAddedSpread);
 }
@@ -95,7 +95,7 @@ std::string to_string(Verdict verdict) {
 BestExplanation best_of(const Fitted& model, const Finding& finding) {
   if (finding.refits.empty()) return {};
   const Refit& best = finding.refits.front();
-  return {best.effects, 1.0 - best.cost / model.rows.error.squaredNorm(), best.held_out_rms};
+  return {{best.effect}, 1.0 - best.cost / model.rows.error.squaredNorm(), best.held_out_rms};
 }
 
 // Of a linear model its estimator finds this out, and corrects E.
@@ -190,12 +190,14 @@ class Search {
  private:
   bool lacks_something() const { return finding_.verdict == Verdict::missing || finding_.verdict == Verdict::unexplained; }
 
-  // Several effects may be missing, of which none explains the error alone. Each leader in turn is taken for one of them:
-  // if it and what is then found explain the error, both are missing.
+  // Several effects may be missing, of which none explains the error alone. Each leader in turn that explains a part of it
+  // is taken for one of them: if it and what is then found explain the error, both are missing.
   void grow() {
+    const double cost = model_.rows.error.squaredNorm(), structured = structured_squares(model_.rows);
     for (std::size_t i = 0; i < std::min(kGrown, finding_.refits.size()); ++i) {
       Refit& leader = finding_.refits[i];
-      options_.progress("what is missing beside " + leader.effects.front(), 0, 0);
+      if (!(cost - leader.cost > kComparison.promising * structured)) continue;
+      options_.progress("what is missing beside " + leader.effect, 0, 0);
       auto next = std::make_shared<Fitted>(extended(model_, leader));
       const bool same = same_body(model_.study->model(), next->study->model());
       Finding deeper = look(*next, {}, options_, finding_.finer, same ? finding_.library : Library());
@@ -204,7 +206,7 @@ class Search {
       std::rotate(finding_.refits.begin(), finding_.refits.begin() + static_cast<std::ptrdiff_t>(i),
                   finding_.refits.begin() + static_cast<std::ptrdiff_t>(i) + 1);
       finding_.verdict = Verdict::missing;
-      finding_.set = finding_.refits.front().effects;
+      finding_.set = {finding_.refits.front().effect};
       finding_.set.insert(finding_.set.end(), deeper.set.begin(), deeper.set.end());
       take_over(deeper.effects);
       grown_ = std::move(deeper);
@@ -227,15 +229,15 @@ class Search {
   }
 
   // The model leaves no structure beyond chance: there is nothing left to look for.
-  bool nothing_left() const { return !(finding_.models->test(explained_).discrepancy() > 0.0); }
+  bool nothing_left() const { return !(finding_.models->assess(explained_).test.discrepancy() > 0.0); }
 
   // The library of tangents that the next look may take over.
   Library add(const Refit& best) {
-    for (const std::string& effect : best.effects) options_.progress("add " + effect, 0, 0);
+    options_.progress("add " + best.effect, 0, 0);
     Fitted next = extended(model_, best);
     Library library = same_body(model_.study->model(), next.study->model()) ? std::move(finding_.library) : Library();
-    out_.final_effects.insert(out_.final_effects.end(), best.effects.begin(), best.effects.end());
-    out_.entries.insert(out_.entries.end(), best.entries.begin(), best.entries.end());
+    out_.final_effects.push_back(best.effect);
+    out_.entries.push_back(best.entry);
     out_.final_verdict = "unfinished";
     if (!given_.study) given_ = std::move(model_);
     model_ = std::move(next);

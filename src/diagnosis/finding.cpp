@@ -25,37 +25,37 @@ void require_proposed(const FirstLook& look, const std::vector<std::string>& wan
 // How many ways of an effect the library proposes.
 double ways_of(const FirstLook& look, const std::string& effect) {
   const auto same = [&](const Candidate& c) { return c.effect == effect; };
-  return static_cast<double>(
-      std::max<std::ptrdiff_t>(1, std::count_if(look.candidates.begin(), look.candidates.end(), same)));
+  return static_cast<double>(std::count_if(look.candidates.begin(), look.candidates.end(), same));
+}
+
+double effects_of(const FirstLook& look) {
+  return static_cast<double>(std::max<std::size_t>(1, look.ranked.size()));
+}
+
+// Over all ways, of which one was fitted.
+double log_bayes_factor(const FirstLook& look, const RefitList& refits, const Refit& refit) {
+  return refit.assessment.log_evidence - refits.given().log_evidence - std::log(ways_of(look, refit.effect));
 }
 
 // Beforehand the given model is as probable as all effects together, and those are alike, whatever the ways each has.
-double log_prior(const FirstLook& look, const Refit& refit) {
-  const double effects = static_cast<double>(std::max<std::size_t>(1, look.ranked.size()));
-  double out = 0.0;
-  for (const std::string& effect : refit.effects) out -= std::log(effects * ways_of(look, effect));
-  return out;
-}
-
 Comparison compare(const FirstLook& look, const RefitList& refits) {
   const ModelComparison& models = refits.comparison();
-  const double effects = static_cast<double>(std::max<std::size_t>(1, look.ranked.size()));
-  const double base = refits.log_evidence_of_base();
-  const MisfitTest given = models.test(refits.base());
+  const double prior = -std::log(effects_of(look));
+  const MisfitTest& given = refits.given().test;
   std::vector<double> weights{0.0};
-  for (const Refit& r : refits.all()) weights.push_back(refits.log_evidence(r) - base + log_prior(look, r));
+  for (const Refit& r : refits.all()) weights.push_back(log_bayes_factor(look, refits, r) + prior);
   // The force acts on the residual of the fit; what the fit costs, and its weights, are the given model's.
   const double force = log_evidence_of_random_force(*look.base.study, look.base.fit.w, models.noise_variance());
-  const double numerics = models.log_likelihood(refits.base()) - models.log_likelihood(look.base.rows);
-  weights.push_back(force - numerics - std::log(effects));
+  const double numerics = refits.given().log_likelihood - models.log_likelihood(look.base.rows);
+  weights.push_back(force - numerics + prior);
   const std::vector<double> probability = posterior(weights);
   Comparison out;
   out.given = {{}, probability.front(), given.z(), given.passes()};
   out.structured = given.discrepancy() > 0.0;
   out.passes_without_mesh = models.test_of(look.base.rows.error, static_cast<double>(look.base.fit.w.size())).passes();
   for (std::size_t i = 0; i < refits.all().size(); ++i) {
-    const MisfitTest test = refits.test(refits.all()[i]);
-    out.others.push_back({refits.all()[i].effects, probability[1 + i], test.z(), test.passes()});
+    const Refit& refit = refits.all()[i];
+    out.others.push_back({refit.effect, probability[1 + i], refit.assessment.test.z(), refit.assessment.test.passes()});
   }
   out.none_of_these = probability.back();
   return out;
@@ -75,69 +75,68 @@ std::vector<std::string> set_of(const Comparison& comparison) {
   for (const Explanation* e : order) {
     if (held > kComparison.believed * all) break;
     held += e->probability;
-    for (const std::string& effect : e->effects) {
-      if (std::find(set.begin(), set.end(), effect) == set.end()) set.push_back(effect);
-    }
+    set.push_back(e->effect);
   }
   return set;
 }
 
-MissingEffect describe(const FirstLook& look, const std::vector<Refit>& refits, const Ranked& r) {
+// As the tangents have it.
+MissingEffect describe(const FirstLook& look, const Ranked& r) {
   MissingEffect out;
   out.effect = r.effect;
   out.entry = r.best->proposal.yaml;
   out.log_bayes_factor = r.evidence;
-  out.p_value = r.p_value;
-  out.size = r.score.size;
-  out.explained = r.score.explained;
-  for (Eigen::Index i = 0; i < r.score.amplitude.size(); ++i) {
-    const std::string suffix = r.score.amplitude.size() > 1 ? std::string("_") + "xyz"[i] : "";
-    out.parameters[r.effect + "." + r.best->proposal.amplitude + suffix] = r.score.amplitude[i];
+  const Eigen::VectorXd& amplitude = r.score.amplitude;
+  const double gain = r.score.explained / look.comparison.noise_variance();
+  out.p_value = likelihood_ratio_p_value(gain, static_cast<double>(amplitude.size()));
+  out.explained = r.score.explained / look.cost;
+  for (Eigen::Index i = 0; i < amplitude.size(); ++i) {
+    const std::string suffix = amplitude.size() > 1 ? std::string("_") + "xyz"[i] : "";
+    out.parameters[r.effect + "." + r.best->proposal.amplitude + suffix] = amplitude[i];
   }
-  out.held_out_rms_before = rms_error(look.base.rows, look.base.study->recording(), true);
-  for (const std::size_t size : {2, 1}) {  // its own refit says more of it than a pair's
-    const auto refit = std::find_if(refits.begin(), refits.end(), [&](const Refit& known) {
-      return known.effects.size() == size && std::count(known.effects.begin(), known.effects.end(), r.effect) > 0;
-    });
-    if (refit == refits.end()) continue;
-    const auto at = std::find(refit->effects.begin(), refit->effects.end(), r.effect) - refit->effects.begin();
-    out.parameters = refit->parameters;
-    out.held_out_rms_after = refit->held_out_rms;
-    out.p_value = refit->p_value;
-    out.explained = 1.0 - refit->cost / look.cost;
-    out.entry = refit->entries[static_cast<std::size_t>(at)];
-  }
-  for (const Ranked& other : look.ranked) {
-    if (other.effect == r.effect) continue;
-    const double cosine = r.score.cosine_with(other.score);
-    if (cosine > kTwin) out.confusable_with.push_back({other.effect, cosine});
-  }
+  return out;
+}
+
+MissingEffect describe(const FirstLook& look, const RefitList& refits, const Refit& refit) {
+  MissingEffect out;
+  out.effect = refit.effect;
+  out.entry = refit.entry;
+  out.parameters = refit.parameters;
+  out.log_bayes_factor = log_bayes_factor(look, refits, refit);
+  const double gain = 2.0 * (refit.assessment.log_likelihood - refits.given().log_likelihood);
+  out.p_value = likelihood_ratio_p_value(gain, static_cast<double>(parameters_of(*refit.way)));
+  out.explained = 1.0 - refit.cost / look.cost;
+  out.held_out_rms_after = refit.held_out_rms;
   return out;
 }
 
 // Refitted ones first, in the order of their refits; then the others, by the tangents' evidence.
-std::vector<MissingEffect> describe(const FirstLook& look, const std::vector<Refit>& refits) {
+std::vector<MissingEffect> describe(const FirstLook& look, const RefitList& refits) {
   std::vector<MissingEffect> out;
-  std::vector<std::string> order;
-  for (const Refit& refit : refits) order.insert(order.end(), refit.effects.begin(), refit.effects.end());
-  for (const Ranked& r : look.ranked) order.push_back(r.effect);
-  for (const std::string& effect : order) {
-    if (std::any_of(out.begin(), out.end(), [&](const MissingEffect& known) { return known.effect == effect; })) continue;
-    const auto ranked =
-        std::find_if(look.ranked.begin(), look.ranked.end(), [&](const Ranked& r) { return r.effect == effect; });
-    out.push_back(describe(look, refits, *ranked));
+  for (const Refit& refit : refits.all()) out.push_back(describe(look, refits, refit));
+  for (const Ranked& r : look.ranked) {
+    const bool known = std::any_of(out.begin(), out.end(), [&](const MissingEffect& e) { return e.effect == r.effect; });
+    if (!known) out.push_back(describe(look, r));
+  }
+  const double before = rms_error(look.base.rows, look.base.study->recording(), true);
+  for (MissingEffect& effect : out) {
+    effect.held_out_rms_before = before;
+    effect.size = std::sqrt(std::max(0.0, effect.explained) * look.cost / look.base.rows.count());
+    const auto same = [&](const Ranked& r) { return r.effect == effect.effect; };
+    const Score& own = std::find_if(look.ranked.begin(), look.ranked.end(), same)->score;
+    for (const Ranked& other : look.ranked) {
+      if (same(other)) continue;
+      const double cosine = own.cosine_with(other.score);
+      if (cosine > kTwin) effect.confusable_with.push_back({other.effect, cosine});
+    }
   }
   return out;
 }
 
-// Probability of all explanations with an effect, and the test of the most probable one.
 void tell_belief(const Comparison& comparison, MissingEffect& effect) {
-  double most = -1.0;
   for (const Explanation& e : comparison.others) {
-    if (std::count(e.effects.begin(), e.effects.end(), effect.effect) == 0) continue;
-    effect.probability += e.probability;
-    if (e.probability <= most) continue;
-    most = e.probability;
+    if (e.effect != effect.effect) continue;
+    effect.probability = e.probability;
     effect.z = e.z;
   }
 }
@@ -149,16 +148,16 @@ Finding look(const Fitted& base, const std::vector<std::string>& wanted, const D
   const FirstLook look(base, options, finer, library);
   require_proposed(look, wanted);
   Finding out;
-  so_far(describe(look, {}));
-  const auto refitted = [&](const std::vector<Refit>& refits) { so_far(describe(look, refits)); };
-  RefitList refits = search_refits(look, wanted, options, refitted);
+  RefitList refits(look, options, [&](const RefitList& fitted) { so_far(describe(look, fitted)); });
+  so_far(describe(look, refits));
+  search_refits(look, wanted, refits);
   out.comparison = compare(look, refits);
   out.models = std::make_shared<const ModelComparison>(refits.comparison());
-  out.refits = refits.take();
   out.verdict = judge(out.comparison);
   if (out.verdict == Verdict::missing || out.verdict == Verdict::unexplained) out.set = set_of(out.comparison);
-  out.effects = describe(look, out.refits);
+  out.effects = describe(look, refits);
   for (MissingEffect& effect : out.effects) tell_belief(out.comparison, effect);
+  out.refits = refits.take();
   out.floor = look.floor;
   out.finer = look.finer;
   out.library = look.library;

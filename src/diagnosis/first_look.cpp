@@ -26,14 +26,13 @@ std::vector<std::string> not_looked_for(const DiagnosisOptions& options) {
 
 FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, FinerMesh earlier, Library known_library)
     : base(fitted),
-      rows(fitted.rows.count()),
       cost(fitted.rows.error.squaredNorm()),
       first(earlier.change.size() == 0),
       library(std::move(known_library)),
       finer(std::move(earlier)),
       explained(explain(base)),
       comparison(base, Eigen::VectorXd::Zero(base.rows.error.size())),
-      test(comparison.test(explained)) {
+      test(comparison.assess(explained).test) {
   if (!test.passes()) explained = explain(base, true);
   const std::string step = "tangents of the library, and what a finer mesh would change";
   options.progress(step, 0, 0);
@@ -51,16 +50,12 @@ FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Fine
   if (worsens(finer.change)) finer.change.setZero();
   by_mesh = cost - (r.error - finer.change).squaredNorm();
   known = explained.linearisation.columns;
-  floor = Scorer(r.error, known, r.offsets, 1.0).remaining(finer.change);
   comparison.allow_for_mesh(finer.change);
-  test = comparison.test(explained);
+  test = comparison.assess(explained).test;
   // An effect has to explain what the mesh does not.
-  scorer = std::make_unique<Scorer>(explained.error - finer.change, known, r.offsets, 1.0, kRemainder * finer.change);
-  ranked = rank(*scorer, candidates, kRemainder * floor);
-}
-
-double FirstLook::structured() const {
-  return std::max(0.0, cost - rows);
+  scorer = std::make_unique<Scorer>(explained.error - finer.change, known, comparison.noise_variance());
+  floor = scorer->remaining(finer.change);
+  ranked = rank(*scorer, candidates);
 }
 
 }  // namespace tissue_stiffness

@@ -128,7 +128,9 @@ void ModelComparison::note(const Eigen::VectorXd& error) {
   noise_variance_ = noise_variance_ > 0.0 ? std::min(noise_variance_, variance) : variance;
 }
 
-ModelComparison::Solution ModelComparison::solve(const Eigen::VectorXd& error, const Linearisation& model) const {
+Assessment ModelComparison::assess(const Explained& explained) const {
+  const Eigen::VectorXd& error = explained.error;
+  const Linearisation& model = explained.linearisation;
   const double s = noise_variance_;
   const Eigen::MatrixXd unknown =
       model.mesh_error.size() > 0 ? parted(model.mesh_error, along_, offsets_) : Eigen::MatrixXd(error.size(), 0);
@@ -146,31 +148,17 @@ ModelComparison::Solution ModelComparison::solve(const Eigen::VectorXd& error, c
   u.tail(rest) = u.tail(rest).cwiseMax(-kComparison.most_numerics).cwiseMin(kComparison.most_numerics);
   u.head(own) =
       precision.topLeftCorner(own, own).ldlt().solve(seen.head(own) - precision.topRightCorner(own, rest) * u.tail(rest));
-  Solution out;
-  out.left = error - j * u;
-  out.log_evidence =
-      model.log_root_weights - 0.5 * (out.left.squaredNorm() / s + (u - mean).squaredNorm() + log_determinant(factor));
+  const Eigen::VectorXd left = error - j * u;
+  Assessment out;
+  out.log_likelihood = model.log_root_weights - 0.5 * left.squaredNorm() / s;
+  out.log_evidence = out.log_likelihood - 0.5 * ((u - mean).squaredNorm() + log_determinant(factor));
+  out.test = test_of(left, static_cast<double>(model.columns.cols()));
+  if (unknown.cols() > 0) out.test.set_numerics(model.mesh_error.squaredNorm() / used_.sum());
   return out;
-}
-
-double ModelComparison::log_evidence(const Explained& model) const {
-  return solve(model.error, model.linearisation).log_evidence;
-}
-
-double ModelComparison::log_likelihood(const Explained& model) const {
-  const Eigen::VectorXd left = solve(model.error, model.linearisation).left;
-  return model.linearisation.log_root_weights - 0.5 * left.squaredNorm() / noise_variance_;
 }
 
 double ModelComparison::log_likelihood(const Study::Rows& rows) const {
   return log_root_weights(rows) - 0.5 * rows.error.squaredNorm() / noise_variance_;
-}
-
-MisfitTest ModelComparison::test(const Explained& model) const {
-  const Linearisation& about = model.linearisation;
-  MisfitTest out = test_of(solve(model.error, about).left, static_cast<double>(about.columns.cols()));
-  if (about.mesh_error.size() > 0) out.set_numerics(about.mesh_error.squaredNorm() / used_.sum());
-  return out;
 }
 
 MisfitTest ModelComparison::test_of(const Eigen::VectorXd& error, double fitted) const {

@@ -13,7 +13,6 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr double kSpread = 0.05;          // prior standard deviations, around the fit of a beginning
-constexpr double kPromise = 0.1;          // of the structured part: what quick runs have to explain before a full one
 constexpr double kShares[] = {0.6, 1.0};  // of the training frames, fitted one after the other from a fit of the beginning
 
 struct Start {
@@ -22,43 +21,35 @@ struct Start {
 };
 
 // The tangent's amplitude of an added parameter; NaN where it has none. Amplitudes' components come in order.
-double tangent_value(const FreeParameter& parameter, const std::vector<Addition>& additions,
-                     std::vector<Eigen::Index>& taken) {
-  for (std::size_t k = 0; k < additions.size(); ++k) {
-    const Candidate& way = *additions[k].way;
-    if (parameter.name.rfind(way.effect, 0) != 0) continue;
-    if (parameter.name.find("." + way.proposal.amplitude) == std::string::npos) continue;
-    if (taken[k] < additions[k].amplitude.size()) return way.absent + additions[k].amplitude[taken[k]++];
-  }
-  return std::numeric_limits<double>::quiet_NaN();
+double tangent_value(const FreeParameter& parameter, const Addition& addition, Eigen::Index& taken) {
+  const bool amplitude = parameter.name.find("." + addition.way->proposal.amplitude) != std::string::npos;
+  if (!amplitude || taken == addition.amplitude.size()) return std::numeric_limits<double>::quiet_NaN();
+  return addition.way->absent + addition.amplitude[taken++];
 }
 
-double scanned_value(const FreeParameter& parameter, const std::vector<Addition>& additions) {
-  for (const Addition& addition : additions) {
-    const auto known = addition.scanned.find(parameter.name);
-    const std::string amplitude = addition.way->effect + "." + addition.way->proposal.amplitude;
-    if (known != addition.scanned.end() && parameter.name.rfind(amplitude, 0) != 0) return known->second;
-  }
-  return std::numeric_limits<double>::quiet_NaN();
+double scanned_value(const FreeParameter& parameter, const Addition& addition) {
+  const auto known = addition.scanned.find(parameter.name);
+  const std::string amplitude = addition.effect() + "." + addition.way->proposal.amplitude;
+  const bool scanned = known != addition.scanned.end() && parameter.name.rfind(amplitude, 0) != 0;
+  return scanned ? known->second : std::numeric_limits<double>::quiet_NaN();
 }
 
-// The base's fit, and the proposals' priors; with the tangents' amplitudes in their place where that is allowed.
-std::vector<Start> starts(const Study& study, const Study& base, const Eigen::VectorXd& w,
-                          const std::vector<Addition>& additions) {
+// The base's fit, and the proposal's prior; with the tangent's amplitude in its place where that is allowed.
+std::vector<Start> starts(const Study& study, const Study& base, const Eigen::VectorXd& w, const Addition& addition) {
   const auto& free = study.model().free_parameters();
   Start prior{study.extend(base, w), study.spread_beyond(base), {}};
   Start tangent = prior;
-  std::vector<Eigen::Index> taken(additions.size(), 0);
+  Eigen::Index taken = 0;
   bool differs = false;
   for (std::size_t i = 0; i < free.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     if (base.index(free[i].name) >= 0) continue;
-    if (const double amplitude = tangent_value(free[i], additions, taken); std::isfinite(amplitude)) {
+    if (const double amplitude = tangent_value(free[i], addition, taken); std::isfinite(amplitude)) {
       const double value = std::clamp(amplitude, free[i].lower, free[i].upper);
       const bool allowed = free[i].prior.kind != Quantity::Kind::log_normal || value > 0.0;
       tangent.w[k] = allowed ? free[i].to_coordinate(value) : prior.w[k];
       differs = differs || allowed;
-    } else if (const double value = scanned_value(free[i], additions); std::isfinite(value)) {
+    } else if (const double value = scanned_value(free[i], addition); std::isfinite(value)) {
       prior.w[k] = tangent.w[k] = free[i].to_coordinate(value);
     }
   }
@@ -97,49 +88,41 @@ Start grown(const Study& study, Start start, double rival) {
   return start;
 }
 
-double structured(const Study::Rows& rows) {
-  return rows.error.squaredNorm() - rows.count();
-}
-
 }  // namespace
 
-Refit refit(const Fitted& base, const std::vector<Addition>& additions, double rival) {
+Refit refit(const Fitted& base, const Addition& addition, double rival) {
   const Study& known = *base.study;
   auto model = std::make_shared<Fitted>();
   ModelSettings settings = known.model().settings();
-  for (const Addition& addition : additions) add_effect(settings, addition.way->proposal.refine);
+  add_effect(settings, addition.way->proposal.refine);
   model->study = std::make_unique<Study>(settings, known);
   const Study& study = *model->study;
   model->study->borrow(known);
   if (study.model().nonlinear()) rival = no_rival;  // quick runs are off
   std::string reason;
-  std::optional<Start> start = additions.front().begun
-                                   ? grown(study, start_of(study, additions.front().scanned), rival)
-                                   : quick_start(study, known, starts(study, known, base.fit.w, additions), rival, reason);
-  if (!start) throw NumericalError(additions.front().way->effect + " cannot be refitted: " + reason);
+  std::optional<Start> start = addition.begun
+                                   ? grown(study, start_of(study, addition.scanned), rival)
+                                   : quick_start(study, known, starts(study, known, base.fit.w, addition), rival, reason);
+  if (!start) throw NumericalError(addition.effect() + " cannot be refitted: " + reason);
   Study::Rows& rows = model->rows = study.rows(start->fit.w);
   const double gain = base.rows.error.squaredNorm() - rows.error.squaredNorm();
-  const bool only_quick = known.model().nonlinear() && gain < kPromise * structured(base.rows);
+  const bool only_quick = known.model().nonlinear() && gain < kComparison.promising * structured_squares(base.rows);
   if (study.model().nonlinear() && !only_quick) {
     start->fit = study.fit(start->fit.w, start->spread);
     rows = study.rows(start->fit.w);  // the last full run was at just this place
   }
   model->fit = start->fit;
   Refit out;
-  out.way = additions.front().way;
-  for (const Addition& addition : additions) {
-    out.effects.push_back(addition.way->effect);
-    out.proposals.push_back(addition.way->proposal.refine);
-  }
-  out.entries = out.proposals;
-  fit_entries(out.entries, study.model(), start->fit);
+  out.effect = addition.effect();
+  out.way = addition.way;
+  std::vector<std::string> entries{addition.way->proposal.refine};
+  fit_entries(entries, study.model(), start->fit);
+  out.entry = entries.front();
   out.parameters = study.model().values(start->fit.w);
   out.explained = explain(*model);
   Study::Rows compared = rows;
   compared.error = out.explained.error;
   out.held_out_rms = rms_error(compared, known.recording(), true);
-  out.p_value =
-      prediction_p_value(held_out_squares(base.rows, known.recording()) - held_out_squares(rows, known.recording()));
   out.fitted = start->fit.cost;
   out.cost = rows.error.squaredNorm();
   if (!only_quick) out.model = std::move(model);

@@ -13,26 +13,19 @@ constexpr std::size_t kMostWays = 3;  // of an effect and kind that are fitted t
 constexpr std::size_t kBegun = 6;     // fits of the beginning that are tried on the whole recording
 constexpr std::size_t kBegunOf = 2;   // of one effect
 constexpr std::size_t kLeaders = 3;   // refits whose other ways and kinds are tried
-constexpr double kPromise = 0.2;      // of the structured part: what a tangent has to explain before runs in full
 
 /// The search, stage by stage: each goes on only where the best refit leaves structure beyond chance.
 class Search {
  public:
-  Search(const FirstLook& look, const DiagnosisOptions& options, const RefitsSoFar& so_far)
-      : look_(look), refits_(look, options, so_far) {}
+  Search(const FirstLook& look, RefitList& refits) : look_(look), refits_(refits) {}
 
-  RefitList operator()(const std::vector<std::string>& wanted) {
-    if (!wanted.empty()) {
-      refit_wanted(wanted);
-      return std::move(refits_);
-    }
+  void operator()(const std::vector<std::string>& wanted) {
+    if (!wanted.empty()) return refit_wanted(wanted);
     refit_from_tangents();
     refits_.compare_on_finer_mesh();
-    if (!wide()) return std::move(refits_);
-    if (refits_.leaves_more_than_noise()) refit_other_ways();
-    if (refits_.leaves_more_than_noise()) refit_from_beginning();
-    if (refits_.leaves_more_than_noise()) refit_other_kinds();
-    return std::move(refits_);
+    if (wide() && refits_.leaves_more_than_noise()) refit_other_ways();
+    if (wide() && refits_.leaves_more_than_noise()) refit_from_beginning();
+    if (wide() && refits_.leaves_more_than_noise()) refit_other_kinds();
   }
 
  private:
@@ -48,17 +41,17 @@ class Search {
   bool wide() const { return look_.first ? look_.test.discrepancy() > 0.0 : !look_.test.passes(); }
   /// Runs in full take long: none for an effect whose tangent explains next to nothing.
   bool worth_full_runs(const Ranked& r) const {
-    return r.best->linear || r.score.explained * look_.cost > kPromise * look_.structured();
+    return r.best->linear || r.score.explained > kComparison.promising * structured_squares(look_.base.rows);
   }
 
   const FirstLook& look_;
-  RefitList refits_;
+  RefitList& refits_;
 };
 
 void Search::refit_wanted(const std::vector<std::string>& wanted) {
-  std::vector<std::vector<Addition>> list;
+  std::vector<Addition> list;
   for (const Ranked& r : look_.ranked) {
-    if (std::find(wanted.begin(), wanted.end(), r.effect) != wanted.end()) list.push_back({{r.best, r.score.amplitude}});
+    if (std::find(wanted.begin(), wanted.end(), r.effect) != wanted.end()) list.push_back({r.best, r.score.amplitude});
   }
   refits_.add(list);
 }
@@ -66,52 +59,52 @@ void Search::refit_wanted(const std::vector<std::string>& wanted) {
 // Every effect where something is to be explained; else those whose tangents speak for them. The first one alone: what
 // falls behind it need not be fitted to the end.
 void Search::refit_from_tangents() {
-  std::vector<std::vector<Addition>> first, others;
+  std::vector<Addition> first, others;
   for (const Ranked& r : look_.ranked) {
     if (!worth_full_runs(r) || (!wide() && r.evidence < kSameEvidence)) continue;
-    (first.empty() ? first : others).push_back({{r.best, r.score.amplitude}});
+    (first.empty() ? first : others).push_back({r.best, r.score.amplitude});
   }
   refits_.add(first);
   refits_.add(others);
 }
 
-// Up to so many single refits, best first; copies, because the list changes while they are used.
+// Up to so many refits, best first; copies, because the list changes while they are used.
 std::vector<Refit> Search::leaders() const {
   std::vector<Refit> out;
   for (const Refit& refit : refits_.all()) {
-    if (refit.effects.size() == 1 && out.size() < kLeaders) out.push_back(refit);
+    if (out.size() < kLeaders) out.push_back(refit);
   }
   return out;
 }
 
 // The best of the leaders' ways that look different from the one that was refitted: tangents choose badly between them.
 void Search::refit_other_ways() {
-  std::vector<std::vector<Addition>> list;
+  std::vector<Addition> list;
   for (const Refit& leader : leaders()) {
     const Score known = look_.scorer->score(leader.way->tangent);
     const Candidate* other = nullptr;
     Score best;
     for (const Candidate& candidate : look_.candidates) {
-      if (candidate.effect != leader.way->effect || &candidate == leader.way) continue;
+      if (candidate.effect != leader.effect || &candidate == leader.way) continue;
       Score score = look_.scorer->score(candidate.tangent);
       if (score.cosine_with(known) > kSameWay || !candidate.allows(score.amplitude)) continue;
       if (other != nullptr && score.log_bayes_factor <= best.log_bayes_factor) continue;
       other = &candidate;
       best = std::move(score);
     }
-    if (other != nullptr) list.push_back({{other, best.amplitude}});
+    if (other != nullptr) list.push_back({other, best.amplitude});
   }
   refits_.add(list);
 }
 
 // The leaders in other directions, or on other regions, from the rhythm (or what else is scanned) that they found.
 void Search::refit_other_kinds() {
-  std::vector<std::vector<Addition>> list;
+  std::vector<Addition> list;
   for (const Refit& leader : leaders()) {
     if (leader.way->proposal.kind.empty()) continue;
     for (const Candidate& candidate : look_.candidates) {
-      if (candidate.effect == leader.way->effect && candidate.proposal.is_other_kind_of(leader.way->proposal))
-        list.push_back({{&candidate, {}, leader.parameters}});
+      if (candidate.effect == leader.effect && candidate.proposal.is_other_kind_of(leader.way->proposal))
+        list.push_back({&candidate, {}, leader.parameters});
     }
   }
   refits_.add(list);
@@ -131,21 +124,21 @@ void Search::refit_from_beginning() {
   }
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return fits[a]->deviance < fits[b]->deviance; });
-  std::vector<std::vector<Addition>> list;
+  std::vector<Addition> list;
   std::map<std::string, std::size_t> taken;
   for (const std::size_t i : order) {
     if (list.size() < kBegun && taken[ways[i]->effect]++ < kBegunOf)
-      list.push_back({{ways[i], {}, fits[i]->parameters, true}});
+      list.push_back({ways[i], {}, fits[i]->parameters, true});
   }
   refits_.add(list);
 }
 
 // Of each effect and kind the most evident ways that look different from one another, as the recording begins.
 std::vector<const Candidate*> Search::different_ways() const {
-  std::vector<Eigen::Index> offsets = look_.base.rows.offsets;
-  offsets.resize(1 + static_cast<std::size_t>(kBeginning * static_cast<double>(offsets.size() - 1)));
-  const Eigen::Index rows = offsets.back();
-  const Scorer scorer((look_.base.rows.error - look_.finer.change).head(rows), look_.known.topRows(rows), offsets, 1.0);
+  const std::vector<Eigen::Index>& offsets = look_.base.rows.offsets;
+  const Eigen::Index rows = offsets[static_cast<std::size_t>(kBeginning * static_cast<double>(offsets.size() - 1))];
+  const Scorer scorer((look_.base.rows.error - look_.finer.change).head(rows), look_.known.topRows(rows),
+                      look_.comparison.noise_variance());
   std::vector<std::pair<const Candidate*, Score>> ways;
   for (const Candidate& candidate : look_.candidates) {
     if (!candidate.linear) continue;
@@ -169,9 +162,8 @@ std::vector<const Candidate*> Search::different_ways() const {
 
 }  // namespace
 
-RefitList search_refits(const FirstLook& look, const std::vector<std::string>& wanted, const DiagnosisOptions& options,
-                        const RefitsSoFar& so_far) {
-  return Search(look, options, so_far)(wanted);
+void search_refits(const FirstLook& look, const std::vector<std::string>& wanted, RefitList& refits) {
+  Search(look, refits)(wanted);
 }
 
 }  // namespace tissue_stiffness

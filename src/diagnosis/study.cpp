@@ -317,6 +317,10 @@ Eigen::VectorXd motion_of(const Study::Rows& rows) {
   return out;
 }
 
+double structured_squares(const Study::Rows& rows) {
+  return std::max(0.0, rows.error.squaredNorm() - rows.count());
+}
+
 double rms_error(const Study::Rows& rows, const Recording& recording, bool held_out) {
   double sum = 0.0, count = 0.0;
   for (std::size_t k = 0; k < recording.frames.size(); ++k) {
@@ -327,15 +331,6 @@ double rms_error(const Study::Rows& rows, const Recording& recording, bool held_
     }
   }
   return std::sqrt(sum / count);
-}
-
-Eigen::VectorXd held_out_squares(const Study::Rows& rows, const Recording& recording) {
-  std::vector<double> squares;
-  for (std::size_t k = 0; k + 1 < rows.offsets.size(); ++k) {
-    if (!recording.held_out(k)) continue;
-    squares.push_back(rows.error.segment(rows.offsets[k], rows.offsets[k + 1] - rows.offsets[k]).squaredNorm());
-  }
-  return Eigen::Map<const Eigen::VectorXd>(squares.data(), static_cast<Eigen::Index>(squares.size()));
 }
 
 double noise_floor(const Study::Rows& rows) {

@@ -286,7 +286,7 @@ TEST(Diagnose, FindsTheMeshsChangeOutAnewWhereAnEarlierLookHasItWrong) {
   base.fit = base.study->fit(model.prior_mean(), 0.1 * model.prior_std());
   base.rows = base.study->rows(base.fit.w);
   const FirstLook look(base, {}, {-base.rows.error});
-  EXPECT_GT(look.by_mesh, 0.8 * look.structured());
+  EXPECT_GT(look.by_mesh, 0.8 * structured_squares(look.base.rows));
   const FinerMesh alone = finer_mesh(base);
   EXPECT_TRUE(look.finer.change.isApprox(alone.change));
   EXPECT_TRUE(look.finer.change.isApprox(finer_mesh(base, alone.study.get()).change, 1e-6));

@@ -24,8 +24,6 @@ struct Candidate {
 
   /// Within the bounds: nothing is explained by a negative damping.
   bool allows(const Eigen::VectorXd& amplitude) const;
-  /// The score's p-value; where the amplitude can have one sign only, of that side (Chernoff 1954).
-  double p_value(const Score& score) const;
 };
 
 /// The models that the tangents were read from: of what is linear, and of the others.

@@ -28,10 +28,9 @@ struct Finding {
 /// Hears of the candidates, best first, whenever more is known of them.
 using CandidatesSoFar = std::function<void(std::vector<MissingEffect>)>;
 
-/// Ranks the library by tangents, refits the best (or `wanted` ones, if any), and the best pairs where no single effect
-/// explains the error. `finer`: as an earlier look at the same recording found it; empty: found out now.
-/// `library`: see find_candidates. `so_far` hears of the tangents' ranking, and of what refits
-/// make of it. Throws InputError for a wanted effect that nothing proposes.
+/// Ranks the library by tangents, refits it (or `wanted` effects, if any), and compares what was fitted. `finer`: as an
+/// earlier look at the same recording found it; empty: found out now. `library`: see find_candidates. `so_far` hears of the
+/// tangents' ranking, and of what refits make of it. Throws InputError for a wanted effect that nothing proposes.
 Finding look(
     const Fitted& base, const std::vector<std::string>& wanted, const DiagnosisOptions& options,
     const FinerMesh& finer = {}, const Library& library = {},

@@ -18,8 +18,8 @@ struct FirstLook {
   FirstLook(const Fitted& fitted, const DiagnosisOptions& options, FinerMesh earlier, Library library = {});
 
   const Fitted& base;
-  const double rows, cost;  ///< number, and sum of squared errors [sigma^2]
-  const bool first;         ///< no earlier look at the same recording
+  const double cost;  ///< sum of squared errors [sigma^2]
+  const bool first;   ///< no earlier look at the same recording
   std::vector<Candidate> candidates;
   Library library;                 ///< that they were read from
   Eigen::MatrixXd known;           ///< tangents of the base's parameters
@@ -32,10 +32,6 @@ struct FirstLook {
   Explained explained;         ///< the base as it is compared
   ModelComparison comparison;  ///< of the base with others
   MisfitTest test;             ///< of the base's error, beside the numerics'
-
-  double structured() const;  ///< sum of squares beyond noise
 };
-
-constexpr double kRemainder = 1.0 / 3.0;  // of a finer mesh's change: what it leaves of the error at second order
 
 }  // namespace tissue_stiffness

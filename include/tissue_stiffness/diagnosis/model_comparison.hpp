@@ -16,8 +16,9 @@ struct ComparisonNumbers {
   double unknown_mesh = 0.02;     ///< of the motion: one standard deviation of the mesh's error where it cannot be computed
   double worthwhile = 5.0;        ///< log evidence from which on an unknown is fitted
   double most_numerics = 3.0;     ///< standard deviations of an error of the numerics
-  int mesh_modes = 12;            ///< lowest modes along which the mesh's error is an unknown of its own
-  int test_modes = 12;            ///< lowest modes that the test of the residual looks along
+  double promising = 0.2;  ///< share of the structured error from which on an effect is one of several, or run in full
+  int mesh_modes = 12;     ///< lowest modes along which the mesh's error is an unknown of its own
+  int test_modes = 12;     ///< lowest modes that the test of the residual looks along
 };
 constexpr ComparisonNumbers kComparison{};
 
@@ -43,6 +44,13 @@ struct Explained {
 /// that rings for long is not linear in them. `far`: also where no tangent shows it.
 Explained explain(const Fitted& fitted, bool far = false);
 
+/// What the comparison makes of one model.
+struct Assessment {
+  double log_evidence = 0.0;    ///< log p(e), but for a constant that all models share
+  double log_likelihood = 0.0;  ///< log p(e | u) at the most probable u; but for the same constant
+  MisfitTest test;              ///< of what the most probable u leaves: missing physics moves the lowest modes
+};
+
 /// Compares models of one recording by their residuals e at their fits, over all rows, in the noise's stated standard
 /// deviations times the roots of their robust weights q:
 ///   e ~ N(J u, s I),  u ~ N(prior, I),  J = [columns, D],  s = v (1 + m) / (1 - m),  log p += sum log sqrt(q).
@@ -60,23 +68,13 @@ class ModelComparison {
   /// Takes note of how little a residual leaves across the lowest modes.
   void note(const Eigen::VectorXd& error);
   double noise_variance() const { return noise_variance_; }  ///< s
-  /// log p(e), but for a constant that all models share.
-  double log_evidence(const Explained& model) const;
-  /// log p(e | u) at the most probable u, and that of a residual without unknowns; but for the same constant.
-  double log_likelihood(const Explained& model) const;
+  Assessment assess(const Explained& model) const;
+  /// log likelihood of a residual without unknowns.
   double log_likelihood(const Study::Rows& rows) const;
-  /// The test of what the most probable u leaves of a residual: missing physics moves the body along its lowest modes.
-  MisfitTest test(const Explained& model) const;
-  /// The same of the residual itself, of a model with that many parameters.
+  /// The test of a residual itself, of a model with that many parameters.
   MisfitTest test_of(const Eigen::VectorXd& error, double fitted) const;
 
  private:
-  struct Solution {
-    double log_evidence;
-    Eigen::VectorXd left;  ///< e - J u at the most probable u
-  };
-  Solution solve(const Eigen::VectorXd& error, const Linearisation& model) const;
-
   Eigen::VectorXd used_;  ///< 1 where a row says something, else 0
   std::vector<Eigen::Index> offsets_;
   Eigen::MatrixXd along_;  ///< rows / amplitude of each mode
@@ -89,7 +87,7 @@ std::vector<double> posterior(const std::vector<double>& log_weights);
 
 /// One hypothesis after the comparison.
 struct Explanation {
-  std::vector<std::string> effects;  ///< empty: the given model
+  std::string effect;  ///< empty: the given model
   double probability = 0.0;
   double z = 0.0;       ///< of the residual's test beside the mesh's error
   bool passes = false;  ///< that test

@@ -14,20 +14,27 @@ namespace tissue_stiffness {
 constexpr double kSameEvidence = 5.0;  // log evidence by tangents from which a refit is worth its time
 
 /// Parameters that are fitted besides the base's.
-std::ptrdiff_t parameters_of(const std::vector<Addition>& additions);
+std::ptrdiff_t parameters_of(const Candidate& way);
 
-/// Hears of all refits so far, best first, whenever there are more.
-using RefitsSoFar = std::function<void(const std::vector<Refit>&)>;
+class RefitList;
+
+/// Hears of all refits so far, whenever there are more.
+using RefitsSoFar = std::function<void(const RefitList&)>;
 
 /// The refits of one look: best first, one an effect.
 class RefitList {
  public:
   RefitList(const FirstLook& look, const DiagnosisOptions& options, RefitsSoFar so_far)
-      : look_(look), options_(options), so_far_(std::move(so_far)), comparison_(look.comparison), base_(look.explained) {}
+      : look_(look),
+        options_(options),
+        so_far_(std::move(so_far)),
+        comparison_(look.comparison),
+        base_(look.explained),
+        given_(comparison_.assess(base_)) {}
 
   /// Refits with each of these additions, side by side. What falls behind the best so far is not fitted to the end; where
   /// the recording's checkpoint throws Interrupted, those that were fitted by then are kept.
-  void add(std::vector<std::vector<Addition>> list);
+  void add(std::vector<Addition> list);
 
   /// Where the given model passes its test beside the error of the mesh alone, but an effect is more probable, both are
   /// fitted on the finer mesh: an effect may imitate what the mesh gets wrong.
@@ -37,13 +44,9 @@ class RefitList {
   const std::vector<Refit>& all() const { return refits_; }
   const Refit& best() const { return refits_.front(); }
   /// What the best one leaves has structure beyond chance.
-  bool leaves_more_than_noise() const { return empty() || test(best()).discrepancy() > 0.0; }
-  const Explained& base() const { return base_; }  ///< the given model as it is compared
+  bool leaves_more_than_noise() const { return empty() || best().assessment.test.discrepancy() > 0.0; }
+  const Assessment& given() const { return given_; }  ///< of the given model
   const ModelComparison& comparison() const { return comparison_; }
-  double log_evidence(const Refit& refit) const;
-  /// Of the given model.
-  double log_evidence_of_base() const;
-  MisfitTest test(const Refit& refit) const;
   std::vector<Refit> take() { return std::move(refits_); }
 
   /// Each on a core of its own, told by name; what a model that cannot be run would find is left out.
@@ -52,14 +55,15 @@ class RefitList {
 
  private:
   void keep(std::vector<std::optional<Refit>> done);
-  void sort();
+  void assess();
   void drop_worse_ways();
 
   const FirstLook& look_;
   const DiagnosisOptions& options_;
   RefitsSoFar so_far_;
   ModelComparison comparison_;
-  Explained base_;
+  Explained base_;    ///< the given model as it is compared
+  Assessment given_;  ///< of it
   std::vector<Refit> refits_;
 };
 

@@ -117,10 +117,11 @@ Fitted fit_study(std::unique_ptr<Study> study, const Eigen::VectorXd& start, dou
 /// What the rows' predictions go beyond the first frame's [sigma]; 0 in frames that see something else.
 Eigen::VectorXd motion_of(const Study::Rows& rows);
 
+/// Sum of the rows' squared errors beyond the noise that is stated [sigma^2], or 0.
+double structured_squares(const Study::Rows& rows);
+
 /// Root mean square of the rows' errors over held-out (true) or training frames [m].
 double rms_error(const Study::Rows& rows, const Recording& recording, bool held_out);
-/// Sum of squared errors [sigma^2] of each held-out frame, in their order.
-Eigen::VectorXd held_out_squares(const Study::Rows& rows, const Recording& recording);
 /// Root mean square of the noise that the model file states [m].
 double noise_floor(const Study::Rows& rows);
 

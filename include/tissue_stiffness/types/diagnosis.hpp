@@ -16,11 +16,10 @@ struct MissingEffect {
   std::string entry;                         ///< of the model file's `effects`, as its proposal was scored
   std::map<std::string, double> parameters;  ///< by name, of the refit where there was one, else the tangent's
   double log_bayes_factor = 0.0;             ///< over all ways in which the effect may be missing
-  /// Of its amplitude being zero, to first order; once it was refitted, of predicting held-out frames no better.
-  double p_value = 1.0;
-  double size = 0.0;                                    ///< rms of what it explains [sigma]
-  double explained = 0.0;                               ///< share of the residual's sum of squares
-  double probability = 0.0;                             ///< of the explanations that hold it; 0 without a refit
+  double p_value = 1.0;      ///< of the likelihood ratio with it and without it; to first order where there was no refit
+  double size = 0.0;         ///< rms of what it explains [sigma]
+  double explained = 0.0;    ///< share of the residual's sum of squares
+  double probability = 0.0;  ///< of the explanations that hold it; 0 without a refit
   double z = std::numeric_limits<double>::quiet_NaN();  ///< of the test of what the most probable of them leaves
   double held_out_rms_before = 0.0;                     ///< [m]
   double held_out_rms_after = std::numeric_limits<double>::quiet_NaN();  ///< [m]; NaN without a refit
