@@ -12,6 +12,7 @@
 #include "tissue_stiffness/diagnosis/first_look.hpp"
 #include "tissue_stiffness/diagnosis/fit_entries.hpp"
 #include "tissue_stiffness/diagnosis/missing_force.hpp"
+#include "tissue_stiffness/diagnosis/mix_explanations.hpp"
 #include "tissue_stiffness/diagnosis/residual_views.hpp"
 #include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/estimation/mesh_error.hpp"
@@ -26,6 +27,7 @@ namespace {
 
 constexpr std::size_t kFewestFrames = 18;
 constexpr double kBaseSpread = 0.1;    // prior standard deviations, of the sigma points of the first fit
+constexpr int kMostBases = 3;          // times that the model is fitted anew from where a larger one has it
 constexpr std::size_t kGrown = 2;      // leaders that are tried as one of several effects
 constexpr double kAddedSpread = 0.02;  // and of a model's that starts from a refit
 
@@ -119,6 +121,31 @@ Eigen::VectorXd believed(const Fitted& model, const Finding& finding) {
   return model.study->model().coordinates(finding.refits.front().parameters, model.fit.w);
 }
 
+// The other explanations of the set, by their shares of its probability.
+std::vector<RivalExplanation> rivals_of(const Finding& finding, const Refit& added) {
+  const auto believed = [&](const std::string& effect) {
+    return std::find(finding.set.begin(), finding.set.end(), effect) != finding.set.end();
+  };
+  const auto probability = [&](const std::string& effect) {
+    const auto same = [&](const Explanation& e) { return e.effect == effect; };
+    const auto at = std::find_if(finding.comparison.others.begin(), finding.comparison.others.end(), same);
+    return at != finding.comparison.others.end() ? at->probability : 0.0;
+  };
+  double all = probability(added.effect);
+  std::vector<RivalExplanation> out;
+  for (const Refit& refit : finding.refits) {
+    if (!believed(added.effect) || !believed(refit.effect) || refit.effect == added.effect) continue;
+    out.push_back({refit.effect, probability(refit.effect), {}});
+    all += out.back().probability;
+    for (const auto& [name, value] : refit.parameters) {
+      const auto own = added.parameters.find(name);
+      if (is_young_modulus(name) && own != added.parameters.end()) out.back().modulus_ratio[name] = value / own->second;
+    }
+  }
+  for (RivalExplanation& rival : out) rival.probability = all > 0.0 ? rival.probability / all : 0.0;
+  return out;
+}
+
 /// The search: what is known so far is always in `out`.
 class Search {
  public:
@@ -140,6 +167,10 @@ class Search {
       out_.candidates = std::move(candidates);
       publish();
     });
+    if (finding_.better_base) {
+      refit_base();
+      describe_residual(model_, std::numeric_limits<double>::quiet_NaN(), out_);
+    }
     if (finding_.verdict == Verdict::unexplained) grow();
     out_.verdict = out_.final_verdict = to_string(finding_.verdict);
     out_.adequate = finding_.comparison.given.probability;
@@ -173,6 +204,7 @@ class Search {
       }
       finding_ = grown_ ? std::move(*grown_) : look(model_, {}, options_, finding_.finer, library);
       grown_.reset();
+      if (finding_.better_base) refit_base();
       out_.final_verdict = to_string(finding_.verdict);
     }
   }
@@ -184,6 +216,7 @@ class Search {
     options_.progress("run the models once more for the report", 0, 0);
     publish();
     options_.at_end(out_, given_.study ? given_ : model_, model_, finding_.finer.study.get());
+    mix_explanations(out_.rivals, out_.estimate.parameters);
     out_.interrupted.clear();
   }
 
@@ -214,6 +247,16 @@ class Search {
     }
   }
 
+  // The search has found that the model itself fits better elsewhere.
+  void refit_base() {
+    for (int k = 0; k < kMostBases && finding_.better_base; ++k) {
+      model_ = fit_study(std::move(model_.study), *finding_.better_base, kAddedSpread);
+      out_.steps.pop_back();
+      add_step();
+      finding_ = look(model_, {}, options_, finding_.finer, finding_.library);
+    }
+  }
+
   // What was found beside the leader takes the place of what was found without it.
   void take_over(const std::vector<MissingEffect>& deeper) {
     std::vector<MissingEffect>& known = finding_.effects;
@@ -234,6 +277,8 @@ class Search {
   // The library of tangents that the next look may take over.
   Library add(const Refit& best) {
     options_.progress("add " + best.effect, 0, 0);
+    // What is found beside another effect was compared beside that one only.
+    out_.rivals.push_back(grown_ ? std::vector<RivalExplanation>() : rivals_of(finding_, best));
     Fitted next = extended(model_, best);
     Library library = same_body(model_.study->model(), next.study->model()) ? std::move(finding_.library) : Library();
     out_.final_effects.push_back(best.effect);

@@ -161,6 +161,7 @@ Finding look(const Fitted& base, const std::vector<std::string>& wanted, const D
   out.floor = look.floor;
   out.finer = look.finer;
   out.library = look.library;
+  out.better_base = refits.better_base();
   return out;
 }
 

@@ -1,14 +1,17 @@
 #include "tissue_stiffness/diagnosis/finer_mesh.hpp"
 
+#include <Eigen/Cholesky>
+
+#include "tissue_stiffness/diagnosis/candidates.hpp"
 #include "tissue_stiffness/estimation/mesh_error.hpp"
 #include "tissue_stiffness/meshing/refine.hpp"
-#include "tissue_stiffness/settings/extend_model.hpp"
-#include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kSpread = 0.02;  // prior standard deviations: the finer mesh's fit is close
+constexpr int kMostMoves = 8;   // of Gauss and Newton
+constexpr double kStep = 0.01;  // of a prior's standard deviation: half of the differences that tangents are read from
+constexpr double kGain = 0.01;  // relative fall of the sum of squares that is worth another move
 
 std::shared_ptr<const Study> on_finer_mesh(const Study& study, const ModelSettings& settings, const Study* known) {
   const Model& model = study.model();
@@ -25,24 +28,30 @@ std::shared_ptr<const Study> on_finer_mesh(const Study& study, const ModelSettin
 
 }  // namespace
 
-// Fitted anew, because a body that rings is soon out of phase with itself at another modulus: at the base's modulus the
-// finer mesh would differ by far more than by what it explains.
+// Against the base's own prediction and not against the frames: what is missing would lead this fit astray. A body that
+// rings is soon out of phase with itself at another modulus, so the parameters have to follow.
 FinerMesh finer_mesh(const Fitted& base, const Study* known) {
   FinerMesh out{Eigen::VectorXd::Zero(base.rows.error.size())};
   const Model& model = base.study->model();
   if (model.nonlinear() || !MeshError::why_not(model).empty()) return out;
   out.study = on_finer_mesh(*base.study, model.settings(), known);
-  const BatchFit fit = out.study->fit(base.fit.w, kSpread * model.prior_std());
-  const Study::Rows rows = out.study->rows(fit.w);
-  if (rows.predicted.size() != base.rows.predicted.size()) return out;
-  out.change = base.rows.used.cwiseProduct(rows.predicted - base.rows.predicted);
+  const Eigen::VectorXd prior = model.prior_std();
+  const auto change_at = [&](const Eigen::VectorXd& w) {
+    return Eigen::VectorXd(base.rows.used.cwiseProduct(out.study->predicted(w) - base.rows.predicted));
+  };
+  Eigen::VectorXd w = base.fit.w;
+  out.change = change_at(w);
+  for (int k = 0; k < kMostMoves; ++k) {
+    const Eigen::MatrixXd j = base_tangents(*out.study, w, kStep * prior, base.rows) * prior.asDiagonal();
+    const Eigen::MatrixXd precision = Eigen::MatrixXd::Identity(w.size(), w.size()) + j.transpose() * j;
+    const Eigen::VectorXd u = precision.ldlt().solve(j.transpose() * -out.change);
+    const Eigen::VectorXd next = w + prior.cwiseProduct(u);
+    const Eigen::VectorXd change = change_at(next);
+    if (!(change.squaredNorm() < (1.0 - kGain) * out.change.squaredNorm())) break;
+    w = next;
+    out.change = change;
+  }
   return out;
-}
-
-Fitted fit_on_finer_mesh(const Study& known, const ModelSettings& settings, const std::map<std::string, double>& start) {
-  auto study = std::make_unique<Study>(settings, known);
-  const Model& model = study->model();
-  return fit_study(std::move(study), model.coordinates(start, model.prior_mean()), kSpread);
 }
 
 }  // namespace tissue_stiffness

@@ -1,6 +1,7 @@
 #include "tissue_stiffness/diagnosis/first_look.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "tissue_stiffness/effects/registry.hpp"
@@ -8,10 +9,6 @@
 
 namespace tissue_stiffness {
 namespace {
-
-// Of the sum of squares: a mesh's change that would add more to it is none of the error's. The fit on the finer mesh has
-// ended in another minimum, or what is missing has led both fits astray.
-constexpr double kElsewhere = 0.2;
 
 // What a simulated recording has of its making is no missing physics, unless it is asked for.
 std::vector<std::string> not_looked_for(const DiagnosisOptions& options) {
@@ -36,25 +33,20 @@ FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Fine
   if (!test.passes()) explained = explain(base, true);
   const std::string step = "tangents of the library, and what a finer mesh would change";
   options.progress(step, 0, 0);
-  const Study::Rows& r = base.rows;
-  const auto worsens = [&](const Eigen::VectorXd& by) { return (r.error - by).squaredNorm() > (1.0 + kElsewhere) * cost; };
   run_side_by_side(
       [&] {
         candidates = find_candidates(
             *base.study, base.fit.w, not_looked_for(options),
             [&](std::size_t done, std::size_t total) { options.progress(step, done, total); }, library);
       },
-      [&] {
-        if (finer.study || !finer.change.any() || worsens(finer.change)) finer = finer_mesh(base, finer.study.get());
-      });
-  if (worsens(finer.change)) finer.change.setZero();
-  by_mesh = cost - (r.error - finer.change).squaredNorm();
-  known = explained.linearisation.columns;
+      [&] { finer = finer_mesh(base, finer.study.get()); });
   comparison.allow_for_mesh(finer.change);
   test = comparison.assess(explained).test;
-  // An effect has to explain what the mesh does not.
-  scorer = std::make_unique<Scorer>(explained.error - finer.change, known, comparison.noise_variance());
-  floor = scorer->remaining(finer.change);
+  const Eigen::MatrixXd &own = explained.linearisation.columns, &of_mesh = comparison.mesh_directions();
+  known.resize(own.rows(), own.cols() + of_mesh.cols());
+  known << own, of_mesh;
+  scorer = std::make_unique<Scorer>(explained.error, known, comparison.noise_variance());
+  floor = finer.change.norm() / std::sqrt(base.rows.count());
   ranked = rank(*scorer, candidates);
 }
 

@@ -45,6 +45,11 @@ Eigen::MatrixXd parted(const Eigen::VectorXd& change, const Eigen::MatrixXd& alo
   return out;
 }
 
+// Sum of squares of what such parts have along the modes.
+double along_modes(const Eigen::MatrixXd& parts) {
+  return parts.cols() > 0 ? parts.leftCols(parts.cols() - 1).rowwise().sum().squaredNorm() : 0.0;
+}
+
 // Of a linear model, and the fall of its deviance: all unknowns of the linearisation at the noise as stated.
 Eigen::VectorXd most_probable(const Linearisation& model, const Eigen::VectorXd& error, Eigen::Index unknowns,
                               double& deviance) {
@@ -153,7 +158,8 @@ Assessment ModelComparison::assess(const Explained& explained) const {
   out.log_likelihood = model.log_root_weights - 0.5 * left.squaredNorm() / s;
   out.log_evidence = out.log_likelihood - 0.5 * ((u - mean).squaredNorm() + log_determinant(factor));
   out.test = test_of(left, static_cast<double>(model.columns.cols()));
-  if (unknown.cols() > 0) out.test.set_numerics(model.mesh_error.squaredNorm() / used_.sum());
+  constexpr double part = kComparison.left_of_mesh / kComparison.whole_mesh;
+  out.test.set_numerics((part * part * along_modes(mesh_) + along_modes(unknown)) / used_.sum());
   return out;
 }
 

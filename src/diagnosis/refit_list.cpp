@@ -17,9 +17,8 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr std::size_t kRivals = 3;   // that are fitted on the finer mesh
-constexpr double kFinerMesh = 0.25;  // of a mesh's error that one of half its size has left, at second order
-constexpr double kReach = 1.05;      // times the best cost so far: fewer parameters may make up for less than that
+constexpr double kSpread = 0.05;  // prior standard deviations, of the sigma points of the base's fit from a refit's
+constexpr double kReach = 1.05;   // times the best cost so far: fewer parameters may make up for less than that
 
 }  // namespace
 
@@ -85,31 +84,13 @@ void RefitList::keep(std::vector<std::optional<Refit>> done) {
   so_far_(*this);
 }
 
-void RefitList::compare_on_finer_mesh() {
-  const Study* finer = look_.finer.study.get();
-  if (finer == nullptr || empty() || !given_.test.passes()) return;
-  if (comparison_.test_of(look_.base.rows.error, static_cast<double>(look_.base.fit.w.size())).passes()) return;
-  const double given = given_.log_evidence;
-  // What gains more than the mesh's change does not imitate it.
-  if (best().assessment.log_evidence - given > 0.5 * look_.by_mesh / comparison_.noise_variance()) return;
-  std::vector<Refit*> rivals;
-  for (Refit& refit : refits_) {
-    if (refit.assessment.log_evidence > given && refit.way->linear && rivals.size() < kRivals) rivals.push_back(&refit);
-  }
-  if (rivals.empty()) return;
+bool RefitList::find_better_base() {
   const Study& study = *look_.base.study;
-  const ModelSettings& settings = study.model().settings();
-  base_ = explain(fit_on_finer_mesh(*finer, settings, study.model().values(look_.base.fit.w)));
-  comparison_ = ModelComparison(look_.base, kFinerMesh * look_.finer.change);
-  try_each(
-      rivals.size(), [&](std::size_t i) { return "on a finer mesh: " + rivals[i]->effect; },
-      [&](std::size_t i) {
-        Refit& refit = *rivals[i];
-        refit.explained =
-            explain(fit_on_finer_mesh(*finer, extend_model(settings, {refit.way->proposal.refine}), refit.parameters));
-      });
-  for (const Refit* refit : rivals) comparison_.note(refit->explained.error);
-  assess();
+  if (empty() || study.model().nonlinear()) return false;
+  const Eigen::VectorXd start = study.model().coordinates(best().parameters, look_.base.fit.w);
+  const BatchFit fit = study.quick_fit(start, kSpread * study.model().prior_std());
+  if (look_.base.fit.cost - fit.cost > 2.0 * kComparison.worthwhile * comparison_.noise_variance()) better_base_ = fit.w;
+  return better_base_.has_value();
 }
 
 // All models anew, because the noise is that of the model that leaves least.

@@ -22,7 +22,7 @@ class Search {
   void operator()(const std::vector<std::string>& wanted) {
     if (!wanted.empty()) return refit_wanted(wanted);
     refit_from_tangents();
-    refits_.compare_on_finer_mesh();
+    if (refits_.find_better_base()) return;
     if (wide() && refits_.leaves_more_than_noise()) refit_other_ways();
     if (wide() && refits_.leaves_more_than_noise()) refit_from_beginning();
     if (wide() && refits_.leaves_more_than_noise()) refit_other_kinds();
@@ -137,8 +137,7 @@ void Search::refit_from_beginning() {
 std::vector<const Candidate*> Search::different_ways() const {
   const std::vector<Eigen::Index>& offsets = look_.base.rows.offsets;
   const Eigen::Index rows = offsets[static_cast<std::size_t>(kBeginning * static_cast<double>(offsets.size() - 1))];
-  const Scorer scorer((look_.base.rows.error - look_.finer.change).head(rows), look_.known.topRows(rows),
-                      look_.comparison.noise_variance());
+  const Scorer scorer(look_.base.rows.error.head(rows), look_.known.topRows(rows), look_.comparison.noise_variance());
   std::vector<std::pair<const Candidate*, Score>> ways;
   for (const Candidate& candidate : look_.candidates) {
     if (!candidate.linear) continue;

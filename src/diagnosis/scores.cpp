@@ -37,10 +37,6 @@ Eigen::MatrixXd Scorer::project(const Eigen::MatrixXd& x) const {
   return once - basis_ * (basis_.transpose() * once);
 }
 
-double Scorer::remaining(const Eigen::VectorXd& column) const {
-  return project(column).norm() / std::sqrt(static_cast<double>(column.size()));
-}
-
 Score Scorer::score(const Tangent& tangent) const {
   Score out;
   const Eigen::Index components = tangent.columns.cols();

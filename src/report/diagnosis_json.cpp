@@ -82,6 +82,13 @@ std::string diagnosis_json(const Diagnosis& d) {
     final["parameters"][p.name] = {
         {"unit", p.unit}, {"mean", number(p.mean)}, {"interval95", {number(p.lower95), number(p.upper95)}}};
   }
+  for (const std::vector<RivalExplanation>& addition : d.rivals) {
+    for (const RivalExplanation& rival : addition) {
+      final["rivals"].push_back({{"effect", rival.effect},
+                                 {"probability", number(rival.probability)},
+                                 {"modulus_ratio", numbers(rival.modulus_ratio)}});
+    }
+  }
   json candidates = json::array(), steps = json::array();
   for (const MissingEffect& c : d.candidates) candidates.push_back(candidate_json(c));
   for (const DiagnosisStep& s : d.steps) {

@@ -62,6 +62,10 @@ std::string diagnosis_sentence(const Diagnosis& d) {
                [&](const std::string& effect) { return std::count(found.begin(), found.end(), effect) == 0; });
   if (!others.empty()) {
     text += " These data fit as well: " + effect_list(others) + ".";
+    const auto rivalled = [](const std::vector<RivalExplanation>& rivals) { return !rivals.empty(); };
+    if (std::any_of(d.rivals.begin(), d.rivals.end(), rivalled)) {
+      text += " Young's modulus is the mixture of what they lead to.";
+    }
     if (!d.next_experiment.empty()) text += " To tell them apart: " + effect_title(d.next_experiment) + ".";
   }
   return text;

@@ -39,22 +39,6 @@ class BarWithADamping : public ::testing::Test {
   Fitted base_;
 };
 
-TEST_F(BarWithADamping, CountsAMeshsChangeThatIsPartOfTheError) {
-  const Eigen::VectorXd part = 0.3 * base_.rows.error;
-  const FirstLook look(base_, {}, {part});
-  EXPECT_EQ(look.finer.change, part);
-  EXPECT_NEAR(look.by_mesh, (1.0 - 0.49) * look.cost, 1e-9 * look.cost);
-  EXPECT_GT(look.floor, 0.0);
-}
-
-// A fit on a finer mesh that ended in another minimum: no effect has to explain more than that.
-TEST_F(BarWithADamping, DropsAMeshsChangeThatMakesTheErrorMuchLarger) {
-  const FirstLook look(base_, {}, {-0.3 * base_.rows.error});
-  EXPECT_FALSE(look.finer.change.any());
-  EXPECT_EQ(look.by_mesh, 0.0);
-  EXPECT_EQ(look.floor, 0.0);
-}
-
 // Amplitudes of tangents are counted from where the effect is absent: a scale is 1 there.
 TEST_F(BarWithADamping, CountsAmplitudesFromWhereAnEffectIsAbsent) {
   const FirstLook look(base_, {}, {Eigen::VectorXd::Zero(base_.rows.error.size())});

@@ -129,6 +129,7 @@ TEST(ComparisonNumbers, AreThoseOfTheMethodsTable) {
   };
   row("`believed`", text(kComparison.believed));
   row("`whole_mesh`", text(3.0 * kComparison.whole_mesh) + "/3");
+  row("`left_of_mesh`", text(kComparison.left_of_mesh));
   row("`unknown_mesh`", text(kComparison.unknown_mesh));
   row("`worthwhile`", text(kComparison.worthwhile));
   row("`promising`", text(kComparison.promising));

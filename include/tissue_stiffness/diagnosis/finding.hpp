@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,8 @@ struct Finding {
   std::vector<Refit> refits;           ///< best first
   double floor = 0.0;                  ///< rms of what a finer mesh would change [sigma]
   FinerMesh finer;
-  Library library;  ///< that the tangents were read from
+  Library library;                             ///< that the tangents were read from
+  std::optional<Eigen::VectorXd> better_base;  ///< where the base itself fits better: the rest is not searched to the end
   std::shared_ptr<const ModelComparison> models;
 };
 

@@ -1,9 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <map>
 #include <memory>
-#include <string>
 
 #include "tissue_stiffness/diagnosis/study.hpp"
 
@@ -15,12 +13,9 @@ struct FinerMesh {
   std::shared_ptr<const Study> study = nullptr;  ///< of the model there; null where there is none
 };
 
-/// The same model on that mesh and fitted to the same frames: the error that is the mesh's own. It cannot be found out
-/// where the model is nonlinear or large, or the model file does not want it. `known`: the mesh of an earlier look, or
-/// null.
+/// What the base's free run becomes on that mesh, at the parameters there that come closest to it: what they do not take up
+/// is the mesh's own error, to within what the next finer mesh would change. It cannot be found out where the model is
+/// nonlinear or large, or the model file does not want it. `known`: the mesh of an earlier look, or null.
 FinerMesh finer_mesh(const Fitted& base, const Study* known = nullptr);
-
-/// A model on the mesh of `known`, fitted from these parameters.
-Fitted fit_on_finer_mesh(const Study& known, const ModelSettings& settings, const std::map<std::string, double>& start);
 
 }  // namespace tissue_stiffness

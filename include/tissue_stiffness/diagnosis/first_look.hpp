@@ -13,7 +13,7 @@ namespace tissue_stiffness {
 
 /// What a fitted model's error shows before anything is refitted: the library, ranked by its tangents, and the mesh's part.
 struct FirstLook {
-  /// `earlier`: the finer mesh of an earlier look at the same recording; what it changes is found out for this model.
+  /// `earlier`: the finer mesh of an earlier look at the same recording.
   /// `library`: see find_candidates.
   FirstLook(const Fitted& fitted, const DiagnosisOptions& options, FinerMesh earlier, Library library = {});
 
@@ -21,12 +21,11 @@ struct FirstLook {
   const double cost;  ///< sum of squared errors [sigma^2]
   const bool first;   ///< no earlier look at the same recording
   std::vector<Candidate> candidates;
-  Library library;                 ///< that they were read from
-  Eigen::MatrixXd known;           ///< tangents of the base's parameters
-  FinerMesh finer;                 ///< its change is zero where that makes the error much larger
-  double by_mesh = 0.0;            ///< of the sum of squared errors
-  double floor = 0.0;              ///< rms of what the base's parameters leave of the mesh's change [sigma]
-  std::unique_ptr<Scorer> scorer;  ///< of the error that the mesh does not explain
+  Library library;        ///< that they were read from
+  Eigen::MatrixXd known;  ///< tangents of the base's parameters, and directions of the mesh's error
+  FinerMesh finer;
+  double floor = 0.0;  ///< rms of what the base's parameters leave of the mesh's change [sigma]
+  std::unique_ptr<Scorer> scorer;
   std::vector<Ranked> ranked;
 
   Explained explained;         ///< the base as it is compared

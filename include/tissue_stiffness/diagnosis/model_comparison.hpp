@@ -13,6 +13,7 @@ namespace tissue_stiffness {
 struct ComparisonNumbers {
   double believed = 0.95;         ///< posterior probability that the set of explanations holds
   double whole_mesh = 4.0 / 3.0;  ///< of what a mesh refined once changes, at second order: one standard deviation
+  double left_of_mesh = 0.5;      ///< of what a mesh refined once changes: the most in directions that D does not hold
   double unknown_mesh = 0.02;     ///< of the motion: one standard deviation of the mesh's error where it cannot be computed
   double worthwhile = 5.0;        ///< log evidence from which on an unknown is fitted
   double most_numerics = 3.0;     ///< standard deviations of an error of the numerics
@@ -48,7 +49,9 @@ Explained explain(const Fitted& fitted, bool far = false);
 struct Assessment {
   double log_evidence = 0.0;    ///< log p(e), but for a constant that all models share
   double log_likelihood = 0.0;  ///< log p(e | u) at the most probable u; but for the same constant
-  MisfitTest test;              ///< of what the most probable u leaves: missing physics moves the lowest modes
+  /// Of what the most probable u leaves: missing physics moves the lowest modes. A part of what a finer mesh
+  /// changes is allowed for, because the mesh's error has directions that D does not hold.
+  MisfitTest test;
 };
 
 /// Compares models of one recording by their residuals e at their fits, over all rows, in the noise's stated standard
@@ -67,7 +70,8 @@ class ModelComparison {
   void allow_for_mesh(const Eigen::VectorXd& change);
   /// Takes note of how little a residual leaves across the lowest modes.
   void note(const Eigen::VectorXd& error);
-  double noise_variance() const { return noise_variance_; }  ///< s
+  double noise_variance() const { return noise_variance_; }         ///< s
+  const Eigen::MatrixXd& mesh_directions() const { return mesh_; }  ///< D
   Assessment assess(const Explained& model) const;
   /// log likelihood of a residual without unknowns.
   double log_likelihood(const Study::Rows& rows) const;

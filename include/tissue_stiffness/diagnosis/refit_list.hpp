@@ -36,9 +36,10 @@ class RefitList {
   /// the recording's checkpoint throws Interrupted, those that were fitted by then are kept.
   void add(std::vector<Addition> list);
 
-  /// Where the given model passes its test beside the error of the mesh alone, but an effect is more probable, both are
-  /// fitted on the finer mesh: an effect may imitate what the mesh gets wrong.
-  void compare_on_finer_mesh();
+  /// Looks for a fit of the given model that starts where the best refit has its parameters: no model fits worse than one
+  /// that it contains, so a refit that finds another minimum may find it for the given model, too. True if it fits better.
+  bool find_better_base();
+  const std::optional<Eigen::VectorXd>& better_base() const { return better_base_; }
 
   bool empty() const { return refits_.empty(); }
   const std::vector<Refit>& all() const { return refits_; }
@@ -65,6 +66,7 @@ class RefitList {
   Explained base_;    ///< the given model as it is compared
   Assessment given_;  ///< of it
   std::vector<Refit> refits_;
+  std::optional<Eigen::VectorXd> better_base_;
 };
 
 }  // namespace tissue_stiffness

@@ -28,8 +28,6 @@ class Scorer {
   Scorer(const Eigen::VectorXd& residual, const Eigen::MatrixXd& known, double variance);
 
   Score score(const Tangent& tangent) const;
-  /// rms over rows of what is left of a column after the projection [its unit].
-  double remaining(const Eigen::VectorXd& column) const;
 
  private:
   Eigen::MatrixXd project(const Eigen::MatrixXd& x) const;

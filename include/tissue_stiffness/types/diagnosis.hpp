@@ -75,6 +75,13 @@ struct BestExplanation {
   double held_out_rms = std::numeric_limits<double>::quiet_NaN();  ///< [m]
 };
 
+/// An explanation that the data do not tell from the one that was added.
+struct RivalExplanation {
+  std::string effect;
+  double probability = 0.0;                     ///< among those that are not told apart
+  std::map<std::string, double> modulus_ratio;  ///< by a Young's modulus' name: with it, over with the added one
+};
+
 /// Which physics a model misses. `verdict`: adequate, missing, numerics, unexplained; unfinished where the search was
 /// interrupted before it had one. What is not known then is empty or NaN.
 struct Diagnosis {
@@ -94,10 +101,11 @@ struct Diagnosis {
   std::string next_experiment;
   std::string final_verdict = "unfinished";  ///< of the last step
   std::vector<std::string> final_effects;
-  std::vector<std::string> entries;  ///< of the accepted effects, for the model file
-  std::string interrupted;           ///< what was under way when the work was interrupted; empty: all was done
+  std::vector<std::string> entries;                   ///< of the accepted effects, for the model file
+  std::vector<std::vector<RivalExplanation>> rivals;  ///< of each accepted effect
+  std::string interrupted;  ///< what was under way when the work was interrupted; empty: all was done
   double seconds = 0.0;
-  Estimate estimate;  ///< of the last step's model: an estimator's; in state no_data the fit's own
+  Estimate estimate;  ///< of the last step's model: an estimator's; in state no_data the fit's own; mixed over rivals
 };
 
 }  // namespace tissue_stiffness
