@@ -86,9 +86,13 @@ void RefitList::keep(std::vector<std::optional<Refit>> done) {
 
 bool RefitList::find_better_base() {
   const Study& study = *look_.base.study;
-  if (empty() || study.model().nonlinear()) return false;
-  const Eigen::VectorXd start = study.model().coordinates(best().parameters, look_.base.fit.w);
-  const BatchFit fit = study.quick_fit(start, kSpread * study.model().prior_std());
+  if (study.model().nonlinear()) return false;
+  Study::Place start = study.scan_near(look_.base.fit.w, study.tuning_shared_with(study));
+  for (const Refit& refit : refits_) {
+    Study::Place place = study.scan_near(study.model().coordinates(refit.parameters, look_.base.fit.w), {});
+    if (place.cost < start.cost) start = std::move(place);
+  }
+  const BatchFit fit = study.quick_fit(start.w, kSpread * study.model().prior_std());
   if (look_.base.fit.cost - fit.cost > 2.0 * kComparison.worthwhile * comparison_.noise_variance()) better_base_ = fit.w;
   return better_base_.has_value();
 }

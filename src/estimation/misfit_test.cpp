@@ -37,7 +37,7 @@ void MisfitTest::add(const Eigen::VectorXd& residual, const Eigen::VectorXd& pre
 }
 
 double MisfitTest::noise_level() const {
-  return rest_dof_ > 0.0 ? std::max(1.0, rest_ / rest_dof_) : 1.0;
+  return rest_dof_ > 0.0 ? std::clamp(rest_ / rest_dof_, 1.0, most_noise) : 1.0;
 }
 
 double MisfitTest::excess() const {

@@ -65,6 +65,22 @@ TEST(Diagnose, NamesHiddenDampingAndAddsIt) {
   EXPECT_EQ(d.final_verdict, "adequate");
 }
 
+// A larger model that finds another minimum shows the given one where to start: nothing is missing there.
+TEST(Diagnose, StartsTheGivenModelWhereARefitEnds) {
+  const Recording recording = film({}, 1);
+  Fitted base;
+  base.study = std::make_unique<Study>(box_settings(bar("{prior: 35.0e3, factor: 3}")), bar_mesh(), recording);
+  base.fit = base.study->fit(base.study->model().prior_mean(), 0.1 * base.study->model().prior_std());
+  base.rows = base.study->rows(base.fit.w);
+  EXPECT_FALSE(look(base, {}, {}).better_base);
+  base.fit.w[0] = std::log(1.25 * kTruth);
+  base.rows = base.study->rows(base.fit.w);
+  base.fit.cost = base.rows.error.squaredNorm();
+  const Finding finding = look(base, {}, {});
+  ASSERT_TRUE(finding.better_base);
+  EXPECT_NEAR(std::exp((*finding.better_base)[0]) / kTruth, 1.0, 0.01);
+}
+
 TEST(Diagnose, DoesNotLookForWhatItIsToldToIgnore) {
   DiagnosisOptions options;
   options.ignore = {"viscous_damping", "mass_damping", "viscoelasticity"};

@@ -36,8 +36,8 @@ class RefitList {
   /// the recording's checkpoint throws Interrupted, those that were fitted by then are kept.
   void add(std::vector<Addition> list);
 
-  /// Looks for a fit of the given model that starts where the best refit has its parameters: no model fits worse than one
-  /// that it contains, so a refit that finds another minimum may find it for the given model, too. True if it fits better.
+  /// Fits the given model as refits are fitted: from the best place near its fit, or from where a refit has its parameters.
+  /// A refit that has found another minimum may have found it for the given model, too. True if that fits better.
   bool find_better_base();
   const std::optional<Eigen::VectorXd>& better_base() const { return better_base_; }
 

@@ -31,14 +31,15 @@ class MisfitTest {
   double discrepancy() const;
   /// Degrees of freedom along the modes.
   double structured_dof() const { return along_dof_; }
-  /// Mean square of the residuals across the shapes a degree of freedom, in noise variances, at least 1.
+  /// Mean square of the residuals across the shapes a degree of freedom, in noise variances, between 1 and `most_noise`.
   double noise_level() const;
   /// Correlation of consecutive frames' residuals across the shapes, 0 to 0.95.
   double memory() const;
   bool empty() const { return frames_ == 0; }
 
-  static constexpr double tolerated = 1.0;  ///< noise variances: unexplained motion below one frame's noise
-  static constexpr double bound = 3.0;      ///< standard deviations
+  static constexpr double most_noise = 9.0;  ///< noise variances: noise beyond three times the stated one is a misfit
+  static constexpr double tolerated = 1.0;   ///< noise variances: unexplained motion below one frame's noise
+  static constexpr double bound = 3.0;       ///< standard deviations
 
  private:
   double along_ = 0.0, along_dof_ = 0.0, rest_ = 0.0, rest_dof_ = 0.0;
