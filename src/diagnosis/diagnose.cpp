@@ -68,16 +68,17 @@ bool same_body(const Model& model, const Model& next) {
   });
 }
 
-void describe_residual(const Fitted& model, double floor, Diagnosis& out) {
+void describe_residual(const Fitted& model, Diagnosis& out) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();  // what the mesh changes, as yet
   out.where = where_it_fails(*model.study, model.rows);
   out.when = when_it_fails(*model.study, model.rows);
   out.residual = residual_views(*model.study, model.rows);
   const double count = model.rows.count();
   const double sigma = noise_floor(model.rows);
-  out.sigmas = {std::sqrt(model.rows.error.squaredNorm() / count), 1.0, floor, 0.0};
+  out.sigmas = {std::sqrt(model.rows.error.squaredNorm() / count), 1.0, unknown, 0.0};
   out.sigmas.structured = std::sqrt(std::max(0.0, out.sigmas.total * out.sigmas.total - 1.0));
   const double total = std::sqrt(model.rows.error.cwiseProduct(model.rows.sigma).squaredNorm() / count);
-  out.metres = {total, sigma, floor * sigma, std::sqrt(std::max(0.0, total * total - sigma * sigma))};
+  out.metres = {total, sigma, unknown, std::sqrt(std::max(0.0, total * total - sigma * sigma))};
 }
 
 std::string to_string(Verdict verdict) {
@@ -126,18 +127,15 @@ std::vector<RivalExplanation> rivals_of(const Finding& finding, const Refit& add
   const auto believed = [&](const std::string& effect) {
     return std::find(finding.set.begin(), finding.set.end(), effect) != finding.set.end();
   };
-  const auto probability = [&](const std::string& effect) {
-    const auto same = [&](const Explanation& e) { return e.effect == effect; };
-    const auto at = std::find_if(finding.comparison.others.begin(), finding.comparison.others.end(), same);
-    return at != finding.comparison.others.end() ? at->probability : 0.0;
-  };
-  double all = probability(added.effect);
+  if (!believed(added.effect)) return {};
   std::vector<RivalExplanation> out;
-  for (const Refit& refit : finding.refits) {
-    if (!believed(added.effect) || !believed(refit.effect) || refit.effect == added.effect) continue;
-    out.push_back({refit.effect, probability(refit.effect), {}});
-    all += out.back().probability;
-    for (const auto& [name, value] : refit.parameters) {
+  double all = 0.0;
+  for (const MissingEffect& effect : finding.effects) {
+    if (!believed(effect.effect)) continue;
+    all += effect.probability;
+    if (effect.effect == added.effect) continue;
+    out.push_back({effect.effect, effect.probability, {}});
+    for (const auto& [name, value] : effect.parameters) {
       const auto own = added.parameters.find(name);
       if (is_young_modulus(name) && own != added.parameters.end()) out.back().modulus_ratio[name] = value / own->second;
     }
@@ -160,7 +158,7 @@ class Search {
   void judge_given(const ModelSettings& settings, const TetMesh& mesh) {
     options_.progress("fit of the given model", 0, 0);
     model_ = fit_model(settings, mesh, recording_);
-    describe_residual(model_, std::numeric_limits<double>::quiet_NaN(), out_);
+    describe_residual(model_, out_);
     options_.progress("compare the given model with the recording", 0, 0);
     add_step();
     finding_ = look(model_, {}, options_, {}, {}, [&](std::vector<MissingEffect> candidates) {
@@ -169,7 +167,7 @@ class Search {
     });
     if (finding_.better_base) {
       refit_base();
-      describe_residual(model_, std::numeric_limits<double>::quiet_NaN(), out_);
+      describe_residual(model_, out_);
     }
     if (finding_.verdict == Verdict::unexplained) grow();
     out_.verdict = out_.final_verdict = to_string(finding_.verdict);

@@ -29,8 +29,8 @@ FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Fine
       finer(std::move(earlier)),
       explained(explain(base)),
       comparison(base, Eigen::VectorXd::Zero(base.rows.error.size())),
-      test(comparison.assess(explained).test) {
-  if (!test.passes()) explained = explain(base, true);
+      given(comparison.assess(explained)) {
+  if (!given.test.passes()) explained = explain(base, true);
   const std::string step = "tangents of the library, and what a finer mesh would change";
   options.progress(step, 0, 0);
   run_side_by_side(
@@ -41,7 +41,7 @@ FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Fine
       },
       [&] { finer = finer_mesh(base, finer.study.get()); });
   comparison.allow_for_mesh(finer.change);
-  test = comparison.assess(explained).test;
+  given = comparison.assess(explained);
   const Eigen::MatrixXd &own = explained.linearisation.columns, &of_mesh = comparison.mesh_directions();
   known.resize(own.rows(), own.cols() + of_mesh.cols());
   known << own, of_mesh;

@@ -1,14 +1,15 @@
 #include "tissue_stiffness/diagnosis/mix_explanations.hpp"
 
 #include <algorithm>
-#include <boost/math/special_functions/erf.hpp>
 #include <cmath>
+
+#include "tissue_stiffness/filter/consistency.hpp"
+#include "tissue_stiffness/filter/interval.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
-constexpr double k95 = 1.959963984540054;  // standard deviations
-constexpr double kFar = 12.0;              // standard deviations, within which a mixture's quantiles are looked for
+constexpr double kFar = 12.0;  // standard deviations, within which a mixture's quantiles are looked for
 constexpr int kHalvings = 60;
 
 struct Component {
@@ -42,7 +43,7 @@ double quantile(const std::vector<Component>& components, double mean, double st
     const double middle = 0.5 * (low + high);
     double below = 0.0;
     for (const Component& c : components) {
-      below += c.weight * 0.5 * boost::math::erfc((mean + c.shift - middle) / (std * std::sqrt(2.0)));
+      below += c.weight * normal_cdf((middle - mean - c.shift) / std);
     }
     (below < share ? low : high) = middle;
   }
@@ -57,7 +58,8 @@ void mix_explanations(const std::vector<std::vector<RivalExplanation>>& rivals,
     if (!is_young_modulus(p.name) || !(p.lower95 > 0.0) || !(p.upper95 > p.lower95)) continue;
     const std::vector<Component> components = components_of(rivals, p.name);
     if (components.size() < 2) continue;
-    const double mean = 0.5 * std::log(p.upper95 * p.lower95), std = std::log(p.upper95 / p.lower95) / (2.0 * k95);
+    const double mean = 0.5 * std::log(p.upper95 * p.lower95),
+                 std = std::log(p.upper95 / p.lower95) / (2.0 * normal_quantile_975);
     double first = 0.0, second = 0.0;  // moments of E over those of the added explanation alone
     for (const Component& c : components) {
       first += c.weight * std::exp(c.shift);

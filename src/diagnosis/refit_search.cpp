@@ -38,7 +38,7 @@ class Search {
   std::vector<Refit> leaders() const;
   /// Something is to be explained that tangents may not show. What a model that already has an effect leaves is small
   /// once it passes its test, and tangents are taken at the right place.
-  bool wide() const { return look_.first ? look_.test.discrepancy() > 0.0 : !look_.test.passes(); }
+  bool wide() const { return look_.first ? look_.given.test.discrepancy() > 0.0 : !look_.given.test.passes(); }
   /// Runs in full take long: none for an effect whose tangent explains next to nothing.
   bool worth_full_runs(const Ranked& r) const {
     return r.best->linear || r.score.explained > kComparison.promising * structured_squares(look_.base.rows);

@@ -3,8 +3,9 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <algorithm>
-#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
+
+#include "tissue_stiffness/filter/consistency.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -70,7 +71,7 @@ double log_mean_exp(const std::vector<double>& values) {
 }
 
 double likelihood_ratio_p_value(double gain, double parameters) {
-  return boost::math::gamma_q(0.5 * std::max(1.0, parameters), 0.5 * std::max(0.0, gain));
+  return chi_squared_upper(gain, std::max(1.0, parameters));
 }
 
 }  // namespace tissue_stiffness

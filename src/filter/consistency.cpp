@@ -79,6 +79,10 @@ double chi_squared_cdf(double x, double dof) {
   return x <= 0.0 ? 0.0 : gamma_tails(0.5 * dof, 0.5 * x).lower;
 }
 
+double chi_squared_upper(double x, double dof) {
+  return x <= 0.0 ? 1.0 : gamma_tails(0.5 * dof, 0.5 * x).upper;
+}
+
 double chi_squared_quantile(double p, double dof) {
   if (!(p > 0.0 && p < 1.0 && dof > 0.0)) throw std::invalid_argument("chi-squared quantile needs 0 < p < 1 and dof > 0");
   double low = 0.0, high = dof + 1.0;

@@ -8,7 +8,6 @@
 #include <stdexcept>
 
 #include "tissue_stiffness/filter/interval.hpp"
-#include "tissue_stiffness/filter/long_run_variance.hpp"
 #include "tissue_stiffness/filter/robust_weights.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
@@ -98,49 +97,6 @@ TEST(Interval, NormalAndLogNormal) {
   EXPECT_NEAR(log_normal.std, std::sqrt((draws - draws.mean()).square().mean()), 0.02 * log_normal.std);
   EXPECT_NEAR((draws > log_normal.lower95 && draws < log_normal.upper95).cast<double>().mean(), 0.95, 0.002);
   EXPECT_NEAR(log_normal_interval(m, 1e-20).std, 3e4 * 1e-10, 1e-12);  // no cancellation for a narrow posterior
-}
-
-TEST(LongRunVariance, AutoregressiveTheory) {
-  for (const double rho : {-0.5, 0.0, 0.5, 0.8}) {
-    Eigen::VectorXd series = normal_rows(200000, 11);
-    for (Eigen::Index i = 1; i < series.size(); ++i) series[i] += rho * series[i - 1];
-    const double theory = 1.0 / ((1.0 - rho) * (1.0 - rho));  // of AR(1) with unit innovations
-    const double found = long_run_variance(series, bartlett_lags(series));
-    EXPECT_NEAR(found, theory, 0.1 * theory) << rho;
-    const double naive = 1.0 / (1.0 - rho * rho);
-    EXPECT_NEAR(long_run_variance(series, 0), naive, 0.02 * naive);
-  }
-}
-
-/// The reason to have it: tests on correlated residuals reject 5 % of the time, not half of it.
-TEST(LongRunVariance, KeepsTheSizeOfATest) {
-  const double rho = 0.8;
-  int naive = 0, corrected = 0;
-  const int trials = 1000;
-  for (int trial = 0; trial < trials; ++trial) {
-    Eigen::VectorXd series = normal_rows(600, static_cast<unsigned>(trial));
-    for (Eigen::Index i = 1; i < series.size(); ++i) series[i] += rho * series[i - 1];
-    const double n = static_cast<double>(series.size());
-    const auto rejects = [&](int lags) {
-      return std::abs(series.sum()) > 1.96 * std::sqrt(n * long_run_variance(series, lags));
-    };
-    if (rejects(0)) ++naive;
-    if (rejects(bartlett_lags(series))) ++corrected;
-  }
-  EXPECT_GT(naive, 0.35 * trials);
-  EXPECT_LT(corrected, 0.10 * trials);
-  EXPECT_GT(corrected, 0.02 * trials);
-}
-
-TEST(LongRunVariance, EdgeCases) {
-  EXPECT_THROW(long_run_variance(Eigen::VectorXd(), 0), std::invalid_argument);
-  EXPECT_THROW(long_run_variance(Eigen::VectorXd::Ones(3), -1), std::invalid_argument);
-  EXPECT_EQ(bartlett_lags(Eigen::VectorXd::Zero(10)), 0);
-  EXPECT_EQ(bartlett_lags(Eigen::VectorXd::Ones(1)), 0);
-  EXPECT_LE(bartlett_lags(Eigen::VectorXd::Ones(5)), 4);
-  const Eigen::VectorXd alternating =
-      Eigen::VectorXd::LinSpaced(50, 0, 49).unaryExpr([](double t) { return std::cos(M_PI * t); });
-  for (int lags = 0; lags < 50; ++lags) EXPECT_GE(long_run_variance(alternating, lags), 0.0);
 }
 
 TEST(RobustWeights, FewGrossOutliersLoseTheirPull) {

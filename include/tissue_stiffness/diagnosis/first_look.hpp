@@ -30,7 +30,7 @@ struct FirstLook {
 
   Explained explained;         ///< the base as it is compared
   ModelComparison comparison;  ///< of the base with others
-  MisfitTest test;             ///< of the base's error, beside the numerics'
+  Assessment given;            ///< of the base
 };
 
 }  // namespace tissue_stiffness

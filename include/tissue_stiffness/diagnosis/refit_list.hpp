@@ -30,7 +30,7 @@ class RefitList {
         so_far_(std::move(so_far)),
         comparison_(look.comparison),
         base_(look.explained),
-        given_(comparison_.assess(base_)) {}
+        given_(look.given) {}
 
   /// Refits with each of these additions, side by side. What falls behind the best so far is not fitted to the end; where
   /// the recording's checkpoint throws Interrupted, those that were fitted by then are kept.

@@ -15,6 +15,9 @@ double incomplete_gamma(double a, double x);
 /// P(chi^2_dof <= x). `dof` > 0 need not be whole.
 double chi_squared_cdf(double x, double dof);
 
+/// P(chi^2_dof > x), to full relative precision where it is small.
+double chi_squared_upper(double x, double dof);
+
 /// Inverse of chi_squared_cdf for 0 < p < 1.
 double chi_squared_quantile(double p, double dof);
 
