@@ -97,7 +97,9 @@ std::string to_string(Verdict verdict) {
 
 BestExplanation best_of(const Fitted& model, const Finding& finding) {
   if (finding.refits.empty()) return {};
-  const Refit& best = finding.refits.front();
+  const auto named = [&](const Refit& r) { return !finding.set.empty() && r.effect == finding.set.front(); };
+  const auto at = std::find_if(finding.refits.begin(), finding.refits.end(), named);
+  const Refit& best = at == finding.refits.end() ? finding.refits.front() : *at;
   return {{best.effect}, 1.0 - best.cost / model.rows.error.squaredNorm(), best.held_out_rms};
 }
 
@@ -161,19 +163,20 @@ class Search {
     describe_residual(model_, out_);
     options_.progress("compare the given model with the recording", 0, 0);
     add_step();
-    finding_ = look(model_, {}, options_, {}, {}, [&](std::vector<MissingEffect> candidates) {
+    bool moved = false;
+    finding_ = examine(model_, {}, {}, moved, [&](std::vector<MissingEffect> candidates) {
       out_.candidates = std::move(candidates);
       publish();
     });
-    if (finding_.better_base) {
-      refit_base();
+    if (moved) {
+      replace_step();
       describe_residual(model_, out_);
     }
     if (finding_.verdict == Verdict::unexplained) grow();
     out_.verdict = out_.final_verdict = to_string(finding_.verdict);
-    out_.adequate = finding_.comparison.given.probability;
-    out_.none_of_these = finding_.comparison.none_of_these;
-    out_.z = finding_.comparison.given.z;
+    out_.adequate = finding_.comparison.given().probability;
+    out_.none_of_these = finding_.comparison.none_of_these();
+    out_.z = finding_.comparison.given().z;
     out_.set = finding_.set;
     out_.best = best_of(model_, grown_ ? *grown_ : finding_);
     if (grown_) out_.best.effects.insert(out_.best.effects.begin(), finding_.set.front());
@@ -200,9 +203,10 @@ class Search {
         out_.final_verdict = "adequate";
         break;
       }
-      finding_ = grown_ ? std::move(*grown_) : look(model_, {}, options_, finding_.finer, library);
+      bool moved = false;
+      finding_ = grown_ ? std::move(*grown_) : examine(model_, finding_.finer, library, moved);
       grown_.reset();
-      if (finding_.better_base) refit_base();
+      if (moved) replace_step();
       out_.final_verdict = to_string(finding_.verdict);
     }
   }
@@ -221,8 +225,21 @@ class Search {
  private:
   bool lacks_something() const { return finding_.verdict == Verdict::missing || finding_.verdict == Verdict::unexplained; }
 
+  // Looks until the model fits nowhere better; `moved`: it has been fitted anew.
+  Finding examine(
+      Fitted& model, const FinerMesh& finer, const Library& library, bool& moved,
+      const CandidatesSoFar& so_far = [](std::vector<MissingEffect>) {}) {
+    Finding out = look(model, {}, options_, finer, library, so_far);
+    for (int k = 0; k < kMostBases && out.better_base; ++k) {
+      model = fit_study(std::move(model.study), *out.better_base, kAddedSpread);
+      moved = true;
+      out = look(model, {}, options_, out.finer, out.library, so_far);
+    }
+    return out;
+  }
+
   // Several effects may be missing, of which none explains the error alone. Each leader in turn that explains a part of it
-  // is taken for one of them: if it and what is then found explain the error, both are missing.
+  // is taken for one of them, and what is found beside it is compared with the rest.
   void grow() {
     const double cost = model_.rows.error.squaredNorm(), structured = structured_squares(model_.rows);
     for (std::size_t i = 0; i < std::min(kGrown, finding_.refits.size()); ++i) {
@@ -231,39 +248,31 @@ class Search {
       options_.progress("what is missing beside " + leader.effect, 0, 0);
       auto next = std::make_shared<Fitted>(extended(model_, leader));
       const bool same = same_body(model_.study->model(), next->study->model());
-      Finding deeper = look(*next, {}, options_, finding_.finer, same ? finding_.library : Library());
+      bool moved = false;
+      Finding deeper = examine(*next, finding_.finer, same ? finding_.library : Library(), moved);
       leader.model = next;
-      if (deeper.verdict != Verdict::missing) continue;
+      Comparison all = finding_.comparison;
+      all.refine({leader.effect}, deeper.comparison);
+      finding_.believe(all);
+      if (finding_.verdict != Verdict::missing) continue;
+      take_over(leader.effect, deeper.effects);
+      finding_.believe(all);
       std::rotate(finding_.refits.begin(), finding_.refits.begin() + static_cast<std::ptrdiff_t>(i),
                   finding_.refits.begin() + static_cast<std::ptrdiff_t>(i) + 1);
-      finding_.verdict = Verdict::missing;
-      finding_.set = {finding_.refits.front().effect};
-      finding_.set.insert(finding_.set.end(), deeper.set.begin(), deeper.set.end());
-      take_over(deeper.effects);
       grown_ = std::move(deeper);
       return;
     }
   }
 
-  // The search has found that the model itself fits better elsewhere.
-  void refit_base() {
-    for (int k = 0; k < kMostBases && finding_.better_base; ++k) {
-      model_ = fit_study(std::move(model_.study), *finding_.better_base, kAddedSpread);
-      out_.steps.pop_back();
-      add_step();
-      finding_ = look(model_, {}, options_, finding_.finer, finding_.library);
-    }
-  }
-
   // What was found beside the leader takes the place of what was found without it.
-  void take_over(const std::vector<MissingEffect>& deeper) {
+  void take_over(const std::string& leader, const std::vector<MissingEffect>& deeper) {
     std::vector<MissingEffect>& known = finding_.effects;
     for (const MissingEffect& effect : deeper) {
       if (std::count(finding_.set.begin(), finding_.set.end(), effect.effect) == 0) continue;
       const auto at = std::find_if(known.begin(), known.end(), [&](const auto& k) { return k.effect == effect.effect; });
       if (at == known.end()) {
         known.push_back(effect);
-      } else if (effect.effect != finding_.set.front()) {
+      } else if (effect.effect != leader) {
         *at = effect;
       }
     }
@@ -286,6 +295,12 @@ class Search {
     model_ = std::move(next);
     add_step();
     return library;
+  }
+
+  // The model has been fitted anew.
+  void replace_step() {
+    out_.steps.pop_back();
+    add_step();
   }
 
   void add_step() {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "tissue_stiffness/diagnosis/missing_force.hpp"
 #include "tissue_stiffness/diagnosis/refit_list.hpp"
 #include "tissue_stiffness/diagnosis/refit_search.hpp"
 #include "tissue_stiffness/types/error.hpp"
@@ -20,64 +19,6 @@ void require_proposed(const FirstLook& look, const std::vector<std::string>& wan
       throw InputError("--add", effect, "an effect that the library proposes for this model");
     }
   }
-}
-
-// How many ways of an effect the library proposes.
-double ways_of(const FirstLook& look, const std::string& effect) {
-  const auto same = [&](const Candidate& c) { return c.effect == effect; };
-  return static_cast<double>(std::count_if(look.candidates.begin(), look.candidates.end(), same));
-}
-
-double effects_of(const FirstLook& look) {
-  return static_cast<double>(std::max<std::size_t>(1, look.ranked.size()));
-}
-
-// Over all ways, of which one was fitted.
-double log_bayes_factor(const FirstLook& look, const RefitList& refits, const Refit& refit) {
-  return refit.assessment.log_evidence - refits.given().log_evidence - std::log(ways_of(look, refit.effect));
-}
-
-// Beforehand the given model is as probable as all effects together, and those are alike, whatever the ways each has.
-Comparison compare(const FirstLook& look, const RefitList& refits) {
-  const ModelComparison& models = refits.comparison();
-  const double prior = -std::log(effects_of(look));
-  const MisfitTest& given = refits.given().test;
-  std::vector<double> weights{0.0};
-  for (const Refit& r : refits.all()) weights.push_back(log_bayes_factor(look, refits, r) + prior);
-  // The force acts on the residual of the fit; what the fit costs, and its weights, are the given model's.
-  const double force = log_evidence_of_random_force(*look.base.study, look.base.fit.w, models.noise_variance());
-  const double numerics = refits.given().log_likelihood - models.log_likelihood(look.base.rows);
-  weights.push_back(force - numerics + prior);
-  const std::vector<double> probability = posterior(weights);
-  Comparison out;
-  out.given = {{}, probability.front(), given.z(), given.passes()};
-  out.structured = given.discrepancy() > 0.0;
-  out.passes_without_mesh = models.test_of(look.base.rows.error, static_cast<double>(look.base.fit.w.size())).passes();
-  for (std::size_t i = 0; i < refits.all().size(); ++i) {
-    const Refit& refit = refits.all()[i];
-    out.others.push_back({refit.effect, probability[1 + i], refit.assessment.test.z(), refit.assessment.test.passes()});
-  }
-  out.none_of_these = probability.back();
-  return out;
-}
-
-// Effects of the fewest named explanations that hold the believed part of their probability, most probable first.
-std::vector<std::string> set_of(const Comparison& comparison) {
-  std::vector<const Explanation*> order;
-  double all = 0.0, held = 0.0;
-  for (const Explanation& e : comparison.others) {
-    order.push_back(&e);
-    all += e.probability;
-  }
-  std::stable_sort(order.begin(), order.end(),
-                   [](const auto* a, const auto* b) { return a->probability > b->probability; });
-  std::vector<std::string> set;
-  for (const Explanation* e : order) {
-    if (held > kComparison.believed * all) break;
-    held += e->probability;
-    set.push_back(e->effect);
-  }
-  return set;
 }
 
 // As the tangents have it.
@@ -102,7 +43,7 @@ MissingEffect describe(const FirstLook& look, const RefitList& refits, const Ref
   out.effect = refit.effect;
   out.entry = refit.entry;
   out.parameters = refit.parameters;
-  out.log_bayes_factor = log_bayes_factor(look, refits, refit);
+  out.log_bayes_factor = refits.log_bayes_factor(refit);
   const double gain = 2.0 * (refit.assessment.log_likelihood - refits.given().log_likelihood);
   out.p_value = likelihood_ratio_p_value(gain, static_cast<double>(parameters_of(*refit.way)));
   out.explained = 1.0 - refit.cost / look.cost;
@@ -133,15 +74,23 @@ std::vector<MissingEffect> describe(const FirstLook& look, const RefitList& refi
   return out;
 }
 
-void tell_belief(const Comparison& comparison, MissingEffect& effect) {
-  for (const Explanation& e : comparison.others) {
-    if (e.effect != effect.effect) continue;
-    effect.probability = e.probability;
-    effect.z = e.z;
+}  // namespace
+
+void Finding::believe(const Comparison& known) {
+  comparison = known;
+  verdict = judge(comparison);
+  set.clear();
+  if (verdict == Verdict::missing || verdict == Verdict::unexplained) set = believed_effects(comparison);
+  for (MissingEffect& effect : effects) {
+    effect.probability = comparison.probability_of(effect.effect);
+    double most = -1.0;
+    for (const Hypothesis& h : comparison.hypotheses) {
+      if (!h.holds(effect.effect) || h.probability <= most) continue;
+      most = h.probability;
+      effect.z = h.z;
+    }
   }
 }
-
-}  // namespace
 
 Finding look(const Fitted& base, const std::vector<std::string>& wanted, const DiagnosisOptions& options,
              const FinerMesh& finer, const Library& library, const CandidatesSoFar& so_far) {
@@ -151,12 +100,10 @@ Finding look(const Fitted& base, const std::vector<std::string>& wanted, const D
   RefitList refits(look, options, [&](const RefitList& fitted) { so_far(describe(look, fitted)); });
   so_far(describe(look, refits));
   search_refits(look, wanted, refits);
-  out.comparison = compare(look, refits);
+  out.comparison = refits.compare();
   out.models = std::make_shared<const ModelComparison>(refits.comparison());
-  out.verdict = judge(out.comparison);
-  if (out.verdict == Verdict::missing || out.verdict == Verdict::unexplained) out.set = set_of(out.comparison);
   out.effects = describe(look, refits);
-  for (MissingEffect& effect : out.effects) tell_belief(out.comparison, effect);
+  out.believe(out.comparison);
   out.refits = refits.take();
   out.floor = look.floor;
   out.finer = look.finer;

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 
 #include "tissue_stiffness/diagnosis/candidates.hpp"
+#include "tissue_stiffness/estimation/coordinate_scan.hpp"
 #include "tissue_stiffness/estimation/mesh_error.hpp"
 #include "tissue_stiffness/meshing/refine.hpp"
 
@@ -29,7 +30,7 @@ std::shared_ptr<const Study> on_finer_mesh(const Study& study, const ModelSettin
 }  // namespace
 
 // Against the base's own prediction and not against the frames: what is missing would lead this fit astray. A body that
-// rings is soon out of phase with itself at another modulus, so the parameters have to follow.
+// rings is soon out of phase with itself at another modulus, so the parameters have to follow, from the best place near.
 FinerMesh finer_mesh(const Fitted& base, const Study* known) {
   FinerMesh out{Eigen::VectorXd::Zero(base.rows.error.size())};
   const Model& model = base.study->model();
@@ -39,7 +40,8 @@ FinerMesh finer_mesh(const Fitted& base, const Study* known) {
   const auto change_at = [&](const Eigen::VectorXd& w) {
     return Eigen::VectorXd(base.rows.used.cwiseProduct(out.study->predicted(w) - base.rows.predicted));
   };
-  Eigen::VectorXd w = base.fit.w;
+  const auto cost = [&](const Eigen::VectorXd& w) { return change_at(w).squaredNorm(); };
+  Eigen::VectorXd w = scan_around(cost, base.fit.w, prior, base.study->tuning_shared_with(*base.study)).best;
   out.change = change_at(w);
   for (int k = 0; k < kMostMoves; ++k) {
     const Eigen::MatrixXd j = base_tangents(*out.study, w, kStep * prior, base.rows) * prior.asDiagonal();

@@ -19,6 +19,12 @@ std::vector<std::string> not_looked_for(const DiagnosisOptions& options) {
   return out;
 }
 
+// Of a mesh that cannot be refined it is a part of the motion.
+Eigen::VectorXd mesh_change(const Fitted& base, const FinerMesh& finer) {
+  const bool unknown = finer.study == nullptr && base.study->model().settings().mesh.discretisation_error;
+  return unknown ? kComparison.unknown_mesh * motion_of(base.rows).cwiseProduct(base.rows.used) : finer.change;
+}
+
 }  // namespace
 
 FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, FinerMesh earlier, Library known_library)
@@ -30,7 +36,7 @@ FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Fine
       explained(explain(base)),
       comparison(base, Eigen::VectorXd::Zero(base.rows.error.size())),
       given(comparison.assess(explained)) {
-  if (!given.test.passes()) explained = explain(base, true);
+  if (!given.test.passes()) explained = explain(base, {}, true);
   const std::string step = "tangents of the library, and what a finer mesh would change";
   options.progress(step, 0, 0);
   run_side_by_side(
@@ -40,12 +46,15 @@ FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Fine
             [&](std::size_t done, std::size_t total) { options.progress(step, done, total); }, library);
       },
       [&] { finer = finer_mesh(base, finer.study.get()); });
-  comparison.allow_for_mesh(finer.change);
+  comparison.allow_for_mesh(mesh_change(base, finer));
   given = comparison.assess(explained);
   const Eigen::MatrixXd &own = explained.linearisation.columns, &of_mesh = comparison.mesh_directions();
   known.resize(own.rows(), own.cols() + of_mesh.cols());
   known << own, of_mesh;
-  scorer = std::make_unique<Scorer>(explained.error, known, comparison.noise_variance());
+  known = comparison.whitened(known);
+  error = comparison.whitened(explained.error);
+  for (Candidate& candidate : candidates) candidate.tangent.columns = comparison.whitened(candidate.tangent.columns);
+  scorer = std::make_unique<Scorer>(error, known, comparison.noise_variance());
   floor = finer.change.norm() / std::sqrt(base.rows.count());
   ranked = rank(*scorer, candidates);
 }

@@ -131,14 +131,14 @@ double squares(const FrameEvidence& e, const Eigen::VectorXd& q) {
   return e.square - 2.0 * e.seen.dot(q) + q.dot(e.information * q);
 }
 
-std::vector<FrameEvidence> evidence_of(const Study& study, const Eigen::VectorXd& w, const Study::Rows& rows,
-                                       const Eigen::MatrixXd& shapes, double variance) {
-  const Eigen::MatrixXd along = study.rows_along(w, shapes, rows);
+// `along`: of the rows, per displacement of each mode.
+std::vector<FrameEvidence> evidence_of(const Eigen::VectorXd& error, const Eigen::MatrixXd& along,
+                                       const std::vector<Eigen::Index>& offsets, double variance) {
   std::vector<FrameEvidence> out;
-  for (std::size_t k = 0; k + 1 < rows.offsets.size(); ++k) {
-    const Eigen::Index from = rows.offsets[k], size = rows.offsets[k + 1] - from;
+  for (std::size_t k = 0; k + 1 < offsets.size(); ++k) {
+    const Eigen::Index from = offsets[k], size = offsets[k + 1] - from;
     const auto h = along.middleRows(from, size);
-    const auto e = rows.error.segment(from, size);
+    const auto e = error.segment(from, size);
     out.push_back({h.transpose() * h / variance, h.transpose() * e / variance, e.squaredNorm() / variance});
   }
   return out;
@@ -151,7 +151,8 @@ MissingForce missing_force(const Study& study, const Eigen::VectorXd& w) {
   const TetMesh& mesh = study.model().mesh();
   const Modes modes = modes_of(study, w);
   const Study::Rows rows = study.rows(w);
-  const std::vector<FrameEvidence> evidence = evidence_of(study, w, rows, modes.shapes, 1.0);
+  const std::vector<FrameEvidence> evidence =
+      evidence_of(rows.error, study.rows_along(w, modes.shapes, rows), rows.offsets, 1.0);
   const ForcePrior prior = likeliest_force_prior(modes.transitions, evidence, modes.scale());
   const SmoothedForce best = smooth_force(modes.transitions, evidence, prior);
   const double without = rows.error.squaredNorm();
@@ -191,13 +192,15 @@ MissingForce missing_force(const Study& study, const Eigen::VectorXd& w) {
   return out;
 }
 
-double log_evidence_of_random_force(const Study& study, const Eigen::VectorXd& w, double noise_variance) {
-  const Modes modes = modes_of(study, w);
-  const Study::Rows rows = study.rows(w);
-  const std::vector<FrameEvidence> evidence = evidence_of(study, w, rows, modes.shapes, noise_variance);
+double log_evidence_of_random_force(const Fitted& model, const Eigen::VectorXd& left, const ModelComparison& comparison) {
+  const Modes modes = modes_of(*model.study, model.fit.w);
+  const double s = comparison.noise_variance();
+  const Eigen::MatrixXd along = comparison.whitened(model.study->rows_along(model.fit.w, modes.shapes, model.rows));
+  const Eigen::VectorXd error = comparison.whitened(left);
+  const std::vector<FrameEvidence> evidence = evidence_of(error, along, model.rows.offsets, s);
   const ForcePrior prior = likeliest_force_prior(modes.transitions, evidence, modes.scale());
   const double deviance = smooth_force(modes.transitions, evidence, prior).deviance;
-  return 0.5 * (rows.error.squaredNorm() / noise_variance - deviance) - log_of_tried_priors(modes.shapes.cols());
+  return 0.5 * (error.squaredNorm() / s - deviance) - log_of_tried_priors(modes.shapes.cols());
 }
 
 }  // namespace tissue_stiffness

@@ -1,12 +1,14 @@
 #include "tissue_stiffness/diagnosis/model_comparison.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "tissue_stiffness/diagnosis/candidates.hpp"
+#include "tissue_stiffness/diagnosis/scores.hpp"
 #include "tissue_stiffness/forward/reduced_trajectory.hpp"
 #include "tissue_stiffness/settings/extend_model.hpp"
 
@@ -14,6 +16,8 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr double kSteps[] = {1.0, 4.0};  // squared, over their prior's standard deviation, that are tried
+constexpr double kNarrower = 0.25;       // of the priors that are mixed: from one to the next
+constexpr double kTiny = 1e-12;          // [sigma^2]: a direction that no row sees
 constexpr double kSpread = 0.05;         // prior standard deviations, of the fit that starts where the linearisation leads
 
 double log_determinant(const Eigen::LDLT<Eigen::MatrixXd>& factor) {
@@ -61,32 +65,53 @@ Eigen::VectorXd most_probable(const Linearisation& model, const Eigen::VectorXd&
   return u;
 }
 
+// Of the amplitudes' priors, over the stated width.
+std::vector<double> scales_of(const Linearisation& model) {
+  std::vector<double> out;
+  double scale = 1.0;
+  do {
+    out.push_back(scale);
+    scale *= kNarrower;
+  } while (!model.amplitudes.empty() && scale >= kComparison.smallest);
+  return out;
+}
+
 }  // namespace
 
 double log_root_weights(const Study::Rows& rows) {
   return (rows.used.array() > 0.0).select(rows.used.array().log(), 0.0).sum();
 }
 
-Linearisation linearise(const Fitted& fitted) {
+std::vector<std::string> added_amplitudes(const Study& study, const Study& smaller) {
+  std::vector<std::string> out;
+  for (const FreeParameter& p : study.model().free_parameters()) {
+    if (p.prior.kind == Quantity::Kind::normal && smaller.index(p.name) < 0) out.push_back(p.name);
+  }
+  return out;
+}
+
+Linearisation linearise(const Fitted& fitted, const std::vector<std::string>& amplitudes) {
   const Study& study = *fitted.study;
   const Model& model = study.model();
   const Eigen::VectorXd& w = fitted.fit.w;
   const Eigen::VectorXd prior = model.prior_std();
-  const Eigen::MatrixXd own = base_tangents(study, w, fitted.fit.covariance.diagonal().cwiseSqrt(), fitted.rows);
+  // As wide as each is known while the others are held: along what they can make up for no tangent reaches far.
+  const Eigen::VectorXd known = fitted.fit.covariance.inverse().diagonal().cwiseInverse().cwiseSqrt();
+  const Eigen::MatrixXd own = base_tangents(study, w, known, fitted.rows);
   const Eigen::MatrixXd steps = tangents_of_time_steps(study, w, fitted.rows);
   Linearisation out;
   out.columns.resize(own.rows(), own.cols() + steps.cols());
   out.columns << own * prior.asDiagonal(), steps;
   out.prior = Eigen::VectorXd::Zero(out.columns.cols());
   out.prior.head(w.size()) = (model.prior_mean() - w).cwiseQuotient(prior);
-  if (model.nonlinear()) out.mesh_error = kComparison.unknown_mesh * motion_of(fitted.rows).cwiseProduct(fitted.rows.used);
   out.parameters = w.size();
+  for (const std::string& name : amplitudes) out.amplitudes.push_back(study.index(name));
   out.log_root_weights = log_root_weights(fitted.rows);
   return out;
 }
 
-Explained explain(const Fitted& fitted, bool far) {
-  Explained out{fitted.rows.error, linearise(fitted)};
+Explained explain(const Fitted& fitted, const std::vector<std::string>& amplitudes, bool far) {
+  Explained out{fitted.rows.error, linearise(fitted, amplitudes)};
   const Study& study = *fitted.study;
   const Eigen::Index all = out.linearisation.columns.cols(), own = out.linearisation.parameters;
   if (study.model().nonlinear() || all == own) return out;
@@ -114,7 +139,7 @@ Explained explain(const Fitted& fitted, bool far) {
   }
   joint.rows = stepped_study.rows(joint.fit.w);
   if (joint.rows.error.squaredNorm() > out.error.squaredNorm()) return out;
-  return {joint.rows.error, linearise(joint)};
+  return {joint.rows.error, linearise(joint, amplitudes)};
 }
 
 ModelComparison::ModelComparison(const Fitted& base, const Eigen::VectorXd& mesh_change)
@@ -125,6 +150,41 @@ ModelComparison::ModelComparison(const Fitted& base, const Eigen::VectorXd& mesh
 
 void ModelComparison::allow_for_mesh(const Eigen::VectorXd& change) {
   mesh_ = parted(kComparison.whole_mesh * change, along_, offsets_);
+  const Eigen::Index modes = mesh_.cols() - 1, frames = static_cast<Eigen::Index>(offsets_.size()) - 1;
+  // Amplitudes that are independent from frame to frame, whose sum over the frames along any course in time has the
+  // variance of that part of D.
+  constexpr double part = kComparison.left_of_mesh / kComparison.whole_mesh;
+  const Eigen::VectorXd size = along_.leftCols(modes).colwise().squaredNorm().transpose() / static_cast<double>(frames);
+  const Eigen::VectorXd std =
+      (part * mesh_.leftCols(modes).colwise().norm().transpose()).cwiseQuotient(size.cwiseSqrt().cwiseMax(kTiny));
+  basis_ = Eigen::MatrixXd::Zero(along_.rows(), modes);
+  left_ = Eigen::MatrixXd::Zero(modes, frames);
+  for (Eigen::Index k = 0; k < frames; ++k) {
+    const Eigen::Index from = offsets_[static_cast<std::size_t>(k)],
+                       rows = offsets_[static_cast<std::size_t>(k) + 1] - from;
+    const Eigen::MatrixXd root = along_.block(from, 0, rows, modes) * std.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(root.transpose() * root);
+    for (Eigen::Index i = 0; i < modes; ++i) {
+      const double variance = eigen.eigenvalues()[i];
+      if (!(variance > kTiny)) continue;
+      basis_.block(from, i, rows, 1) = root * eigen.eigenvectors().col(i) / std::sqrt(variance);
+      left_(i, k) = variance;
+    }
+  }
+}
+
+Eigen::MatrixXd ModelComparison::whitened(const Eigen::MatrixXd& rows) const {
+  Eigen::MatrixXd out = rows;
+  const double s = noise_variance_;
+  for (std::size_t k = 0; k + 1 < offsets_.size(); ++k) {
+    const Eigen::Index from = offsets_[k], size = offsets_[k + 1] - from;
+    if (size == 0 || left_.size() == 0) continue;
+    const auto basis = basis_.middleRows(from, size);
+    const Eigen::ArrayXd shrink = 1.0 - (s / (s + left_.col(static_cast<Eigen::Index>(k)).array())).sqrt();
+    out.middleRows(from, size) -=
+        basis * (shrink.matrix().asDiagonal() * (basis.transpose() * rows.middleRows(from, size)));
+  }
+  return out;
 }
 
 void ModelComparison::note(const Eigen::VectorXd& error) {
@@ -134,37 +194,45 @@ void ModelComparison::note(const Eigen::VectorXd& error) {
 }
 
 Assessment ModelComparison::assess(const Explained& explained) const {
-  const Eigen::VectorXd& error = explained.error;
   const Linearisation& model = explained.linearisation;
   const double s = noise_variance_;
-  const Eigen::MatrixXd unknown =
-      model.mesh_error.size() > 0 ? parted(model.mesh_error, along_, offsets_) : Eigen::MatrixXd(error.size(), 0);
-  Eigen::MatrixXd j(error.size(), model.columns.cols() + mesh_.cols() + unknown.cols());
-  j << model.columns, mesh_, unknown;
+  Eigen::MatrixXd j(explained.error.size(), model.columns.cols() + mesh_.cols());
+  j << model.columns, mesh_;
+  const Eigen::MatrixXd white = whitened(j);
+  const Eigen::VectorXd error = whitened(explained.error);
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(j.cols());
   mean.head(model.prior.size()) = model.prior;
-  Eigen::MatrixXd precision = Eigen::MatrixXd::Identity(j.cols(), j.cols());
-  precision.noalias() += j.transpose() * j / s;
-  const Eigen::LDLT<Eigen::MatrixXd> factor(precision);
-  const Eigen::VectorXd seen = j.transpose() * error / s + mean;
-  Eigen::VectorXd u = factor.solve(seen);
-  // Numerics that are not plausible explain nothing: the parameters have to do without them.
+  const Eigen::MatrixXd gram = white.transpose() * white / s;
+  const Eigen::VectorXd seen = white.transpose() * error / s;
   const Eigen::Index own = model.parameters, rest = j.cols() - own;
-  u.tail(rest) = u.tail(rest).cwiseMax(-kComparison.most_numerics).cwiseMin(kComparison.most_numerics);
-  u.head(own) =
-      precision.topLeftCorner(own, own).ldlt().solve(seen.head(own) - precision.topRightCorner(own, rest) * u.tail(rest));
-  const Eigen::VectorXd left = error - j * u;
   Assessment out;
-  out.log_likelihood = model.log_root_weights - 0.5 * left.squaredNorm() / s;
-  out.log_evidence = out.log_likelihood - 0.5 * ((u - mean).squaredNorm() + log_determinant(factor));
-  out.test = test_of(left, static_cast<double>(model.columns.cols()));
+  Eigen::VectorXd u;
+  std::vector<double> evidence;
+  for (const double scale : scales_of(model)) {
+    Eigen::VectorXd weight = Eigen::VectorXd::Ones(j.cols());
+    for (const Eigen::Index i : model.amplitudes) weight[i] = 1.0 / (scale * scale);
+    Eigen::MatrixXd precision = gram;
+    precision.diagonal() += weight;
+    const Eigen::LDLT<Eigen::MatrixXd> factor(precision);
+    const Eigen::VectorXd pull = seen + weight.cwiseProduct(mean);
+    Eigen::VectorXd at = factor.solve(pull);
+    // Numerics that are not plausible explain nothing: the parameters have to do without them.
+    at.tail(rest) = at.tail(rest).cwiseMax(-kComparison.most_numerics).cwiseMin(kComparison.most_numerics);
+    at.head(own) = precision.topLeftCorner(own, own).ldlt().solve(pull.head(own) -
+                                                                  precision.topRightCorner(own, rest) * at.tail(rest));
+    const double likelihood = model.log_root_weights - 0.5 * (error - white * at).squaredNorm() / s;
+    evidence.push_back(likelihood - 0.5 * (weight.dot((at - mean).cwiseAbs2()) + log_determinant(factor)) +
+                       0.5 * weight.array().log().sum());
+    if (evidence.back() < *std::max_element(evidence.begin(), evidence.end())) continue;
+    u = at;
+    out.log_likelihood = likelihood;
+  }
+  out.log_evidence = log_mean_exp(evidence);
+  out.left = explained.error - j * u;
+  out.test = test_of(out.left, static_cast<double>(model.columns.cols()));
   constexpr double part = kComparison.left_of_mesh / kComparison.whole_mesh;
-  out.test.set_numerics((part * part * along_modes(mesh_) + along_modes(unknown)) / used_.sum());
+  out.test.set_numerics(part * part * along_modes(mesh_) / used_.sum());
   return out;
-}
-
-double ModelComparison::log_likelihood(const Study::Rows& rows) const {
-  return log_root_weights(rows) - 0.5 * rows.error.squaredNorm() / noise_variance_;
 }
 
 MisfitTest ModelComparison::test_of(const Eigen::VectorXd& error, double fitted) const {
@@ -179,26 +247,82 @@ MisfitTest ModelComparison::test_of(const Eigen::VectorXd& error, double fitted)
   return out;
 }
 
-std::vector<double> posterior(const std::vector<double>& log_weights) {
-  const double most = *std::max_element(log_weights.begin(), log_weights.end());
-  std::vector<double> out;
+bool Hypothesis::holds(const std::string& effect) const {
+  return std::find(effects.begin(), effects.end(), effect) != effects.end();
+}
+
+const Hypothesis& Comparison::best() const {
+  return *std::max_element(hypotheses.begin(), hypotheses.end(),
+                           [](const Hypothesis& a, const Hypothesis& b) { return a.probability < b.probability; });
+}
+
+double Comparison::none_of_these() const {
   double sum = 0.0;
-  for (const double weight : log_weights) {
-    out.push_back(std::exp(weight - most));
-    sum += out.back();
+  for (const Hypothesis& h : hypotheses) sum += h.random_force ? h.probability : 0.0;
+  return sum;
+}
+
+double Comparison::probability_of(const std::string& effect) const {
+  double sum = 0.0;
+  for (const Hypothesis& h : hypotheses) sum += h.holds(effect) && !h.random_force ? h.probability : 0.0;
+  return sum;
+}
+
+namespace {
+
+void find_probabilities_of(std::vector<Hypothesis>& hypotheses) {
+  double most = -std::numeric_limits<double>::infinity(), sum = 0.0;
+  for (const Hypothesis& h : hypotheses) most = std::max(most, h.log_weight);
+  for (Hypothesis& h : hypotheses) sum += h.probability = std::exp(h.log_weight - most);
+  for (Hypothesis& h : hypotheses) h.probability /= sum;
+}
+
+}  // namespace
+
+void Comparison::find_probabilities() {
+  find_probabilities_of(hypotheses);
+}
+
+void Comparison::refine(const std::vector<std::string>& effects, const Comparison& deeper) {
+  const auto same = [&](const Hypothesis& h) { return h.effects == effects; };
+  const auto alone =
+      std::find_if(hypotheses.begin(), hypotheses.end(), [&](const Hypothesis& h) { return same(h) && !h.random_force; });
+  const double weight = alone->log_weight - deeper.given().log_weight;
+  hypotheses.erase(std::remove_if(hypotheses.begin(), hypotheses.end(), same), hypotheses.end());
+  for (Hypothesis h : deeper.hypotheses) {
+    h.effects.insert(h.effects.begin(), effects.begin(), effects.end());
+    h.log_weight += weight;
+    hypotheses.push_back(std::move(h));
   }
-  for (double& probability : out) probability /= sum;
-  return out;
+  find_probabilities();
 }
 
 Verdict judge(const Comparison& c) {
-  const bool given = !c.structured || c.given.probability > 1.0 - kComparison.believed;
-  if (given) return c.given.passes ? (c.passes_without_mesh ? Verdict::adequate : Verdict::numerics) : Verdict::unexplained;
-  const auto best = std::max_element(c.others.begin(), c.others.end(), [](const Explanation& a, const Explanation& b) {
-    return a.probability < b.probability;
-  });
-  const bool named = best != c.others.end() && best->probability > c.none_of_these;
-  return named && best->passes ? Verdict::missing : Verdict::unexplained;
+  const Hypothesis& given = c.given();
+  if (!c.structured || given.probability > 1.0 - kComparison.believed)
+    return given.passes ? (c.passes_without_mesh ? Verdict::adequate : Verdict::numerics) : Verdict::unexplained;
+  const Hypothesis& best = c.best();
+  return !best.effects.empty() && !best.random_force && best.passes ? Verdict::missing : Verdict::unexplained;
+}
+
+std::vector<std::string> believed_effects(const Comparison& comparison) {
+  std::vector<Hypothesis> named;
+  for (const Hypothesis& h : comparison.hypotheses) {
+    if (!h.effects.empty()) named.push_back(h);
+  }
+  find_probabilities_of(named);
+  std::stable_sort(named.begin(), named.end(),
+                   [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
+  std::vector<std::string> out;
+  double held = 0.0;
+  for (const Hypothesis& h : named) {
+    if (held > kComparison.believed) break;
+    held += h.probability;
+    for (const std::string& effect : h.effects) {
+      if (std::find(out.begin(), out.end(), effect) == out.end()) out.push_back(effect);
+    }
+  }
+  return out;
 }
 
 }  // namespace tissue_stiffness

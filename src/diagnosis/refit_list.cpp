@@ -8,6 +8,7 @@
 #include <mutex>
 #include <utility>
 
+#include "tissue_stiffness/diagnosis/missing_force.hpp"
 #include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/forward/for_each_index.hpp"
 #include "tissue_stiffness/settings/extend_model.hpp"
@@ -84,6 +85,38 @@ void RefitList::keep(std::vector<std::optional<Refit>> done) {
   so_far_(*this);
 }
 
+double RefitList::log_bayes_factor(const Refit& refit) const {
+  const auto same = [&](const Candidate& c) { return c.effect == refit.effect; };
+  const auto ways = std::count_if(look_.candidates.begin(), look_.candidates.end(), same);
+  return refit.assessment.log_evidence - given_.log_evidence - std::log(static_cast<double>(ways));
+}
+
+// Beforehand the given model is as probable as all effects together, and those are alike, whatever the ways each has.
+// Something that the library does not have is as probable as one of them, and may act beside the best one, too.
+Comparison RefitList::compare() const {
+  const double prior = -std::log(static_cast<double>(std::max<std::size_t>(1, look_.ranked.size())));
+  Comparison out;
+  out.structured = given_.test.discrepancy() > 0.0;
+  out.passes_without_mesh =
+      comparison_.test_of(look_.base.rows.error, static_cast<double>(look_.base.fit.w.size())).passes();
+  out.hypotheses.push_back({{}, false, 0.0, given_.test.z(), given_.test.passes()});
+  for (const Refit& refit : refits_) {
+    const MisfitTest& test = refit.assessment.test;
+    out.hypotheses.push_back({{refit.effect}, false, log_bayes_factor(refit) + prior, test.z(), test.passes()});
+  }
+  const auto beside = [&](const Fitted& model, const Assessment& assessment, std::size_t alone) {
+    Hypothesis both = out.hypotheses[alone];
+    both.log_weight += log_evidence_of_random_force(model, assessment.left, comparison_) + prior;
+    both.random_force = true;
+    both.passes = false;
+    out.hypotheses.push_back(std::move(both));
+  };
+  beside(look_.base, given_, 0);
+  if (!empty() && best().model) beside(*best().model, best().assessment, 1);
+  out.find_probabilities();
+  return out;
+}
+
 bool RefitList::find_better_base() {
   const Study& study = *look_.base.study;
   if (study.model().nonlinear()) return false;
@@ -103,7 +136,7 @@ void RefitList::assess() {
   tbb::parallel_for(std::size_t{0}, refits_.size(),
                     [&](std::size_t i) { refits_[i].assessment = comparison_.assess(refits_[i].explained); });
   std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t i = 0; i < refits_.size(); ++i) order.emplace_back(-refits_[i].assessment.log_evidence, i);
+  for (std::size_t i = 0; i < refits_.size(); ++i) order.emplace_back(-log_bayes_factor(refits_[i]), i);
   std::stable_sort(order.begin(), order.end());
   std::vector<Refit> sorted;
   for (const auto& [evidence, i] : order) sorted.push_back(std::move(refits_[i]));

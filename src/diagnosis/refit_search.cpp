@@ -14,7 +14,7 @@ constexpr std::size_t kBegun = 6;     // fits of the beginning that are tried on
 constexpr std::size_t kBegunOf = 2;   // of one effect
 constexpr std::size_t kLeaders = 3;   // refits whose other ways and kinds are tried
 
-/// The search, stage by stage: each goes on only where the best refit leaves structure beyond chance.
+/// The search, stage by stage: each goes on only while nothing explains the recording.
 class Search {
  public:
   Search(const FirstLook& look, RefitList& refits) : look_(look), refits_(refits) {}
@@ -23,9 +23,9 @@ class Search {
     if (!wanted.empty()) return refit_wanted(wanted);
     refit_from_tangents();
     if (refits_.find_better_base()) return;
-    if (wide() && refits_.leaves_more_than_noise()) refit_other_ways();
-    if (wide() && refits_.leaves_more_than_noise()) refit_from_beginning();
-    if (wide() && refits_.leaves_more_than_noise()) refit_other_kinds();
+    if (!explained()) refit_other_ways();
+    if (!explained()) refit_from_beginning();
+    if (!explained()) refit_other_kinds();
   }
 
  private:
@@ -39,6 +39,7 @@ class Search {
   /// Something is to be explained that tangents may not show. What a model that already has an effect leaves is small
   /// once it passes its test, and tangents are taken at the right place.
   bool wide() const { return look_.first ? look_.given.test.discrepancy() > 0.0 : !look_.given.test.passes(); }
+  bool explained() const { return !wide() || judge(refits_.compare()) == Verdict::missing; }
   /// Runs in full take long: none for an effect whose tangent explains next to nothing.
   bool worth_full_runs(const Ranked& r) const {
     return r.best->linear || r.score.explained > kComparison.promising * structured_squares(look_.base.rows);
@@ -137,7 +138,7 @@ void Search::refit_from_beginning() {
 std::vector<const Candidate*> Search::different_ways() const {
   const std::vector<Eigen::Index>& offsets = look_.base.rows.offsets;
   const Eigen::Index rows = offsets[static_cast<std::size_t>(kBeginning * static_cast<double>(offsets.size() - 1))];
-  const Scorer scorer(look_.base.rows.error.head(rows), look_.known.topRows(rows), look_.comparison.noise_variance());
+  const Scorer scorer(look_.error.head(rows), look_.known.topRows(rows), look_.comparison.noise_variance());
   std::vector<std::pair<const Candidate*, Score>> ways;
   for (const Candidate& candidate : look_.candidates) {
     if (!candidate.linear) continue;

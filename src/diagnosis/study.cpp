@@ -24,8 +24,6 @@ constexpr double kGain = 1e-4;         // and that it has to bring
 constexpr double kNarrower = 4.0;      // posterior standard deviations that the next fit looks across
 constexpr double kBaseSpread = 0.05;   // prior standard deviations, of the parameters that a smaller model has too
 constexpr double kAddedSpread = 0.25;  // and of the others
-constexpr int kNearPoints = 10;        // on either side
-constexpr double kNearStep = 0.045;    // of the prior's standard deviation: 5 % of a modulus known to a factor of 3
 
 }  // namespace
 
@@ -239,23 +237,9 @@ Study::Place Study::scan_near(const Eigen::VectorXd& start, const std::vector<Ei
   std::vector<Frame> room;
   const std::vector<Frame>& frames = first_of_training(share, room);
   const FitProblem train = problem(quick(), frames);
-  const Eigen::VectorXd std = model_.prior_std();
-  Place best{start, coordinates.empty() ? free_fit(train, start).cost : std::numeric_limits<double>::infinity()};
-  for (const Eigen::Index i : coordinates) {
-    const Eigen::VectorXd from = best.w;
-    const auto place = [&](int k) {
-      return Eigen::VectorXd(from + k * kNearStep * std[i] * Eigen::VectorXd::Unit(from.size(), i));
-    };
-    Eigen::VectorXd costs(2 * kNearPoints + 1);
-    for_each_index(static_cast<std::size_t>(costs.size()), [&](std::size_t i) {
-      const int k = static_cast<int>(i);
-      costs[k] = free_fit(train, place(k - kNearPoints)).cost;
-    });
-    Eigen::Index lowest = 0;
-    best.cost = costs.minCoeff(&lowest);
-    best.w = place(static_cast<int>(lowest) - kNearPoints);
-  }
-  return best;
+  const auto cost = [&](const Eigen::VectorXd& w) { return free_fit(train, w).cost; };
+  const ScanResult nearest = scan_around(cost, start, model_.prior_std(), coordinates);
+  return {nearest.best, nearest.lowest};
 }
 
 std::vector<Eigen::Index> Study::shared_with(const Study& base) const {

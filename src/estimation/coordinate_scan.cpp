@@ -3,6 +3,12 @@
 #include "tissue_stiffness/forward/for_each_index.hpp"
 
 namespace tissue_stiffness {
+namespace {
+
+constexpr int kNearPoints = 10;      // on either side
+constexpr double kNearReach = 0.45;  // prior standard deviations: steps of 5 % of a modulus known to a factor of 3
+
+}  // namespace
 
 ScanResult scan_coordinates(const std::function<double(const Eigen::VectorXd&)>& cost, const Eigen::VectorXd& start,
                             const Eigen::VectorXd& prior_mean, const Eigen::VectorXd& prior_std, int points, double reach) {
@@ -28,6 +34,13 @@ ScanResult scan_coordinates(const std::function<double(const Eigen::VectorXd&)>&
     result.moved = true;
   }
   return result;
+}
+
+ScanResult scan_around(const std::function<double(const Eigen::VectorXd&)>& cost, const Eigen::VectorXd& start,
+                       const Eigen::VectorXd& prior_std, const std::vector<Eigen::Index>& coordinates) {
+  Eigen::VectorXd scanned = Eigen::VectorXd::Zero(start.size());
+  for (const Eigen::Index i : coordinates) scanned[i] = prior_std[i];
+  return scan_coordinates(cost, start, start, scanned, kNearPoints, kNearReach);
 }
 
 }  // namespace tissue_stiffness

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
-#include <numeric>
 #include <sstream>
+#include <utility>
 
 #include "../box_model.hpp"
 #include "verification/experiment.hpp"
@@ -101,6 +101,28 @@ TEST_F(CleanBar, HasTheEvidenceOfALinearModel) {
   EXPECT_NEAR(models.assess(model).log_evidence, before - 12.5, 1e-9);
 }
 
+// An amplitude whose size is not known beforehand: the mean of the evidence with priors of several widths.
+TEST_F(CleanBar, MixesThePriorsOfAnAddedAmplitude) {
+  const ModelComparison models(base_, Eigen::VectorXd::Zero(base_.rows.error.size()));
+  const double s = models.noise_variance();
+  const Eigen::VectorXd x = 100.0 * slow();  // that many times the width that is stated is seen at one sigma
+  const Explained model{base_.rows.error + 0.002 * x, {x, 1, Eigen::VectorXd::Zero(1), {0}, 0.0}};
+  const double square = x.squaredNorm(), along = x.dot(model.error);
+  double sum = 0.0;
+  int widths = 0;
+  for (double width = 1.0; width >= kComparison.smallest; width *= 0.25, ++widths) {
+    const double precision = s / (width * width) + square;
+    sum += std::exp(0.5 * (along * along / s / precision - std::log(precision * width * width / s)) -
+                    0.5 * along * along / s / square);
+  }
+  const double expected = -0.5 * model.error.squaredNorm() / s + 0.5 * along * along / s / square + std::log(sum / widths);
+  EXPECT_EQ(widths, 5);
+  EXPECT_NEAR(models.assess(model).log_evidence, expected, 1e-6 * std::abs(expected));
+  Explained known = model;
+  known.linearisation.amplitudes.clear();
+  EXPECT_GT(models.assess(model).log_evidence, models.assess(known).log_evidence + 3.0);
+}
+
 TEST_F(CleanBar, SumsTheRootsOfItsRobustWeights) {
   EXPECT_NEAR(log_root_weights(base_.rows), 0.0, 2.0);
   base_.rows.used.head(10).setConstant(0.5);
@@ -108,11 +130,25 @@ TEST_F(CleanBar, SumsTheRootsOfItsRobustWeights) {
   EXPECT_NEAR(log_root_weights(base_.rows), 10.0 * std::log(0.5), 2.0);
 }
 
-TEST(Posterior, AddsUpToOneInTheRatioOfTheEvidence) {
-  const std::vector<double> p = posterior({-1e5, -1e5 + std::log(3.0), -2e5});
-  EXPECT_NEAR(std::accumulate(p.begin(), p.end(), 0.0), 1.0, 1e-12);
-  EXPECT_NEAR(p[1] / p[0], 3.0, 1e-9);
-  EXPECT_EQ(p[2], 0.0);
+// The mesh's error along a mode has other courses in time than the change of a refinement: each is as likely as half of
+// that change, and evidence and test allow for it.
+TEST_F(CleanBar, AllowsForMeshErrorsThatARefinementDoesNotShow) {
+  const Eigen::VectorXd change =
+      ModelComparison(base_, slow()).mesh_directions().col(0) / kComparison.whole_mesh;  // along the lowest mode
+  const ModelComparison models(base_, change);
+  Eigen::VectorXd reversed = change;
+  const std::vector<Eigen::Index>& offsets = base_.rows.offsets;
+  const std::size_t frames = offsets.size() - 1;
+  for (std::size_t k = 0; k < frames; ++k) {
+    const Eigen::Index size = offsets[k + 1] - offsets[k];
+    reversed.segment(offsets[k], size) = change.segment(offsets[frames - 1 - k], size);
+  }
+  // x^T C^-1 x of x along the modes with C = s I + R^2 P: |x|^2 / (s + R^2).
+  const double s = models.noise_variance(), share = kComparison.left_of_mesh, room = share * share * change.squaredNorm();
+  EXPECT_NEAR(models.whitened(reversed).squaredNorm() / s, reversed.squaredNorm() / (s + room), 0.2);
+  const double before = models.assess(rigid(base_.rows.error)).log_evidence;
+  EXPECT_LT(before - models.assess(rigid(base_.rows.error + share * reversed)).log_evidence, 2.0);
+  EXPECT_TRUE(models.assess(rigid(base_.rows.error + share * reversed)).test.passes());
 }
 
 TEST(ComparisonNumbers, AreThoseOfTheMethodsTable) {
@@ -132,20 +168,56 @@ TEST(ComparisonNumbers, AreThoseOfTheMethodsTable) {
   row("`left_of_mesh`", text(kComparison.left_of_mesh));
   row("`unknown_mesh`", text(kComparison.unknown_mesh));
   row("`worthwhile`", text(kComparison.worthwhile));
+  row("`smallest`", text(kComparison.smallest));
   row("`promising`", text(kComparison.promising));
   row("`most_numerics`", text(kComparison.most_numerics));
   EXPECT_EQ(kComparison.mesh_modes, kComparison.test_modes);
   row("`mesh_modes`, `test_modes`", text(kComparison.test_modes));
 }
 
+Hypothesis hypothesis(std::vector<std::string> effects, double weight, bool passes, bool random_force = false) {
+  return {std::move(effects), random_force, weight, 0.0, passes, 0.0};
+}
+
+Comparison compared(std::vector<Hypothesis> hypotheses) {
+  Comparison out;
+  out.passes_without_mesh = hypotheses.front().passes;
+  out.hypotheses = std::move(hypotheses);
+  out.find_probabilities();
+  return out;
+}
+
+TEST(Comparison, HasProbabilitiesInTheRatioOfTheEvidence) {
+  const Comparison c = compared({hypothesis({}, -1e5, true), hypothesis({"a"}, -1e5 + std::log(3.0), true),
+                                 hypothesis({"b"}, -2e5, true), hypothesis({}, -1e5, false, true)});
+  EXPECT_NEAR(c.given().probability, 0.2, 1e-9);
+  EXPECT_NEAR(c.probability_of("a"), 0.6, 1e-9);
+  EXPECT_EQ(c.probability_of("b"), 0.0);
+  EXPECT_NEAR(c.none_of_these(), 0.2, 1e-9);
+  EXPECT_EQ(c.best().effects, std::vector<std::string>{"a"});
+}
+
+// What was compared about the model with `a` takes the place of what was known of that model.
+TEST(Comparison, IsRefinedByWhatIsFoundBesideALeader) {
+  Comparison c = compared({hypothesis({}, 0.0, false), hypothesis({"a"}, 50.0, false), hypothesis({"b"}, 40.0, false),
+                           hypothesis({"a"}, 70.0, false, true), hypothesis({}, 60.0, false, true)});
+  EXPECT_EQ(judge(c), Verdict::unexplained);
+  c.refine({"a"}, compared({hypothesis({}, 3.0, false), hypothesis({"b"}, 33.0, true), hypothesis({"c"}, 32.0, true),
+                            hypothesis({}, 20.0, false, true)}));
+  ASSERT_EQ(c.hypotheses.size(), 7u);
+  EXPECT_EQ(c.best().effects, (std::vector<std::string>{"a", "b"}));
+  EXPECT_DOUBLE_EQ(c.best().log_weight, 80.0);
+  EXPECT_NEAR(c.probability_of("a"), 1.0, 1e-5);
+  EXPECT_NEAR(c.probability_of("b"), 1.0 / (1.0 + std::exp(-1.0)), 1e-5);
+  EXPECT_LT(c.none_of_these(), 1e-4);
+  EXPECT_EQ(judge(c), Verdict::missing);
+  EXPECT_EQ(believed_effects(c), (std::vector<std::string>{"a", "b", "c"}));
+}
+
 TEST(Judge, NeedsBothAProbabilityAndAFit) {
   const auto verdict = [](double given, bool given_passes, double named, bool named_passes, double none) {
-    Comparison c;
-    c.given = {{}, given, 0.0, given_passes};
-    c.passes_without_mesh = given_passes;
-    c.others = {{{"a"}, named, 0.0, named_passes}};
-    c.none_of_these = none;
-    return judge(c);
+    return judge(compared({hypothesis({}, std::log(given), given_passes), hypothesis({"a"}, std::log(named), named_passes),
+                           hypothesis({}, std::log(none), false, true)}));
   };
   EXPECT_EQ(verdict(0.9, true, 0.1, true, 0.0), Verdict::adequate);
   EXPECT_EQ(verdict(0.1, true, 0.9, true, 0.0), Verdict::adequate);  // it is within the believed set
@@ -153,15 +225,16 @@ TEST(Judge, NeedsBothAProbabilityAndAFit) {
   EXPECT_EQ(verdict(0.0, false, 1.0, false, 0.0), Verdict::unexplained);
   EXPECT_EQ(verdict(0.0, false, 0.4, true, 0.6), Verdict::unexplained);
   EXPECT_EQ(verdict(1.0, false, 0.0, true, 0.0), Verdict::unexplained);
-  Comparison noise;  // what is no more than noise needs no name
-  noise.given = {{}, 0.0, 0.0, true};
-  noise.passes_without_mesh = true;
-  noise.others = {{{"a"}, 1.0, 0.0, true}};
+  // An effect that passes, beside which something else acts, does not explain the recording.
+  EXPECT_EQ(
+      judge(compared({hypothesis({}, 0.0, false), hypothesis({"a"}, 50.0, true), hypothesis({"a"}, 60.0, false, true)})),
+      Verdict::unexplained);
+  Comparison noise = compared({hypothesis({}, 0.0, true), hypothesis({"a"}, 50.0, true)});
   EXPECT_EQ(judge(noise), Verdict::missing);
-  noise.structured = false;
+  noise.structured = false;  // what is no more than noise needs no name
   EXPECT_EQ(judge(noise), Verdict::adequate);
-  Comparison mesh;
-  mesh.given = {{}, 1.0, 0.0, true};
+  Comparison mesh = compared({hypothesis({}, 0.0, true)});
+  mesh.passes_without_mesh = false;
   EXPECT_EQ(judge(mesh), Verdict::numerics);
 }
 

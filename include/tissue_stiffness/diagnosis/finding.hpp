@@ -15,9 +15,9 @@ namespace tissue_stiffness {
 
 /// What one look at a fitted model finds missing.
 struct Finding {
-  Verdict verdict;
+  Verdict verdict = Verdict::unexplained;
   Comparison comparison;
-  std::vector<std::string> set;        ///< effects of the fewest explanations that hold the believed probability
+  std::vector<std::string> set;        ///< see believed_effects; empty where nothing is missing
   std::vector<MissingEffect> effects;  ///< best first
   std::vector<Refit> refits;           ///< best first
   double floor = 0.0;                  ///< rms of what a finer mesh would change [sigma]
@@ -25,6 +25,9 @@ struct Finding {
   Library library;                             ///< that the tangents were read from
   std::optional<Eigen::VectorXd> better_base;  ///< where the base itself fits better: the rest is not searched to the end
   std::shared_ptr<const ModelComparison> models;
+
+  /// Verdict, set and the effects' probabilities as that comparison has them.
+  void believe(const Comparison& known);
 };
 
 /// Hears of the candidates, best first, whenever more is known of them.

@@ -18,11 +18,12 @@ struct FirstLook {
   FirstLook(const Fitted& fitted, const DiagnosisOptions& options, FinerMesh earlier, Library library = {});
 
   const Fitted& base;
-  const double cost;  ///< sum of squared errors [sigma^2]
-  const bool first;   ///< no earlier look at the same recording
-  std::vector<Candidate> candidates;
-  Library library;        ///< that they were read from
-  Eigen::MatrixXd known;  ///< tangents of the base's parameters, and directions of the mesh's error
+  const double cost;                  ///< sum of squared errors [sigma^2]
+  const bool first;                   ///< no earlier look at the same recording
+  std::vector<Candidate> candidates;  ///< their tangents are whitened
+  Library library;                    ///< that they were read from
+  Eigen::VectorXd error;              ///< of the base, whitened
+  Eigen::MatrixXd known;              ///< tangents of the base's parameters, and directions of the mesh's error; whitened
   FinerMesh finer;
   double floor = 0.0;  ///< rms of what the base's parameters leave of the mesh's change [sigma]
   std::unique_ptr<Scorer> scorer;

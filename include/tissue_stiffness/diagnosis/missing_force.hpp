@@ -1,5 +1,6 @@
 #pragma once
 
+#include "tissue_stiffness/diagnosis/model_comparison.hpp"
 #include "tissue_stiffness/diagnosis/study.hpp"
 #include "tissue_stiffness/types/diagnosis.hpp"
 
@@ -12,9 +13,9 @@ namespace tissue_stiffness {
 /// likelier than noise. What is not linear in the model acts as it does in the free run.
 MissingForce missing_force(const Study& study, const Eigen::VectorXd& w);
 
-/// Log evidence of the residual being the work of such a force, whatever it is, beyond that of its being noise of this
-/// variance [sigma^2]: the force's marginal likelihood (Schweppe 1965) at its best prior, less the log of the number of
-/// priors that were tried.
-double log_evidence_of_random_force(const Study& study, const Eigen::VectorXd& w, double noise_variance);
+/// Log evidence of what a model leaves being the work of such a force, whatever it is, beyond that of its being noise and
+/// the mesh's error: the force's marginal likelihood (Schweppe 1965) at its best prior, less the log of the number of
+/// priors that were tried. `left`: see Assessment.
+double log_evidence_of_random_force(const Fitted& model, const Eigen::VectorXd& left, const ModelComparison& comparison);
 
 }  // namespace tissue_stiffness

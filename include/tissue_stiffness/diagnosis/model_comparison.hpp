@@ -13,13 +13,14 @@ namespace tissue_stiffness {
 struct ComparisonNumbers {
   double believed = 0.95;         ///< posterior probability that the set of explanations holds
   double whole_mesh = 4.0 / 3.0;  ///< of what a mesh refined once changes, at second order: one standard deviation
-  double left_of_mesh = 0.5;      ///< of what a mesh refined once changes: the most in directions that D does not hold
-  double unknown_mesh = 0.02;     ///< of the motion: one standard deviation of the mesh's error where it cannot be computed
+  double left_of_mesh = 0.5;      ///< of what a mesh refined once changes: standard deviation in directions that D lacks
+  double unknown_mesh = 0.02;     ///< of the motion: what a finer mesh changes where that cannot be computed
   double worthwhile = 5.0;        ///< log evidence from which on an unknown is fitted
-  double most_numerics = 3.0;     ///< standard deviations of an error of the numerics
-  double promising = 0.2;  ///< share of the structured error from which on an effect is one of several, or run in full
-  int mesh_modes = 12;     ///< lowest modes along which the mesh's error is an unknown of its own
-  int test_modes = 12;     ///< lowest modes that the test of the residual looks along
+  double smallest = 1e-3;      ///< of its prior's standard deviation: what an added effect's normal amplitude may be, too
+  double most_numerics = 3.0;  ///< standard deviations of an error of the numerics
+  double promising = 0.2;      ///< share of the structured error from which on an effect is one of several, or run in full
+  int mesh_modes = 12;         ///< lowest modes along which the mesh's error is an unknown of its own
+  int test_modes = 12;         ///< lowest modes that the test of the residual looks along
 };
 constexpr ComparisonNumbers kComparison{};
 
@@ -27,14 +28,17 @@ constexpr ComparisonNumbers kComparison{};
 /// parameters, each times its prior's standard deviation, and of the time steps that a simulated recording is made with.
 struct Linearisation {
   Eigen::MatrixXd columns;
-  Eigen::Index parameters = 0;    ///< the first of them; the others are numerics
-  Eigen::VectorXd prior;          ///< mean of u, counted from the fit
-  Eigen::VectorXd mesh_error;     ///< of a model whose finer mesh's change is not known; else empty
-  double log_root_weights = 0.0;  ///< sum of log sqrt(weight): a row of weight q has the noise's variance over q
+  Eigen::Index parameters = 0;           ///< the first of them; the others are numerics
+  Eigen::VectorXd prior;                 ///< mean of u, counted from the fit
+  std::vector<Eigen::Index> amplitudes;  ///< of the columns: added effects', whose size is not known beforehand
+  double log_root_weights = 0.0;         ///< sum of log sqrt(weight): a row of weight q has the noise's variance over q
 };
 /// Sum of the logarithms of the roots of the rows' robust weights.
 double log_root_weights(const Study::Rows& rows);
-Linearisation linearise(const Fitted& fitted);
+/// `amplitudes`: by name.
+Linearisation linearise(const Fitted& fitted, const std::vector<std::string>& amplitudes = {});
+/// Free parameters with normal priors that a model with fewer effects does not have.
+std::vector<std::string> added_amplitudes(const Study& study, const Study& smaller);
 
 /// A fitted model as it is compared: its residual and the rows about it.
 struct Explained {
@@ -43,24 +47,28 @@ struct Explained {
 };
 /// Where the time steps of a simulated recording matter to a linear model they are fitted with it: what they do to a body
 /// that rings for long is not linear in them. `far`: also where no tangent shows it.
-Explained explain(const Fitted& fitted, bool far = false);
+Explained explain(const Fitted& fitted, const std::vector<std::string>& amplitudes = {}, bool far = false);
 
 /// What the comparison makes of one model.
 struct Assessment {
   double log_evidence = 0.0;    ///< log p(e), but for a constant that all models share
   double log_likelihood = 0.0;  ///< log p(e | u) at the most probable u; but for the same constant
-  /// Of what the most probable u leaves: missing physics moves the lowest modes. A part of what a finer mesh
-  /// changes is allowed for, because the mesh's error has directions that D does not hold.
+  Eigen::VectorXd left;         ///< of the residual at the most probable u
+  /// Of what that leaves: missing physics moves the lowest modes.
   MisfitTest test;
 };
 
 /// Compares models of one recording by their residuals e at their fits, over all rows, in the noise's stated standard
 /// deviations times the roots of their robust weights q:
-///   e ~ N(J u, s I),  u ~ N(prior, I),  J = [columns, D],  s = v (1 + m) / (1 - m),  log p += sum log sqrt(q).
+///   e ~ N(J u, s I + sum_k B_k L_k B_k^T),  u ~ N(prior, I),  J = [columns, D],  s = v (1 + m) / (1 - m),
+///   log p += sum log sqrt(q).
 /// D: what a finer mesh changes, parted into its shares along the lowest modes and the rest. v: mean square across the
 /// lowest modes, which missing physics hardly moves, and m: that part's memory from frame to frame; both are those of the
-/// model that leaves least there. Laplace's approximation of the evidence (MacKay 2003, eq. 28.10) with the numerics as
-/// further unknowns.
+/// model that leaves least there. B_k L_k B_k^T, of frame k: a displacement along the lowest modes, each with the variance
+/// of `left_of_mesh` times its share of D, because the mesh's error has directions that D does not hold; evidence and test
+/// allow for the same. Laplace's approximation of the evidence (MacKay 2003, eq. 28.10) with the numerics as further
+/// unknowns. An added amplitude's prior is a mixture of normal ones from its stated width down to `smallest` of it, alike:
+/// an effect pays for the order of its size and not for the width that a proposal happens to state.
 class ModelComparison {
  public:
   /// `mesh_change`: what a finer mesh changes of the base's rows [sigma].
@@ -72,9 +80,9 @@ class ModelComparison {
   void note(const Eigen::VectorXd& error);
   double noise_variance() const { return noise_variance_; }         ///< s
   const Eigen::MatrixXd& mesh_directions() const { return mesh_; }  ///< D
+  /// Rows (N x k) in which the covariance is s I: along B_k they shrink by the root of s / (s + L_k).
+  Eigen::MatrixXd whitened(const Eigen::MatrixXd& rows) const;
   Assessment assess(const Explained& model) const;
-  /// log likelihood of a residual without unknowns.
-  double log_likelihood(const Study::Rows& rows) const;
   /// The test of a residual itself, of a model with that many parameters.
   MisfitTest test_of(const Eigen::VectorXd& error, double fitted) const;
 
@@ -83,31 +91,44 @@ class ModelComparison {
   std::vector<Eigen::Index> offsets_;
   Eigen::MatrixXd along_;  ///< rows / amplitude of each mode
   Eigen::MatrixXd mesh_;   ///< D
+  Eigen::MatrixXd basis_;  ///< B, frame under frame
+  Eigen::MatrixXd left_;   ///< L of each frame, a column each
   double noise_variance_ = 0.0;
 };
 
-/// Probabilities that are proportional to exp(log_weights).
-std::vector<double> posterior(const std::vector<double>& log_weights);
-
 /// One hypothesis after the comparison.
-struct Explanation {
-  std::string effect;  ///< empty: the given model
+struct Hypothesis {
+  std::vector<std::string> effects;  ///< empty: the given model
+  bool random_force = false;         ///< acts on the lowest modes besides: something that the library does not have
+  double log_weight = 0.0;           ///< log evidence and log prior, but for a constant
+  double z = 0.0;                    ///< of the residual's test; of a random force's it is that without the force
+  bool passes = false;               ///< that test
   double probability = 0.0;
-  double z = 0.0;       ///< of the residual's test beside the mesh's error
-  bool passes = false;  ///< that test
+  bool holds(const std::string& effect) const;
 };
 struct Comparison {
-  Explanation given;
-  bool structured = true;            ///< the given model leaves structure beyond chance
-  bool passes_without_mesh = false;  ///< the given model's residual, with the error of the mesh in it
-  std::vector<Explanation> others;
-  double none_of_these = 0.0;  ///< probability
+  bool structured = true;              ///< the given model leaves structure beyond chance
+  bool passes_without_mesh = false;    ///< the given model's residual, with the error of the mesh in it
+  std::vector<Hypothesis> hypotheses;  ///< the given model first
+
+  const Hypothesis& given() const { return hypotheses.front(); }
+  const Hypothesis& best() const;                          ///< the most probable one
+  double none_of_these() const;                            ///< probability of all hypotheses with a random force
+  double probability_of(const std::string& effect) const;  ///< of all others that hold it
+  /// From the weights.
+  void find_probabilities();
+  /// `deeper`: compared about the model with `effects` added. Takes the place of what is known of that model.
+  void refine(const std::vector<std::string>& effects, const Comparison& deeper);
 };
 
 enum class Verdict { adequate, missing, numerics, unexplained };
 /// `adequate`: the given model leaves no structure beyond chance, or is within the believed set and its residual passes.
-/// `numerics`: it passes only beside the mesh's error. `missing`: it is not in that set, a named explanation is the most
-/// probable, and its residual passes. Otherwise `unexplained`.
+/// `numerics`: it passes only beside the mesh's error. `missing`: it is not in that set, named effects alone are the most
+/// probable hypothesis, and what they leave passes. Otherwise `unexplained`.
 Verdict judge(const Comparison& comparison);
+
+/// Effects of the fewest hypotheses that hold the believed part of the probability of all that name any, most probable
+/// first.
+std::vector<std::string> believed_effects(const Comparison& comparison);
 
 }  // namespace tissue_stiffness

@@ -44,9 +44,11 @@ class RefitList {
   bool empty() const { return refits_.empty(); }
   const std::vector<Refit>& all() const { return refits_; }
   const Refit& best() const { return refits_.front(); }
-  /// What the best one leaves has structure beyond chance.
-  bool leaves_more_than_noise() const { return empty() || best().assessment.test.discrepancy() > 0.0; }
+  /// The given model, each refit, and something unknown beside the given model and beside the best refit.
+  Comparison compare() const;
   const Assessment& given() const { return given_; }  ///< of the given model
+  /// Log evidence of a refit beyond the given model's, over all ways of its effect, of which one was fitted.
+  double log_bayes_factor(const Refit& refit) const;
   const ModelComparison& comparison() const { return comparison_; }
   std::vector<Refit> take() { return std::move(refits_); }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <vector>
 
 namespace tissue_stiffness {
 
@@ -19,5 +20,9 @@ struct ScanResult {
 ScanResult scan_coordinates(const std::function<double(const Eigen::VectorXd&)>& cost, const Eigen::VectorXd& start,
                             const Eigen::VectorXd& prior_mean, const Eigen::VectorXd& prior_std, int points,
                             double reach = 2.5);
+
+/// The same along some coordinates only, closely and not far from `start`.
+ScanResult scan_around(const std::function<double(const Eigen::VectorXd&)>& cost, const Eigen::VectorXd& start,
+                       const Eigen::VectorXd& prior_std, const std::vector<Eigen::Index>& coordinates);
 
 }  // namespace tissue_stiffness
