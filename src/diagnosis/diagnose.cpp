@@ -164,7 +164,7 @@ class Search {
     options_.progress("compare the given model with the recording", 0, 0);
     add_step();
     bool moved = false;
-    finding_ = examine(model_, {}, {}, moved, [&](std::vector<MissingEffect> candidates) {
+    finding_ = examine(model_, {}, moved, [&](std::vector<MissingEffect> candidates) {
       out_.candidates = std::move(candidates);
       publish();
     });
@@ -196,7 +196,7 @@ class Search {
     for (std::size_t k = 0; k < most; ++k) {
       if (k >= asked && finding_.verdict != Verdict::missing) break;
       const std::vector<Refit> refits =
-          k < asked ? look(model_, {options_.add[k]}, options_, finding_.finer, finding_.library).refits : finding_.refits;
+          k < asked ? look(model_, {options_.add[k]}, options_, finding_.earlier).refits : finding_.refits;
       if (refits.empty()) break;
       const Library library = add(refits.front());
       if (k + 1 >= asked && nothing_left()) {
@@ -204,7 +204,7 @@ class Search {
         break;
       }
       bool moved = false;
-      finding_ = grown_ ? std::move(*grown_) : examine(model_, finding_.finer, library, moved);
+      finding_ = grown_ ? std::move(*grown_) : examine(model_, {finding_.earlier.finer, library, true}, moved);
       grown_.reset();
       if (moved) replace_step();
       out_.final_verdict = to_string(finding_.verdict);
@@ -217,7 +217,7 @@ class Search {
     estimate(doubt_of_nonlinear(model_, recording_));
     options_.progress("run the models once more for the report", 0, 0);
     publish();
-    options_.at_end(out_, given_.study ? given_ : model_, model_, finding_.finer.study.get());
+    options_.at_end(out_, given_.study ? given_ : model_, model_, finding_.earlier.finer.get());
     mix_explanations(out_.rivals, out_.estimate.parameters);
     out_.interrupted.clear();
   }
@@ -227,13 +227,13 @@ class Search {
 
   // Looks until the model fits nowhere better; `moved`: it has been fitted anew.
   Finding examine(
-      Fitted& model, const FinerMesh& finer, const Library& library, bool& moved,
+      Fitted& model, const Earlier& earlier, bool& moved,
       const CandidatesSoFar& so_far = [](std::vector<MissingEffect>) {}) {
-    Finding out = look(model, {}, options_, finer, library, so_far);
-    for (int k = 0; k < kMostBases && out.better_base; ++k) {
+    Finding out = look(model, {}, options_, earlier, so_far);
+    for (int k = 0; k < (earlier.beside ? 1 : kMostBases) && out.better_base; ++k) {
       model = fit_study(std::move(model.study), *out.better_base, kAddedSpread);
       moved = true;
-      out = look(model, {}, options_, out.finer, out.library, so_far);
+      out = look(model, {}, options_, out.earlier, so_far);
     }
     return out;
   }
@@ -249,7 +249,7 @@ class Search {
       auto next = std::make_shared<Fitted>(extended(model_, leader));
       const bool same = same_body(model_.study->model(), next->study->model());
       bool moved = false;
-      Finding deeper = examine(*next, finding_.finer, same ? finding_.library : Library(), moved);
+      Finding deeper = examine(*next, {finding_.earlier.finer, same ? finding_.earlier.library : Library(), true}, moved);
       leader.model = next;
       Comparison all = finding_.comparison;
       all.refine({leader.effect}, deeper.comparison);
@@ -287,7 +287,8 @@ class Search {
     // What is found beside another effect was compared beside that one only.
     out_.rivals.push_back(grown_ ? std::vector<RivalExplanation>() : rivals_of(finding_, best));
     Fitted next = extended(model_, best);
-    Library library = same_body(model_.study->model(), next.study->model()) ? std::move(finding_.library) : Library();
+    Library library =
+        same_body(model_.study->model(), next.study->model()) ? std::move(finding_.earlier.library) : Library();
     out_.final_effects.push_back(best.effect);
     out_.entries.push_back(best.entry);
     out_.final_verdict = "unfinished";

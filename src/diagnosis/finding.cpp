@@ -93,8 +93,8 @@ void Finding::believe(const Comparison& known) {
 }
 
 Finding look(const Fitted& base, const std::vector<std::string>& wanted, const DiagnosisOptions& options,
-             const FinerMesh& finer, const Library& library, const CandidatesSoFar& so_far) {
-  const FirstLook look(base, options, finer, library);
+             const Earlier& earlier, const CandidatesSoFar& so_far) {
+  const FirstLook look(base, options, earlier);
   require_proposed(look, wanted);
   Finding out;
   RefitList refits(look, options, [&](const RefitList& fitted) { so_far(describe(look, fitted)); });
@@ -106,8 +106,7 @@ Finding look(const Fitted& base, const std::vector<std::string>& wanted, const D
   out.believe(out.comparison);
   out.refits = refits.take();
   out.floor = look.floor;
-  out.finer = look.finer;
-  out.library = look.library;
+  out.earlier = {look.finer.study, look.library, look.beside};
   out.better_base = refits.better_base();
   return out;
 }

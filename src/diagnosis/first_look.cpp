@@ -27,12 +27,11 @@ Eigen::VectorXd mesh_change(const Fitted& base, const FinerMesh& finer) {
 
 }  // namespace
 
-FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, FinerMesh earlier, Library known_library)
+FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Earlier earlier)
     : base(fitted),
       cost(fitted.rows.error.squaredNorm()),
-      first(earlier.change.size() == 0),
-      library(std::move(known_library)),
-      finer(std::move(earlier)),
+      beside(earlier.beside),
+      library(std::move(earlier.library)),
       explained(explain(base)),
       comparison(base, Eigen::VectorXd::Zero(base.rows.error.size())),
       given(comparison.assess(explained)) {
@@ -45,7 +44,7 @@ FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Fine
             *base.study, base.fit.w, not_looked_for(options),
             [&](std::size_t done, std::size_t total) { options.progress(step, done, total); }, library);
       },
-      [&] { finer = finer_mesh(base, finer.study.get()); });
+      [&] { finer = finer_mesh(base, earlier.finer.get()); });
   comparison.allow_for_mesh(mesh_change(base, finer));
   given = comparison.assess(explained);
   const Eigen::MatrixXd &own = explained.linearisation.columns, &of_mesh = comparison.mesh_directions();

@@ -8,11 +8,10 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kSameWay = 0.8;      // cosine above which two ways are one
-constexpr std::size_t kMostWays = 3;  // of an effect and kind that are fitted to the beginning
-constexpr std::size_t kBegun = 6;     // fits of the beginning that are tried on the whole recording
-constexpr std::size_t kBegunOf = 2;   // of one effect
-constexpr std::size_t kLeaders = 3;   // refits whose other ways and kinds are tried
+constexpr double kSameWay = 0.8;     // cosine above which two ways are one
+constexpr std::size_t kBegun = 6;    // fits of the beginning that are tried on the whole recording
+constexpr std::size_t kBegunOf = 2;  // of one effect
+constexpr std::size_t kLeaders = 3;  // refits whose other ways and kinds are tried
 
 /// The search, stage by stage: each goes on only while nothing explains the recording.
 class Search {
@@ -34,12 +33,13 @@ class Search {
   void refit_other_ways();
   void refit_from_beginning();
   void refit_other_kinds();
-  std::vector<const Candidate*> different_ways() const;
+  std::vector<const Candidate*> ways_as_it_begins() const;
   std::vector<Refit> leaders() const;
   /// Something is to be explained that tangents may not show. What a model that already has an effect leaves is small
   /// once it passes its test, and tangents are taken at the right place.
-  bool wide() const { return look_.first ? look_.given.test.discrepancy() > 0.0 : !look_.given.test.passes(); }
-  bool explained() const { return !wide() || judge(refits_.compare()) == Verdict::missing; }
+  bool wide() const { return look_.beside ? !look_.given.test.passes() : look_.given.test.discrepancy() > 0.0; }
+  /// Or not worth a longer search: what a model that already has an effect leaves is small.
+  bool explained() const { return look_.beside || !wide() || judge(refits_.compare()) == Verdict::missing; }
   /// Runs in full take long: none for an effect whose tangent explains next to nothing.
   bool worth_full_runs(const Ranked& r) const {
     return r.best->linear || r.score.explained > kComparison.promising * structured_squares(look_.base.rows);
@@ -114,7 +114,7 @@ void Search::refit_other_kinds() {
 // Where phases have drifted apart a tangent says little: what is unexplained may be any effect's, of any direction and
 // strength. The best fits of the recording's beginning tell where to start.
 void Search::refit_from_beginning() {
-  const std::vector<const Candidate*> ways = different_ways();
+  const std::vector<const Candidate*> ways = ways_as_it_begins();
   std::vector<std::optional<BeginningFit>> fits(ways.size());
   refits_.try_each(
       ways.size(), [&](std::size_t i) { return "beginning with " + ways[i]->effect; },
@@ -134,29 +134,21 @@ void Search::refit_from_beginning() {
   refits_.add(list);
 }
 
-// Of each effect and kind the most evident ways that look different from one another, as the recording begins.
-std::vector<const Candidate*> Search::different_ways() const {
+// Of each effect and kind the most evident way, as the recording begins.
+std::vector<const Candidate*> Search::ways_as_it_begins() const {
   const std::vector<Eigen::Index>& offsets = look_.base.rows.offsets;
   const Eigen::Index rows = offsets[static_cast<std::size_t>(kBeginning * static_cast<double>(offsets.size() - 1))];
   const Scorer scorer(look_.error.head(rows), look_.known.topRows(rows), look_.comparison.noise_variance());
-  std::vector<std::pair<const Candidate*, Score>> ways;
+  std::map<std::string, std::pair<double, const Candidate*>> best;
   for (const Candidate& candidate : look_.candidates) {
     if (!candidate.linear) continue;
     const Tangent beginning{candidate.tangent.columns.topRows(rows), candidate.tangent.prior_std};
-    ways.emplace_back(&candidate, scorer.score(beginning));
+    const double evidence = scorer.score(beginning).log_bayes_factor;
+    auto& known = best[candidate.effect + " " + candidate.proposal.kind];
+    if (known.second == nullptr || evidence > known.first) known = {evidence, &candidate};
   }
-  std::stable_sort(ways.begin(), ways.end(),
-                   [](const auto& a, const auto& b) { return a.second.log_bayes_factor > b.second.log_bayes_factor; });
   std::vector<const Candidate*> out;
-  std::map<std::string, std::vector<const Score*>> kept;
-  for (const auto& [way, score] : ways) {
-    std::vector<const Score*>& like = kept[way->effect + " " + way->proposal.kind];
-    const bool known =
-        std::any_of(like.begin(), like.end(), [&, &now = score](const Score* s) { return now.cosine_with(*s) > kSameWay; });
-    if (known || like.size() == kMostWays) continue;
-    like.push_back(&score);
-    out.push_back(way);
-  }
+  for (const auto& [kind, way] : best) out.push_back(way.second);
   return out;
 }
 

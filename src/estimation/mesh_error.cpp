@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "tissue_stiffness/estimation/coordinate_scan.hpp"
 #include "tissue_stiffness/estimation/ensemble.hpp"
 #include "tissue_stiffness/filter/anchored_filter.hpp"
 #include "tissue_stiffness/forward/reduced_model.hpp"
@@ -51,10 +52,10 @@ void drive(const MeshError::Question& question, Model& model) {
   model.set_first_stamp(question.first_stamp);
 }
 
-// Gauss-Newton from w on, with steps that are cut while they do not lower the cost; where none does, that is the end.
+// Gauss-Newton from `start` on, with steps that are cut while they do not lower the cost; where none does, that is the end.
 template <typename Run>
-MeshError::Answer fit(const Run& run, AnchoredFilter filter, const MeshError::Question& q) {
-  run(filter, q.w);
+MeshError::Answer fit(const Run& run, AnchoredFilter filter, const MeshError::Question& q, const Eigen::VectorXd& start) {
+  run(filter, start);
   const Eigen::VectorXd limit = kLongestStep * q.prior_std;
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
     const AnchoredFilter before = filter;
@@ -142,6 +143,25 @@ struct MeshError::Studies {
     }
     return out;
   }
+
+  // A coarse mesh makes the whole body too stiff, and a body that rings soon has other minima: the best common factor of
+  // all moduli not far from w.
+  Eigen::VectorXd best_near(const Question& q, const std::vector<Prediction>& truth) const {
+    Eigen::VectorXd stiffer = Eigen::VectorXd::Zero(q.w.size());
+    for (Eigen::Index i = 0; i < q.w.size(); ++i) {
+      if (is_young_modulus(coarse.free_parameters()[static_cast<std::size_t>(i)].name)) stiffer[i] = q.prior_std[i];
+    }
+    const auto cost = [&](const Eigen::VectorXd& x) {
+      const std::vector<Prediction> own = predictions(*coarse_runs, q, q.w + x[0] * stiffer);
+      double sum = 0.0;
+      for (std::size_t k = 0; k < truth.size(); ++k) {
+        const Eigen::ArrayXd off = (truth[k].predicted - own[k].predicted).array() / truth[k].sigma.array();
+        sum += off.isFinite().select(off, 0.0).square().sum();
+      }
+      return sum;
+    };
+    return q.w + scan_around(cost, Eigen::VectorXd::Zero(1), Eigen::VectorXd::Ones(1), {0}).best[0] * stiffer;
+  }
 };
 
 std::vector<Eigen::VectorXd> MeshError::changes(const Question& q, const Eigen::VectorXd& shift) {
@@ -210,7 +230,7 @@ MeshError::Answer MeshError::study(const Question& q) {
       filter.update(truth[k].predicted, rows, sigma.cwiseAbs2(), Eigen::VectorXd::Ones(sigma.size()));
     }
   };
-  return fit(run_coarse, AnchoredFilter(q.w, q.prior_std.cwiseAbs2().asDiagonal()), q);
+  return fit(run_coarse, AnchoredFilter(q.w, q.prior_std.cwiseAbs2().asDiagonal()), q, s.best_near(q, truth));
 }
 
 }  // namespace tissue_stiffness

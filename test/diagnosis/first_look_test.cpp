@@ -41,7 +41,7 @@ class BarWithADamping : public ::testing::Test {
 
 // Amplitudes of tangents are counted from where the effect is absent: a scale is 1 there.
 TEST_F(BarWithADamping, CountsAmplitudesFromWhereAnEffectIsAbsent) {
-  const FirstLook look(base_, {}, {Eigen::VectorXd::Zero(base_.rows.error.size())});
+  const FirstLook look(base_, {});
   std::map<std::string, double> absent;
   for (const Candidate& candidate : look.candidates) absent[candidate.effect] = candidate.absent;
   EXPECT_EQ(absent.at("image_scale"), 1.0);
@@ -50,8 +50,7 @@ TEST_F(BarWithADamping, CountsAmplitudesFromWhereAnEffectIsAbsent) {
 
 // What an earlier look's models hold, they hold once one of its effects has been added, too.
 TEST_F(BarWithADamping, ReadsTangentsInTheVectorsOfAnEarlierLook) {
-  const Eigen::VectorXd none = Eigen::VectorXd::Zero(base_.rows.error.size());
-  const FirstLook first(base_, {}, {none});
+  const FirstLook first(base_, {});
   ModelSettings damped = given_;
   add_effect(damped, "viscous_damping: {beta: {prior: 5.0e-3, factor: 2}}");
   Fitted next;
@@ -59,7 +58,7 @@ TEST_F(BarWithADamping, ReadsTangentsInTheVectorsOfAnEarlierLook) {
   const Model& model = next.study->model();
   next.fit = next.study->fit(model.prior_mean(), 0.1 * model.prior_std());
   next.rows = next.study->rows(next.fit.w);
-  const FirstLook alone(next, {}, {none}), after(next, {}, {none}, first.library);
+  const FirstLook alone(next, {}), after(next, {}, {first.finer.study, first.library, true});
   ASSERT_EQ(alone.candidates.size(), after.candidates.size());
   double worst = 0.0;
   for (std::size_t c = 0; c < alone.candidates.size(); ++c) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tissue_stiffness/diagnosis/diagnose.hpp"
-#include "tissue_stiffness/diagnosis/finer_mesh.hpp"
+#include "tissue_stiffness/diagnosis/first_look.hpp"
 #include "tissue_stiffness/diagnosis/model_comparison.hpp"
 #include "tissue_stiffness/diagnosis/ranking.hpp"
 
@@ -17,12 +17,11 @@ namespace tissue_stiffness {
 struct Finding {
   Verdict verdict = Verdict::unexplained;
   Comparison comparison;
-  std::vector<std::string> set;        ///< see believed_effects; empty where nothing is missing
-  std::vector<MissingEffect> effects;  ///< best first
-  std::vector<Refit> refits;           ///< best first
-  double floor = 0.0;                  ///< rms of what a finer mesh would change [sigma]
-  FinerMesh finer;
-  Library library;                             ///< that the tangents were read from
+  std::vector<std::string> set;                ///< see believed_effects; empty where nothing is missing
+  std::vector<MissingEffect> effects;          ///< best first
+  std::vector<Refit> refits;                   ///< best first
+  double floor = 0.0;                          ///< rms of what a finer mesh would change [sigma]
+  Earlier earlier;                             ///< for the next look
   std::optional<Eigen::VectorXd> better_base;  ///< where the base itself fits better: the rest is not searched to the end
   std::shared_ptr<const ModelComparison> models;
 
@@ -33,12 +32,10 @@ struct Finding {
 /// Hears of the candidates, best first, whenever more is known of them.
 using CandidatesSoFar = std::function<void(std::vector<MissingEffect>)>;
 
-/// Ranks the library by tangents, refits it (or `wanted` effects, if any), and compares what was fitted. `finer`: as an
-/// earlier look at the same recording found it; empty: found out now. `library`: see find_candidates. `so_far` hears of the
-/// tangents' ranking, and of what refits make of it. Throws InputError for a wanted effect that nothing proposes.
+/// Ranks the library by tangents, refits it (or `wanted` effects, if any), and compares what was fitted. `so_far` hears of
+/// the tangents' ranking, and of what refits make of it. Throws InputError for a wanted effect that nothing proposes.
 Finding look(
     const Fitted& base, const std::vector<std::string>& wanted, const DiagnosisOptions& options,
-    const FinerMesh& finer = {}, const Library& library = {},
-    const CandidatesSoFar& so_far = [](std::vector<MissingEffect>) {});
+    const Earlier& earlier = {}, const CandidatesSoFar& so_far = [](std::vector<MissingEffect>) {});
 
 }  // namespace tissue_stiffness

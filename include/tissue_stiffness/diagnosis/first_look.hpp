@@ -11,15 +11,20 @@
 
 namespace tissue_stiffness {
 
+/// What an earlier look at the same recording has found out.
+struct Earlier {
+  std::shared_ptr<const Study> finer = nullptr;  ///< the model on a finer mesh; null: none yet
+  Library library = {};                          ///< see find_candidates
+  bool beside = false;                           ///< the model has an effect that the earlier look found
+};
+
 /// What a fitted model's error shows before anything is refitted: the library, ranked by its tangents, and the mesh's part.
 struct FirstLook {
-  /// `earlier`: the finer mesh of an earlier look at the same recording.
-  /// `library`: see find_candidates.
-  FirstLook(const Fitted& fitted, const DiagnosisOptions& options, FinerMesh earlier, Library library = {});
+  FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Earlier earlier = {});
 
   const Fitted& base;
   const double cost;                  ///< sum of squared errors [sigma^2]
-  const bool first;                   ///< no earlier look at the same recording
+  const bool beside;                  ///< see Earlier
   std::vector<Candidate> candidates;  ///< their tangents are whitened
   Library library;                    ///< that they were read from
   Eigen::VectorXd error;              ///< of the base, whitened
