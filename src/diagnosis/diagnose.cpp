@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "tissue_stiffness/diagnosis/belief_map.hpp"
 #include "tissue_stiffness/diagnosis/finding.hpp"
 #include "tissue_stiffness/diagnosis/first_look.hpp"
 #include "tissue_stiffness/diagnosis/fit_entries.hpp"
@@ -182,6 +183,7 @@ class Search {
     if (grown_) out_.best.effects.insert(out_.best.effects.begin(), finding_.set.front());
     out_.candidates = finding_.effects;
     out_.next_experiment = next_experiment(finding_.set);
+    out_.valid_given = out_.valid_final = validity();
     out_.sigmas.numerical = finding_.floor;
     out_.metres.numerical = finding_.floor * out_.metres.noise;
     publish();
@@ -212,6 +214,7 @@ class Search {
   }
 
   void conclude() {
+    out_.valid_final = validity();
     // What was added first was fitted while the rest was missing.
     fit_entries(out_.entries, model_.study->model(), model_.fit);
     estimate(doubt_of_nonlinear(model_, recording_));
@@ -229,11 +232,14 @@ class Search {
   Finding examine(
       Fitted& model, const Earlier& earlier, bool& moved,
       const CandidatesSoFar& so_far = [](std::vector<MissingEffect>) {}) {
+    const int most = earlier.beside ? 1 : kMostBases;
     Finding out = look(model, {}, options_, earlier, so_far);
-    for (int k = 0; k < (earlier.beside ? 1 : kMostBases) && out.better_base; ++k) {
+    for (int k = 1; out.better_base; ++k) {
       model = fit_study(std::move(model.study), *out.better_base, kAddedSpread);
       moved = true;
-      out = look(model, {}, options_, out.earlier, so_far);
+      Earlier next = out.earlier;
+      next.settled = k == most;
+      out = look(model, {}, options_, next, so_far);
     }
     return out;
   }
@@ -251,8 +257,10 @@ class Search {
       bool moved = false;
       Finding deeper = examine(*next, {finding_.earlier.finer, same ? finding_.earlier.library : Library(), true}, moved);
       leader.model = next;
+      if (deeper.models->noise_variance() < finding_.models->noise_variance()) finding_.models = deeper.models;
       Comparison all = finding_.comparison;
-      all.refine({leader.effect}, deeper.comparison);
+      all.merge({leader.effect}, deeper.comparison);
+      all.assess(*finding_.models);
       finding_.believe(all);
       if (finding_.verdict != Verdict::missing) continue;
       take_over(leader.effect, deeper.effects);
@@ -277,6 +285,8 @@ class Search {
       }
     }
   }
+
+  BeliefMap validity() const { return belief_map(model_, finding_.models->assess(explained_).left, *finding_.models); }
 
   // The model leaves no structure beyond chance: there is nothing left to look for.
   bool nothing_left() const { return !(finding_.models->assess(explained_).test.discrepancy() > 0.0); }

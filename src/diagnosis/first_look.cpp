@@ -31,6 +31,7 @@ FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Earl
     : base(fitted),
       cost(fitted.rows.error.squaredNorm()),
       beside(earlier.beside),
+      settled(earlier.settled),
       library(std::move(earlier.library)),
       explained(explain(base)),
       comparison(base, Eigen::VectorXd::Zero(base.rows.error.size())),

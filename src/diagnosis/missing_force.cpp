@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <set>
 
 #include "tissue_stiffness/diagnosis/force_smoother.hpp"
 #include "tissue_stiffness/forward/reduced_trajectory.hpp"
+#include "tissue_stiffness/meshing/farthest_nodes.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -19,23 +19,12 @@ constexpr double kSameSpan = 1e-6;   // relative
 constexpr double kShortest = 1e-9;   // [s]
 constexpr double kLocal = 0.5;       // of the largest force per mass: near it
 
-/// Surface nodes far from each other.
-std::vector<int> spread_nodes(const TetMesh& mesh, std::size_t most) {
+std::vector<int> surface_nodes(const TetMesh& mesh) {
   std::set<int> surface;
   for (Eigen::Index f = 0; f < mesh.facets.cols(); ++f) {
     for (Eigen::Index i = 0; i < 3; ++i) surface.insert(mesh.facets(i, f));
   }
-  const std::vector<int> all(surface.begin(), surface.end());
-  std::vector<double> far(all.size(), std::numeric_limits<double>::infinity());
-  std::vector<int> out;
-  for (std::size_t next = 0; out.size() < std::min(most, all.size());) {
-    out.push_back(all[next]);
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      far[i] = std::min(far[i], (mesh.nodes.col(all[i]) - mesh.nodes.col(out.back())).squaredNorm());
-    }
-    next = static_cast<std::size_t>(std::max_element(far.begin(), far.end()) - far.begin());
-  }
-  return out;
+  return {surface.begin(), surface.end()};
 }
 
 Eigen::Matrix3Xd at(const std::vector<int>& nodes, const Eigen::VectorXd& field) {
@@ -161,7 +150,7 @@ MissingForce missing_force(const Study& study, const Eigen::VectorXd& w) {
 
   const Eigen::Index count = modes.shapes.cols(), frames = modes.displacement.cols();
   out.parameters = study.model().values(w);
-  out.nodes = spread_nodes(mesh, kNodes);
+  out.nodes = farthest_nodes(mesh, surface_nodes(mesh), kNodes);
   out.places = at(out.nodes, Eigen::Map<const Eigen::VectorXd>(mesh.nodes.data(), mesh.nodes.size()));
   Eigen::MatrixXd force(count, frames), q(count, frames), v(count, frames);
   Eigen::VectorXd before = Eigen::VectorXd::Zero(count);
@@ -192,15 +181,20 @@ MissingForce missing_force(const Study& study, const Eigen::VectorXd& w) {
   return out;
 }
 
-double log_evidence_of_random_force(const Fitted& model, const Eigen::VectorXd& left, const ModelComparison& comparison) {
+double log_evidence_of_random_force(const Fitted& model, const Assessment& alone, const ModelComparison& comparison) {
   const Modes modes = modes_of(*model.study, model.fit.w);
   const double s = comparison.noise_variance();
-  const Eigen::MatrixXd along = comparison.whitened(model.study->rows_along(model.fit.w, modes.shapes, model.rows));
-  const Eigen::VectorXd error = comparison.whitened(left);
+  Eigen::MatrixXd along = model.study->rows_along(model.fit.w, modes.shapes, model.rows);
+  Eigen::VectorXd error = alone.left;
+  if (!alone.beyond_mesh) {
+    along = comparison.whitened(along);
+    error = comparison.whitened(error);
+  }
   const std::vector<FrameEvidence> evidence = evidence_of(error, along, model.rows.offsets, s);
   const ForcePrior prior = likeliest_force_prior(modes.transitions, evidence, modes.scale());
-  const double deviance = smooth_force(modes.transitions, evidence, prior).deviance;
-  return 0.5 * (error.squaredNorm() / s - deviance) - log_of_tried_priors(modes.shapes.cols());
+  const double gain = 0.5 * (error.squaredNorm() / s - smooth_force(modes.transitions, evidence, prior).deviance);
+  const double without_mesh = alone.beyond_mesh ? alone.log_plain - alone.log_likelihood : 0.0;
+  return gain + without_mesh - log_of_tried_priors(modes.shapes.cols());
 }
 
 }  // namespace tissue_stiffness

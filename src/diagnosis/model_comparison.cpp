@@ -1,5 +1,7 @@
 #include "tissue_stiffness/diagnosis/model_comparison.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
@@ -229,21 +231,68 @@ Assessment ModelComparison::assess(const Explained& explained) const {
   }
   out.log_evidence = log_mean_exp(evidence);
   out.left = explained.error - j * u;
+  const double beyond = 0.5 * beyond_bound(out.left);
+  out.beyond_mesh = beyond > 0.0;
+  out.log_likelihood -= beyond;
+  out.log_evidence -= beyond;
+  out.log_plain = model.log_root_weights - 0.5 * out.left.squaredNorm() / s;
   out.test = test_of(out.left, static_cast<double>(model.columns.cols()));
   constexpr double part = kComparison.left_of_mesh / kComparison.whole_mesh;
   out.test.set_numerics(part * part * along_modes(mesh_) / used_.sum());
   return out;
 }
 
-MisfitTest ModelComparison::test_of(const Eigen::VectorXd& error, double fitted) const {
-  MisfitTest out;
+// Along B_k the most probable displacement is d = L (s + L)^-1 y of a residual y, with the square m^2 = d^T L^-1 d summed
+// over the frames. Where m is more than noise and the bound give, only a part c of d is believed.
+double ModelComparison::beyond_bound(const Eigen::VectorXd& left) const {
+  const double s = noise_variance_;
+  double most = kComparison.most_numerics * kComparison.most_numerics;
+  double square = 0.0, across = 0.0, whole = 0.0;  // of y: y^2 L / (s + L)^2, y^2 / (s + L) and y^2 / s
+  double mixed = 0.0;                              // y^2 L / (s + L) / s
   for (std::size_t k = 0; k + 1 < offsets_.size(); ++k) {
     const Eigen::Index from = offsets_[k], size = offsets_[k + 1] - from;
-    if (size == 0) continue;
-    const Eigen::Index modes = std::min<Eigen::Index>(along_.cols(), std::max<Eigen::Index>(1, size / 4));
-    out.add(error.segment(from, size), used_.segment(from, size), along_.block(from, 0, size, modes));
+    if (size == 0 || left_.size() == 0) continue;
+    const Eigen::ArrayXd y = basis_.middleRows(from, size).transpose() * left.segment(from, size);
+    const Eigen::ArrayXd variance = left_.col(static_cast<Eigen::Index>(k)).array(), all = s + variance;
+    most += (s * variance / all.square()).sum();
+    square += (y.square() * variance / all.square()).sum();
+    across += (y.square() / all).sum();
+    whole += (y.square() / s).sum();
+    mixed += (y.square() * variance / all / s).sum();
   }
+  if (!(square > most)) return 0.0;
+  // |y - c d|^2 / s + c^2 m^2; the sum of d^2 / s is mixed - square.
+  const double c = std::sqrt(most / square);
+  return whole - 2.0 * c * mixed + c * c * (mixed - square) + c * c * square - across;
+}
+
+MisfitTest ModelComparison::test_of(const Eigen::VectorXd& error, double fitted) const {
+  MisfitTest out = test_where(error, 0, static_cast<Eigen::Index>(offsets_.size()) - 1, [](Eigen::Index) { return true; });
   out.set_fitted(fitted);
+  return out;
+}
+
+MisfitTest ModelComparison::test_where(const Eigen::VectorXd& error, Eigen::Index first, Eigen::Index last,
+                                       const std::function<bool(Eigen::Index)>& inside) const {
+  MisfitTest out;
+  for (Eigen::Index k = first; k < last; ++k) {
+    std::vector<Eigen::Index> rows;
+    for (Eigen::Index r = offsets_[static_cast<std::size_t>(k)]; r < offsets_[static_cast<std::size_t>(k) + 1]; ++r) {
+      if (inside(r)) rows.push_back(r);
+    }
+    if (rows.empty()) continue;
+    const auto size = static_cast<Eigen::Index>(rows.size());
+    const Eigen::Index modes = std::min<Eigen::Index>(along_.cols(), std::max<Eigen::Index>(1, size / 4));
+    Eigen::VectorXd residual(size), used(size);
+    Eigen::MatrixXd shapes(size, modes);
+    for (Eigen::Index i = 0; i < size; ++i) {
+      const Eigen::Index r = rows[static_cast<std::size_t>(i)];
+      residual[i] = error[r];
+      used[i] = used_[r];
+      shapes.row(i) = along_.row(r).head(modes);
+    }
+    out.add(residual, used, shapes);
+  }
   return out;
 }
 
@@ -283,18 +332,27 @@ void Comparison::find_probabilities() {
   find_probabilities_of(hypotheses);
 }
 
-void Comparison::refine(const std::vector<std::string>& effects, const Comparison& deeper) {
+void Comparison::assess(const ModelComparison& models) {
+  tbb::parallel_for(std::size_t{0}, hypotheses.size(), [&](std::size_t i) {
+    Hypothesis& h = hypotheses[i];
+    const Assessment assessment = models.assess(*h.explained);
+    h.log_weight = assessment.log_evidence + h.log_prior + h.log_force;
+    h.z = assessment.test.z();
+    h.passes = !h.random_force && assessment.test.passes();
+    if (i == 0) structured = assessment.test.discrepancy() > 0.0;
+  });
+  find_probabilities();
+}
+
+void Comparison::merge(const std::vector<std::string>& effects, const Comparison& deeper) {
   const auto same = [&](const Hypothesis& h) { return h.effects == effects; };
-  const auto alone =
-      std::find_if(hypotheses.begin(), hypotheses.end(), [&](const Hypothesis& h) { return same(h) && !h.random_force; });
-  const double weight = alone->log_weight - deeper.given().log_weight;
+  const double prior = std::find_if(hypotheses.begin(), hypotheses.end(), same)->log_prior;
   hypotheses.erase(std::remove_if(hypotheses.begin(), hypotheses.end(), same), hypotheses.end());
   for (Hypothesis h : deeper.hypotheses) {
     h.effects.insert(h.effects.begin(), effects.begin(), effects.end());
-    h.log_weight += weight;
+    h.log_prior += prior;
     hypotheses.push_back(std::move(h));
   }
-  find_probabilities();
 }
 
 Verdict judge(const Comparison& c) {

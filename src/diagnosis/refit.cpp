@@ -119,9 +119,9 @@ Refit refit(const Fitted& base, const Addition& addition, double rival) {
   fit_entries(entries, study.model(), start->fit);
   out.entry = entries.front();
   out.parameters = study.model().values(start->fit.w);
-  out.explained = explain(*model, added_amplitudes(study, known));
+  out.explained = std::make_shared<const Explained>(explain(*model, added_amplitudes(study, known)));
   Study::Rows compared = rows;
-  compared.error = out.explained.error;
+  compared.error = out.explained->error;
   out.held_out_rms = rms_error(compared, known.recording(), true);
   out.fitted = start->fit.cost;
   out.cost = rows.error.squaredNorm();

@@ -77,7 +77,7 @@ void RefitList::add(std::vector<Addition> list) {
 void RefitList::keep(std::vector<std::optional<Refit>> done) {
   for (std::optional<Refit>& refit : done) {
     if (!refit) continue;
-    comparison_.note(refit->explained.error);
+    comparison_.note(refit->explained->error);
     refits_.push_back(std::move(*refit));
   }
   assess();
@@ -85,10 +85,13 @@ void RefitList::keep(std::vector<std::optional<Refit>> done) {
   so_far_(*this);
 }
 
+double RefitList::ways_of(const std::string& effect) const {
+  const auto same = [&](const Candidate& c) { return c.effect == effect; };
+  return static_cast<double>(std::count_if(look_.candidates.begin(), look_.candidates.end(), same));
+}
+
 double RefitList::log_bayes_factor(const Refit& refit) const {
-  const auto same = [&](const Candidate& c) { return c.effect == refit.effect; };
-  const auto ways = std::count_if(look_.candidates.begin(), look_.candidates.end(), same);
-  return refit.assessment.log_evidence - given_.log_evidence - std::log(static_cast<double>(ways));
+  return refit.assessment.log_evidence - given_.log_evidence - std::log(ways_of(refit.effect));
 }
 
 // Beforehand the given model is as probable as all effects together, and those are alike, whatever the ways each has.
@@ -96,24 +99,27 @@ double RefitList::log_bayes_factor(const Refit& refit) const {
 Comparison RefitList::compare() const {
   const double prior = -std::log(static_cast<double>(std::max<std::size_t>(1, look_.ranked.size())));
   Comparison out;
-  out.structured = given_.test.discrepancy() > 0.0;
   out.passes_without_mesh =
       comparison_.test_of(look_.base.rows.error, static_cast<double>(look_.base.fit.w.size())).passes();
-  out.hypotheses.push_back({{}, false, 0.0, given_.test.z(), given_.test.passes()});
-  for (const Refit& refit : refits_) {
-    const MisfitTest& test = refit.assessment.test;
-    out.hypotheses.push_back({{refit.effect}, false, log_bayes_factor(refit) + prior, test.z(), test.passes()});
-  }
+  const auto add = [&out](std::vector<std::string> effects, double log_prior, std::shared_ptr<const Explained> explained) {
+    Hypothesis h;
+    h.effects = std::move(effects);
+    h.log_prior = log_prior;
+    h.explained = std::move(explained);
+    out.hypotheses.push_back(std::move(h));
+  };
+  add({}, 0.0, base_);
+  for (const Refit& refit : refits_) add({refit.effect}, prior - std::log(ways_of(refit.effect)), refit.explained);
   const auto beside = [&](const Fitted& model, const Assessment& assessment, std::size_t alone) {
     Hypothesis both = out.hypotheses[alone];
-    both.log_weight += log_evidence_of_random_force(model, assessment.left, comparison_) + prior;
     both.random_force = true;
-    both.passes = false;
+    both.log_prior += prior;
+    both.log_force = log_evidence_of_random_force(model, assessment, comparison_);
     out.hypotheses.push_back(std::move(both));
   };
   beside(look_.base, given_, 0);
   if (!empty() && best().model) beside(*best().model, best().assessment, 1);
-  out.find_probabilities();
+  out.assess(comparison_);
   return out;
 }
 
@@ -132,9 +138,9 @@ bool RefitList::find_better_base() {
 
 // All models anew, because the noise is that of the model that leaves least.
 void RefitList::assess() {
-  given_ = comparison_.assess(base_);
+  given_ = comparison_.assess(*base_);
   tbb::parallel_for(std::size_t{0}, refits_.size(),
-                    [&](std::size_t i) { refits_[i].assessment = comparison_.assess(refits_[i].explained); });
+                    [&](std::size_t i) { refits_[i].assessment = comparison_.assess(*refits_[i].explained); });
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t i = 0; i < refits_.size(); ++i) order.emplace_back(-log_bayes_factor(refits_[i]), i);
   std::stable_sort(order.begin(), order.end());

@@ -21,7 +21,7 @@ class Search {
   void operator()(const std::vector<std::string>& wanted) {
     if (!wanted.empty()) return refit_wanted(wanted);
     refit_from_tangents();
-    if (refits_.find_better_base()) return;
+    if (!look_.settled && refits_.find_better_base()) return;
     if (!explained()) refit_other_ways();
     if (!explained()) refit_from_beginning();
     if (!explained()) refit_other_kinds();

@@ -14,6 +14,8 @@ MissingEffectMessage to_message(const MissingEffect& effect) {
     out.parameter_values.push_back(value);
   }
   out.log_bayes_factor = effect.log_bayes_factor;
+  out.probability = effect.probability;
+  out.z = effect.z;
   out.p_value = effect.p_value;
   out.explained = effect.explained;
   out.held_out_rms_before = effect.held_out_rms_before;
@@ -33,6 +35,9 @@ DiagnosisMessage to_message(const Diagnosis& diagnosis, const std_msgs::Header& 
   out.verdict = diagnosis.verdict;
   out.summary = diagnosis_sentence(diagnosis);
   out.set = diagnosis.set;
+  out.probability_adequate = diagnosis.adequate;
+  out.none_of_these = diagnosis.none_of_these;
+  out.z = diagnosis.z;
   for (const MissingEffect& effect : diagnosis.candidates) out.candidates.push_back(to_message(effect));
   out.where = diagnosis.where;
   out.when = diagnosis.when;

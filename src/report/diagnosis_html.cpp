@@ -103,6 +103,43 @@ std::string force_paragraph(const MissingForce& force) {
          " of the squared error there. The arrows above show it.</p>";
 }
 
+std::string rounded_millimetres(double metres) {
+  return std::to_string(std::lround(1e3 * metres));
+}
+
+std::string belief_rows(const BeliefMap& b) {
+  std::string rows;
+  for (Eigen::Index p = 0; p < b.centres.cols(); ++p) {
+    rows += "<tr><td>(" + rounded_millimetres(b.centres(0, p)) + ", " + rounded_millimetres(b.centres(1, p)) + ", " +
+            rounded_millimetres(b.centres(2, p)) + ")</td>";
+    for (Eigen::Index third = 0; third < 3; ++third) {
+      const double valid = b.probability(p, third);
+      rows += "<td class=\"n\" style=\"background:rgba(213,94,0," + short_number(0.6 * (1.0 - valid), 2) + ")\">" +
+              short_number(100.0 * valid, 2) + " %</td>";
+    }
+    rows += "</tr>";
+  }
+  return rows;
+}
+
+std::string belief_table(const std::string& model, const BeliefMap& b) {
+  if (b.nodes.empty()) return "";
+  return "<table><caption>" + escape_html(model) +
+         "</caption><tr><th>part around [mm]</th><th class=\"n\">first third</th><th class=\"n\">second</th><th "
+         "class=\"n\">last</th></tr>" +
+         belief_rows(b) + "</table>";
+}
+
+std::string valid(const Diagnosis& d) {
+  if (d.valid_given.nodes.empty()) return "";
+  const std::string last =
+      d.final_effects.empty() ? "" : belief_table("With " + effect_list(d.final_effects), d.valid_final);
+  return section("valid", "Where and when the model is valid",
+                 paragraph("The probability that what the model leaves on a part of the surface, in a third of the "
+                           "recording, is noise or the error of the mesh.") +
+                     "<div class=\"scroll grid\">" + belief_table("The given model", d.valid_given) + last + "</div>");
+}
+
 std::string fails(const Diagnosis& d) {
   if (d.steps.empty()) return "";
   const ErrorParts &m = d.metres, &s = d.sigmas;
@@ -223,7 +260,7 @@ std::string diagnosis_html(const Diagnosis& d, const DiagnosisTexts& texts, cons
   page.heading = "What does the model miss?";
   page.subheading = short_path(texts.model) + " · " + short_path(texts.recording);
   page.body =
-      answer(d) + player(showing, !d.force.time.empty()) + fails(d) + ranking(d) + staircase(d) +
+      answer(d) + player(showing, !d.force.time.empty()) + fails(d) + valid(d) + ranking(d) + staircase(d) +
       section(
           "model", "",
           file_details("The given model", texts.model_text, "", !proposed) +

@@ -56,6 +56,15 @@ json residual_json(const ResidualViews& r) {
       {"phase_rms", numbers(r.phase_rms)}};
 }
 
+json belief_json(const BeliefMap& b) {
+  json centres = json::array(), probability = json::array();
+  for (Eigen::Index p = 0; p < b.centres.cols(); ++p) {
+    centres.push_back({number(b.centres(0, p)), number(b.centres(1, p)), number(b.centres(2, p))});
+    probability.push_back({number(b.probability(p, 0)), number(b.probability(p, 1)), number(b.probability(p, 2))});
+  }
+  return {{"nodes", b.nodes}, {"parts", b.parts}, {"centres", centres}, {"probability", probability}};
+}
+
 json force_json(const MissingForce& f) {
   if (f.time.empty()) return nullptr;
   json total = json::array();
@@ -113,6 +122,7 @@ std::string diagnosis_json(const Diagnosis& d) {
                {"when", d.when},
                {"how_much", {{"metres", parts_json(d.metres)}, {"sigmas", parts_json(d.sigmas)}}},
                {"residual", residual_json(d.residual)},
+               {"valid", {{"given", belief_json(d.valid_given)}, {"final", belief_json(d.valid_final)}}},
                {"missing_force", force_json(d.force)},
                {"steps", steps},
                {"next_experiment", d.next_experiment},

@@ -36,6 +36,10 @@ std::string details(const MissingEffectMessage& effect) {
   return text;
 }
 
+std::string percent(double share) {
+  return std::isfinite(share) ? std::to_string(std::lround(100.0 * share)) + " %" : "";
+}
+
 EffectRow row(const MissingEffectMessage& candidate, bool suspect) {
   EffectRow out;
   out.effect = candidate.effect;
@@ -43,6 +47,7 @@ EffectRow row(const MissingEffectMessage& candidate, bool suspect) {
   out.suspect = suspect;
   out.explained = std::clamp(candidate.explained, 0.0, 1.0);
   if (std::isfinite(candidate.held_out_rms_after)) {
+    out.probability = percent(candidate.probability);
     out.error = short_number(1e3 * candidate.held_out_rms_before, 3) + " → " +
                 short_number(1e3 * candidate.held_out_rms_after, 3) + " mm";
   }
@@ -168,6 +173,12 @@ std::vector<EffectRow> PanelState::rows() const {
   for (const MissingEffectMessage& candidate : diagnosis_.candidates) {
     out.push_back(row(candidate, contains(diagnosis_.set, candidate.effect)));
   }
+  if (!diagnosed_ || !std::isfinite(diagnosis_.none_of_these)) return out;
+  EffectRow none;
+  none.title = "none of these";
+  none.probability = percent(diagnosis_.none_of_these);
+  none.details = "something acts that the library does not have";
+  out.push_back(none);
   return out;
 }
 

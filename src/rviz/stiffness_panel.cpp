@@ -37,12 +37,14 @@ QLabel* name_it(QLabel* label, const char* name) {
 QTreeWidgetItem* item(const EffectRow& row) {
   auto* out = new QTreeWidgetItem;
   out->setText(0, (row.added ? QString("✓ ") : QString()) + text(row.title));
-  out->setText(1, row.added ? QString("in the model") : QString::number(100.0 * row.explained, 'f', 0) + " %");
-  out->setText(2, text(row.error));
+  out->setText(1, row.added ? QString("in the model") : text(row.probability));
+  if (!row.added && !row.effect.empty()) out->setText(2, QString::number(100.0 * row.explained, 'f', 0) + " %");
+  out->setText(3, text(row.error));
   out->setTextAlignment(1, Qt::AlignRight | Qt::AlignVCenter);
+  out->setTextAlignment(2, Qt::AlignRight | Qt::AlignVCenter);
   out->setData(0, kEffectRole, text(row.effect));
   out->setData(0, kAddedRole, row.added);
-  for (int column = 0; column < 3; ++column) out->setToolTip(column, text(row.details));
+  for (int column = 0; column < 4; ++column) out->setToolTip(column, text(row.details));
   if (row.suspect || row.added) {
     QFont bold = out->font(0);
     bold.setBold(true);
@@ -70,7 +72,7 @@ StiffnessPanel::StiffnessPanel(QWidget* parent) : rviz::Panel(parent), calls_(st
   summary_->setWordWrap(true);
   layout->addWidget(effects_ = new QTreeWidget(this), 4);
   effects_->setObjectName("effects");
-  effects_->setHeaderLabels({"effect", "explains", "error on unseen frames"});
+  effects_->setHeaderLabels({"effect", "probability", "explains", "error on unseen frames"});
   effects_->setRootIsDecorated(false);
   effects_->header()->setSectionResizeMode(QHeaderView::ResizeToContents);
   build_buttons();

@@ -149,6 +149,13 @@ TEST_F(CleanBar, AllowsForMeshErrorsThatARefinementDoesNotShow) {
   const double before = models.assess(rigid(base_.rows.error)).log_evidence;
   EXPECT_LT(before - models.assess(rigid(base_.rows.error + share * reversed)).log_evidence, 2.0);
   EXPECT_TRUE(models.assess(rigid(base_.rows.error + share * reversed)).test.passes());
+  const Assessment far = models.assess(rigid(base_.rows.error + 12.0 * share * reversed));
+  EXPECT_TRUE(far.beyond_mesh);
+  EXPECT_FALSE(models.assess(rigid(base_.rows.error + 2.0 * share * reversed)).beyond_mesh);
+  // What is beyond three standard deviations of that displacement counts against the noise alone.
+  const double counted = 0.5 * 9.0 * 9.0 * room / s;
+  EXPECT_GT(before - far.log_evidence, 0.5 * counted);
+  EXPECT_LT(before - far.log_evidence, counted);
 }
 
 TEST(ComparisonNumbers, AreThoseOfTheMethodsTable) {
@@ -176,7 +183,12 @@ TEST(ComparisonNumbers, AreThoseOfTheMethodsTable) {
 }
 
 Hypothesis hypothesis(std::vector<std::string> effects, double weight, bool passes, bool random_force = false) {
-  return {std::move(effects), random_force, weight, 0.0, passes, 0.0};
+  Hypothesis out;
+  out.effects = std::move(effects);
+  out.random_force = random_force;
+  out.log_weight = weight;
+  out.passes = passes;
+  return out;
 }
 
 Comparison compared(std::vector<Hypothesis> hypotheses) {
@@ -185,6 +197,28 @@ Comparison compared(std::vector<Hypothesis> hypotheses) {
   out.hypotheses = std::move(hypotheses);
   out.find_probabilities();
   return out;
+}
+
+// Hypotheses of several looks are weighed by one likelihood.
+TEST_F(CleanBar, AssessesAllHypothesesAlike) {
+  const ModelComparison models(base_, Eigen::VectorXd::Zero(base_.rows.error.size()));
+  Comparison c;
+  for (const double wrong : {0.0, 0.1, 1.0}) {
+    Hypothesis h = hypothesis(wrong > 0.0 ? std::vector<std::string>{"a"} : std::vector<std::string>{}, 1e9, false);
+    h.explained = std::make_shared<const Explained>(rigid(base_.rows.error + wrong * slow()));
+    h.log_prior = -1.5;
+    h.log_force = wrong;
+    c.hypotheses.push_back(std::move(h));
+  }
+  c.assess(models);
+  EXPECT_FALSE(c.structured);
+  for (const Hypothesis& h : c.hypotheses) {
+    const Assessment own = models.assess(*h.explained);
+    EXPECT_DOUBLE_EQ(h.log_weight, own.log_evidence - 1.5 + h.log_force);
+    EXPECT_DOUBLE_EQ(h.z, own.test.z());
+    EXPECT_EQ(h.passes, own.test.passes());
+  }
+  EXPECT_GT(c.given().probability, 0.99);
 }
 
 TEST(Comparison, HasProbabilitiesInTheRatioOfTheEvidence) {
@@ -198,15 +232,20 @@ TEST(Comparison, HasProbabilitiesInTheRatioOfTheEvidence) {
 }
 
 // What was compared about the model with `a` takes the place of what was known of that model.
-TEST(Comparison, IsRefinedByWhatIsFoundBesideALeader) {
+TEST(Comparison, MergesWhatIsFoundBesideALeader) {
   Comparison c = compared({hypothesis({}, 0.0, false), hypothesis({"a"}, 50.0, false), hypothesis({"b"}, 40.0, false),
                            hypothesis({"a"}, 70.0, false, true), hypothesis({}, 60.0, false, true)});
+  c.hypotheses[1].log_prior = -2.0;
   EXPECT_EQ(judge(c), Verdict::unexplained);
-  c.refine({"a"}, compared({hypothesis({}, 3.0, false), hypothesis({"b"}, 33.0, true), hypothesis({"c"}, 32.0, true),
-                            hypothesis({}, 20.0, false, true)}));
+  Comparison deeper = compared({hypothesis({}, 51.0, false), hypothesis({"b"}, 81.0, true), hypothesis({"c"}, 80.0, true),
+                                hypothesis({}, 65.0, false, true)});
+  deeper.hypotheses[1].log_prior = -3.0;
+  c.merge({"a"}, deeper);
+  c.find_probabilities();
   ASSERT_EQ(c.hypotheses.size(), 7u);
+  EXPECT_TRUE(c.given().effects.empty());
   EXPECT_EQ(c.best().effects, (std::vector<std::string>{"a", "b"}));
-  EXPECT_DOUBLE_EQ(c.best().log_weight, 80.0);
+  EXPECT_DOUBLE_EQ(c.best().log_prior, -5.0);
   EXPECT_NEAR(c.probability_of("a"), 1.0, 1e-5);
   EXPECT_NEAR(c.probability_of("b"), 1.0 / (1.0 + std::exp(-1.0)), 1e-5);
   EXPECT_LT(c.none_of_these(), 1e-4);

@@ -28,6 +28,7 @@ DiagnosisMessage diagnosis() {
   best.parameter_values = {0.8};
   best.log_bayes_factor = 1234.0;
   best.explained = 0.934;
+  best.probability = 0.94;
   best.held_out_rms_before = 9.5e-4;
   best.held_out_rms_after = 2.0e-4;
   best.confusable_with = {"mass_damping"};
@@ -39,6 +40,7 @@ DiagnosisMessage diagnosis() {
   out.verdict = "missing";
   out.summary = "viscoelasticity is missing";
   out.set = {"viscoelasticity"};
+  out.none_of_these = 0.01;
   out.candidates = {best, second};
   out.noise_floor = 1.7e-4;
   return out;
@@ -117,12 +119,13 @@ TEST(PanelState, RanksWhatMayBeMissing) {
   PanelState state;
   state.take(diagnosis());
   const std::vector<EffectRow> rows = state.rows();
-  ASSERT_EQ(rows.size(), 2U);
+  ASSERT_EQ(rows.size(), 3U);
   EXPECT_EQ(rows[0].effect, "viscoelasticity");
   EXPECT_TRUE(rows[0].suspect);
   EXPECT_FALSE(rows[0].added);
   EXPECT_NEAR(rows[0].explained, 0.934, 1e-12);
   EXPECT_EQ(rows[0].error, "0.950 → 0.200 mm");
+  EXPECT_EQ(rows[0].probability, "94 %");
   for (const char* part : {"gamma: {prior: 0.5", "viscoelasticity.gamma = 0.8", "log Bayes factor 1234", "mass damping"}) {
     EXPECT_NE(rows[0].details.find(part), std::string::npos) << part << " in " << rows[0].details;
   }
@@ -130,6 +133,10 @@ TEST(PanelState, RanksWhatMayBeMissing) {
   EXPECT_FALSE(rows[1].suspect);
   EXPECT_EQ(rows[1].error, "");
   EXPECT_EQ(rows[1].explained, 1.0);
+  EXPECT_EQ(rows[1].probability, "") << "it was not refitted";
+  EXPECT_EQ(rows[2].title, "none of these");
+  EXPECT_EQ(rows[2].effect, "") << "nothing that could be added";
+  EXPECT_EQ(rows[2].probability, "1 %");
   EXPECT_EQ(state.best_candidate(), "viscoelasticity");
   EXPECT_EQ(state.summary(), "viscoelasticity is missing");
   EXPECT_NEAR(state.noise_floor(), 0.17, 1e-12);
@@ -151,7 +158,7 @@ TEST(PanelState, ADiagnosisOfAnotherModelIsNotShown) {
   next.added = {"viscoelasticity"};
   state.take(next);
   EXPECT_EQ(state.verdict().text, "nothing");
-  EXPECT_EQ(state.rows().size(), 2U);
+  EXPECT_EQ(state.rows().size(), 3U) << "what was added, one candidate, none of these";
 }
 
 TEST(PanelState, KeepsTheMisfitInMillimetres) {

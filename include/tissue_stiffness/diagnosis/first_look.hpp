@@ -16,6 +16,7 @@ struct Earlier {
   std::shared_ptr<const Study> finer = nullptr;  ///< the model on a finer mesh; null: none yet
   Library library = {};                          ///< see find_candidates
   bool beside = false;                           ///< the model has an effect that the earlier look found
+  bool settled = false;                          ///< the model is not fitted anew, wherever it fits better
 };
 
 /// What a fitted model's error shows before anything is refitted: the library, ranked by its tangents, and the mesh's part.
@@ -24,7 +25,7 @@ struct FirstLook {
 
   const Fitted& base;
   const double cost;                  ///< sum of squared errors [sigma^2]
-  const bool beside;                  ///< see Earlier
+  const bool beside, settled;         ///< see Earlier
   std::vector<Candidate> candidates;  ///< their tangents are whitened
   Library library;                    ///< that they were read from
   Eigen::VectorXd error;              ///< of the base, whitened

@@ -15,7 +15,8 @@ MissingForce missing_force(const Study& study, const Eigen::VectorXd& w);
 
 /// Log evidence of what a model leaves being the work of such a force, whatever it is, beyond that of its being noise and
 /// the mesh's error: the force's marginal likelihood (Schweppe 1965) at its best prior, less the log of the number of
-/// priors that were tried. `left`: see Assessment.
-double log_evidence_of_random_force(const Fitted& model, const Eigen::VectorXd& left, const ModelComparison& comparison);
+/// priors that were tried. `alone`: the model without the force. Where that leaves more than the mesh's error may be, the
+/// force is compared beside noise alone.
+double log_evidence_of_random_force(const Fitted& model, const Assessment& alone, const ModelComparison& comparison);
 
 }  // namespace tissue_stiffness

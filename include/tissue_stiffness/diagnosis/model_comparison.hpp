@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -53,6 +55,8 @@ Explained explain(const Fitted& fitted, const std::vector<std::string>& amplitud
 struct Assessment {
   double log_evidence = 0.0;    ///< log p(e), but for a constant that all models share
   double log_likelihood = 0.0;  ///< log p(e | u) at the most probable u; but for the same constant
+  double log_plain = 0.0;       ///< the same with covariance s I alone
+  bool beyond_mesh = false;     ///< what is left along the modes is more than `most_numerics` allow
   Eigen::VectorXd left;         ///< of the residual at the most probable u
   /// Of what that leaves: missing physics moves the lowest modes.
   MisfitTest test;
@@ -66,9 +70,11 @@ struct Assessment {
 /// lowest modes, which missing physics hardly moves, and m: that part's memory from frame to frame; both are those of the
 /// model that leaves least there. B_k L_k B_k^T, of frame k: a displacement along the lowest modes, each with the variance
 /// of `left_of_mesh` times its share of D, because the mesh's error has directions that D does not hold; evidence and test
-/// allow for the same. Laplace's approximation of the evidence (MacKay 2003, eq. 28.10) with the numerics as further
-/// unknowns. An added amplitude's prior is a mixture of normal ones from its stated width down to `smallest` of it, alike:
-/// an effect pays for the order of its size and not for the width that a proposal happens to state.
+/// allow for the same. No error of the numerics is believed beyond `most_numerics` standard deviations, that displacement
+/// as a whole included: what is left beyond counts against s alone. Laplace's approximation of the evidence (MacKay 2003,
+/// eq. 28.10) with the numerics as further unknowns. An added amplitude's prior is a mixture of normal ones from its stated
+/// width down to `smallest` of it, alike: an effect pays for the order of its size and not for the width that a proposal
+/// happens to state.
 class ModelComparison {
  public:
   /// `mesh_change`: what a finer mesh changes of the base's rows [sigma].
@@ -85,12 +91,18 @@ class ModelComparison {
   Assessment assess(const Explained& model) const;
   /// The test of a residual itself, of a model with that many parameters.
   MisfitTest test_of(const Eigen::VectorXd& error, double fitted) const;
+  /// The same of those rows in the frames from `first` to before `last`.
+  MisfitTest test_where(const Eigen::VectorXd& error, Eigen::Index first, Eigen::Index last,
+                        const std::function<bool(Eigen::Index)>& inside) const;
 
  private:
   Eigen::VectorXd used_;  ///< 1 where a row says something, else 0
   std::vector<Eigen::Index> offsets_;
   Eigen::MatrixXd along_;  ///< rows / amplitude of each mode
   Eigen::MatrixXd mesh_;   ///< D
+  /// What a bound on the displacement along the modes adds to the sum of squares over s of `left`.
+  double beyond_bound(const Eigen::VectorXd& left) const;
+
   Eigen::MatrixXd basis_;  ///< B, frame under frame
   Eigen::MatrixXd left_;   ///< L of each frame, a column each
   double noise_variance_ = 0.0;
@@ -100,9 +112,12 @@ class ModelComparison {
 struct Hypothesis {
   std::vector<std::string> effects;  ///< empty: the given model
   bool random_force = false;         ///< acts on the lowest modes besides: something that the library does not have
-  double log_weight = 0.0;           ///< log evidence and log prior, but for a constant
-  double z = 0.0;                    ///< of the residual's test; of a random force's it is that without the force
-  bool passes = false;               ///< that test
+  double log_prior = 0.0;
+  double log_force = 0.0;                      ///< log evidence that the random force gains
+  std::shared_ptr<const Explained> explained;  ///< the model
+  double log_weight = 0.0;                     ///< log evidence and log prior, but for a constant
+  double z = 0.0;                              ///< of the residual's test; of a random force's it is that without the force
+  bool passes = false;                         ///< that test
   double probability = 0.0;
   bool holds(const std::string& effect) const;
 };
@@ -115,10 +130,13 @@ struct Comparison {
   const Hypothesis& best() const;                          ///< the most probable one
   double none_of_these() const;                            ///< probability of all hypotheses with a random force
   double probability_of(const std::string& effect) const;  ///< of all others that hold it
+  /// Weights, tests and probabilities of all hypotheses by one likelihood.
+  void assess(const ModelComparison& models);
   /// From the weights.
   void find_probabilities();
-  /// `deeper`: compared about the model with `effects` added. Takes the place of what is known of that model.
-  void refine(const std::vector<std::string>& effects, const Comparison& deeper);
+  /// `deeper`: about the model with `effects` added. Its hypotheses take the place of those with these effects alone, and
+  /// are to be assessed together with the others.
+  void merge(const std::vector<std::string>& effects, const Comparison& deeper);
 };
 
 enum class Verdict { adequate, missing, numerics, unexplained };

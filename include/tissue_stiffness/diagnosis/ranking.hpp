@@ -44,13 +44,13 @@ BeginningFit fit_beginning(const Fitted& base, const Candidate& way);
 /// A fit of the base model with one proposal more.
 struct Refit {
   std::string effect;
-  const Candidate* way = nullptr;            ///< whose entry `refine` it was fitted with; valid as long as its look
-  std::string entry;                         ///< for the model file: estimated parameters with their fit as prior
-  std::map<std::string, double> parameters;  ///< of the whole model, by name
-  double held_out_rms = 0.0;                 ///< [m]
-  double fitted = 0.0;                       ///< cost of the training frames and the prior
-  double cost = 0.0;                         ///< sum of squared errors over sigma, all frames
-  Explained explained;                       ///< as it is compared
+  const Candidate* way = nullptr;              ///< whose entry `refine` it was fitted with; valid as long as its look
+  std::string entry;                           ///< for the model file: estimated parameters with their fit as prior
+  std::map<std::string, double> parameters;    ///< of the whole model, by name
+  double held_out_rms = 0.0;                   ///< [m]
+  double fitted = 0.0;                         ///< cost of the training frames and the prior
+  double cost = 0.0;                           ///< sum of squared errors over sigma, all frames
+  std::shared_ptr<const Explained> explained;  ///< as it is compared
   Assessment assessment;
   std::shared_ptr<Fitted> model;  ///< null where it was only run quickly, and of all but the best
 };

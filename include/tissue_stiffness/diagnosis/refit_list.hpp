@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -29,7 +30,7 @@ class RefitList {
         options_(options),
         so_far_(std::move(so_far)),
         comparison_(look.comparison),
-        base_(look.explained),
+        base_(std::make_shared<const Explained>(look.explained)),
         given_(look.given) {}
 
   /// Refits with each of these additions, side by side. What falls behind the best so far is not fitted to the end; where
@@ -57,6 +58,8 @@ class RefitList {
                 const std::function<void(std::size_t)>& work) const;
 
  private:
+  /// How many ways of an effect the library proposes.
+  double ways_of(const std::string& effect) const;
   void keep(std::vector<std::optional<Refit>> done);
   void assess();
   void drop_worse_ways();
@@ -65,8 +68,8 @@ class RefitList {
   const DiagnosisOptions& options_;
   RefitsSoFar so_far_;
   ModelComparison comparison_;
-  Explained base_;    ///< the given model as it is compared
-  Assessment given_;  ///< of it
+  std::shared_ptr<const Explained> base_;  ///< the given model as it is compared
+  Assessment given_;                       ///< of it
   std::vector<Refit> refits_;
   std::optional<Eigen::VectorXd> better_base_;
 };

@@ -11,15 +11,16 @@
 
 namespace tissue_stiffness {
 
-/// One line of the panel's list: an effect that was added to the running model, or one that it may miss.
+/// One line of the panel's list: an effect that was added to the running model, or one that it may miss, or none of these.
 struct EffectRow {
-  std::string effect;      ///< name in the library
-  std::string title;       ///< for people
-  bool added = false;      ///< part of the running model, by add_effect
-  bool suspect = false;    ///< the winner, or not to be told from it
-  double explained = 0.0;  ///< share of the squared error [-]
-  std::string error;       ///< "0.95 → 0.20 mm" on frames that no fit saw; empty without a refit
-  std::string details;     ///< parameters, evidence and twins, one a line
+  std::string effect;       ///< name in the library; empty: none of these
+  std::string title;        ///< for people
+  bool added = false;       ///< part of the running model, by add_effect
+  bool suspect = false;     ///< the winner, or not to be told from it
+  std::string probability;  ///< "94 %"; empty without a refit
+  double explained = 0.0;   ///< share of the squared error [-]
+  std::string error;        ///< "0.95 → 0.20 mm" on frames that no fit saw; empty without a refit
+  std::string details;      ///< parameters, evidence and twins, one a line
 };
 
 /// A text and its colour 0xRRGGBB.

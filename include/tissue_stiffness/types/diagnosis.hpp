@@ -54,6 +54,14 @@ struct ResidualViews {
   std::vector<double> phase, phase_rms;          ///< of the motion's strongest frequency [rad]; empty as above
 };
 
+/// Where and when a model is valid: what it leaves there is noise, or may be the mesh's error.
+struct BeliefMap {
+  std::vector<int> nodes;        ///< mesh nodes that were seen; empty: not known
+  std::vector<int> parts;        ///< of the surface, that of each node
+  Eigen::Matrix3Xd centres;      ///< of each part, at rest [m]
+  Eigen::MatrixX3d probability;  ///< that the model is valid on a part (row) in a third of the recording (column)
+};
+
 /// What would have to act on the body, beside what the model knows, for its free run to be the recording: the smoothest
 /// such force in the body's lowest modes.
 struct MissingForce {
@@ -97,6 +105,8 @@ struct Diagnosis {
   ErrorParts metres, sigmas;
   ResidualViews residual;  ///< of the given model
   MissingForce force;      ///< the same
+  BeliefMap valid_given;   ///< the same
+  BeliefMap valid_final;   ///< of the last step's model
   std::vector<DiagnosisStep> steps;
   std::string next_experiment;
   std::string final_verdict = "unfinished";  ///< of the last step
