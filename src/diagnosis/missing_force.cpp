@@ -181,20 +181,22 @@ MissingForce missing_force(const Study& study, const Eigen::VectorXd& w) {
   return out;
 }
 
-double log_evidence_of_random_force(const Fitted& model, const Assessment& alone, const ModelComparison& comparison) {
+RandomForce::RandomForce(const Fitted& model) : offsets(model.rows.offsets) {
   const Modes modes = modes_of(*model.study, model.fit.w);
+  transitions = modes.transitions;
+  along = model.study->rows_along(model.fit.w, modes.shapes, model.rows);
+  scale = modes.scale();
+}
+
+double log_evidence_gained(const RandomForce& force, const Assessment& alone, const ModelComparison& comparison) {
   const double s = comparison.noise_variance();
-  Eigen::MatrixXd along = model.study->rows_along(model.fit.w, modes.shapes, model.rows);
-  Eigen::VectorXd error = alone.left;
-  if (!alone.beyond_mesh) {
-    along = comparison.whitened(along);
-    error = comparison.whitened(error);
-  }
-  const std::vector<FrameEvidence> evidence = evidence_of(error, along, model.rows.offsets, s);
-  const ForcePrior prior = likeliest_force_prior(modes.transitions, evidence, modes.scale());
-  const double gain = 0.5 * (error.squaredNorm() / s - smooth_force(modes.transitions, evidence, prior).deviance);
+  const Eigen::VectorXd error = alone.beyond_mesh ? alone.left : Eigen::VectorXd(comparison.whitened(alone.left));
+  const std::vector<FrameEvidence> evidence =
+      evidence_of(error, alone.beyond_mesh ? force.along : comparison.whitened(force.along), force.offsets, s);
+  const ForcePrior prior = likeliest_force_prior(force.transitions, evidence, force.scale);
+  const double gain = 0.5 * (error.squaredNorm() / s - smooth_force(force.transitions, evidence, prior).deviance);
   const double without_mesh = alone.beyond_mesh ? alone.log_plain - alone.log_likelihood : 0.0;
-  return gain + without_mesh - log_of_tried_priors(modes.shapes.cols());
+  return gain + without_mesh - log_of_tried_priors(force.along.cols());
 }
 
 }  // namespace tissue_stiffness

@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "tissue_stiffness/diagnosis/candidates.hpp"
+#include "tissue_stiffness/diagnosis/missing_force.hpp"
 #include "tissue_stiffness/diagnosis/scores.hpp"
 #include "tissue_stiffness/forward/reduced_trajectory.hpp"
 #include "tissue_stiffness/settings/extend_model.hpp"
@@ -336,7 +337,8 @@ void Comparison::assess(const ModelComparison& models) {
   tbb::parallel_for(std::size_t{0}, hypotheses.size(), [&](std::size_t i) {
     Hypothesis& h = hypotheses[i];
     const Assessment assessment = models.assess(*h.explained);
-    h.log_weight = assessment.log_evidence + h.log_prior + h.log_force;
+    h.log_weight = assessment.log_evidence + h.log_prior;
+    if (h.random_force) h.log_weight += log_evidence_gained(*h.random_force, assessment, models);
     h.z = assessment.test.z();
     h.passes = !h.random_force && assessment.test.passes();
     if (i == 0) structured = assessment.test.discrepancy() > 0.0;

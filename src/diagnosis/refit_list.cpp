@@ -110,15 +110,14 @@ Comparison RefitList::compare() const {
   };
   add({}, 0.0, base_);
   for (const Refit& refit : refits_) add({refit.effect}, prior - std::log(ways_of(refit.effect)), refit.explained);
-  const auto beside = [&](const Fitted& model, const Assessment& assessment, std::size_t alone) {
+  const auto beside = [&](const Fitted& model, std::size_t alone) {
     Hypothesis both = out.hypotheses[alone];
-    both.random_force = true;
+    both.random_force = std::make_shared<const RandomForce>(model);
     both.log_prior += prior;
-    both.log_force = log_evidence_of_random_force(model, assessment, comparison_);
     out.hypotheses.push_back(std::move(both));
   };
-  beside(look_.base, given_, 0);
-  if (!empty() && best().model) beside(*best().model, best().assessment, 1);
+  beside(look_.base, 0);
+  if (!empty() && best().model) beside(*best().model, 1);
   out.assess(comparison_);
   return out;
 }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "../box_model.hpp"
+#include "tissue_stiffness/diagnosis/missing_force.hpp"
 #include "verification/experiment.hpp"
 
 namespace tissue_stiffness {
@@ -182,10 +183,11 @@ TEST(ComparisonNumbers, AreThoseOfTheMethodsTable) {
   row("`mesh_modes`, `test_modes`", text(kComparison.test_modes));
 }
 
+// `random_force`: one that does nothing.
 Hypothesis hypothesis(std::vector<std::string> effects, double weight, bool passes, bool random_force = false) {
   Hypothesis out;
   out.effects = std::move(effects);
-  out.random_force = random_force;
+  if (random_force) out.random_force = std::make_shared<const RandomForce>();
   out.log_weight = weight;
   out.passes = passes;
   return out;
@@ -207,18 +209,28 @@ TEST_F(CleanBar, AssessesAllHypothesesAlike) {
     Hypothesis h = hypothesis(wrong > 0.0 ? std::vector<std::string>{"a"} : std::vector<std::string>{}, 1e9, false);
     h.explained = std::make_shared<const Explained>(rigid(base_.rows.error + wrong * slow()));
     h.log_prior = -1.5;
-    h.log_force = wrong;
     c.hypotheses.push_back(std::move(h));
   }
   c.assess(models);
   EXPECT_FALSE(c.structured);
   for (const Hypothesis& h : c.hypotheses) {
     const Assessment own = models.assess(*h.explained);
-    EXPECT_DOUBLE_EQ(h.log_weight, own.log_evidence - 1.5 + h.log_force);
+    EXPECT_DOUBLE_EQ(h.log_weight, own.log_evidence - 1.5);
     EXPECT_DOUBLE_EQ(h.z, own.test.z());
     EXPECT_EQ(h.passes, own.test.passes());
   }
   EXPECT_GT(c.given().probability, 0.99);
+}
+
+// A slow bending that nothing explains is the work of a force; noise is not.
+TEST_F(CleanBar, GivesARandomForceWhatNothingElseExplains) {
+  const ModelComparison models(base_, Eigen::VectorXd::Zero(base_.rows.error.size()));
+  const RandomForce force(base_);
+  EXPECT_LT(log_evidence_gained(force, models.assess(rigid(base_.rows.error)), models), 0.0);
+  const Assessment bent = models.assess(rigid(base_.rows.error + slow()));
+  const double gain = log_evidence_gained(force, bent, models);
+  EXPECT_GT(gain, 0.3 * 0.5 * slow().squaredNorm());
+  EXPECT_LT(gain, 0.5 * bent.left.squaredNorm() / models.noise_variance());
 }
 
 TEST(Comparison, HasProbabilitiesInTheRatioOfTheEvidence) {

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <vector>
+
+#include "tissue_stiffness/diagnosis/force_smoother.hpp"
 #include "tissue_stiffness/diagnosis/model_comparison.hpp"
 #include "tissue_stiffness/diagnosis/study.hpp"
 #include "tissue_stiffness/types/diagnosis.hpp"
@@ -13,10 +17,20 @@ namespace tissue_stiffness {
 /// likelier than noise. What is not linear in the model acts as it does in the free run.
 MissingForce missing_force(const Study& study, const Eigen::VectorXd& w);
 
-/// Log evidence of what a model leaves being the work of such a force, whatever it is, beyond that of its being noise and
-/// the mesh's error: the force's marginal likelihood (Schweppe 1965) at its best prior, less the log of the number of
-/// priors that were tried. `alone`: the model without the force. Where that leaves more than the mesh's error may be, the
-/// force is compared beside noise alone.
-double log_evidence_of_random_force(const Fitted& model, const Assessment& alone, const ModelComparison& comparison);
+/// A force on a model's lowest modes that walks at random, whatever it is.
+struct RandomForce {
+  RandomForce() = default;
+  explicit RandomForce(const Fitted& model);
+
+  std::vector<ModalTransition> transitions;  ///< to each frame
+  Eigen::MatrixXd along;                     ///< rows / displacement of each mode [sigma/(m kg^1/2)]
+  std::vector<Eigen::Index> offsets;         ///< see Study::Rows
+  double scale = 0.0;                        ///< rms of the forces that move the modes
+};
+/// Log evidence of what a model leaves being the work of such a force, beyond that of its being noise and the mesh's error:
+/// the force's marginal likelihood (Schweppe 1965) at its best prior, less the log of the number of priors that were tried.
+/// `alone`: the model without the force. Where that leaves more than the mesh's error may be, the force is compared beside
+/// noise alone.
+double log_evidence_gained(const RandomForce& force, const Assessment& alone, const ModelComparison& comparison);
 
 }  // namespace tissue_stiffness

@@ -108,12 +108,14 @@ class ModelComparison {
   double noise_variance_ = 0.0;
 };
 
+struct RandomForce;
+
 /// One hypothesis after the comparison.
 struct Hypothesis {
   std::vector<std::string> effects;  ///< empty: the given model
-  bool random_force = false;         ///< acts on the lowest modes besides: something that the library does not have
+  /// Acts on the lowest modes besides: something that the library does not have. Null: nothing does.
+  std::shared_ptr<const RandomForce> random_force;
   double log_prior = 0.0;
-  double log_force = 0.0;                      ///< log evidence that the random force gains
   std::shared_ptr<const Explained> explained;  ///< the model
   double log_weight = 0.0;                     ///< log evidence and log prior, but for a constant
   double z = 0.0;                              ///< of the residual's test; of a random force's it is that without the force
