@@ -135,7 +135,8 @@ TEST_F(PanelInRviz, T3_DiagnoseNamesTheHiddenEffectAndNeverBlocksTheWindow) {
   }
   ASSERT_TRUE(wait_for([] { return label("verdict") == "found"; })) << label("verdict") << ": " << label("status");
   EXPECT_EQ(row(0, 0), "viscoelasticity");
-  EXPECT_TRUE(row(0, 2).contains("→")) << row(0, 2).toStdString();
+  EXPECT_TRUE(row(0, 1).contains("%")) << row(0, 1).toStdString();
+  EXPECT_TRUE(row(0, 3).contains("→")) << row(0, 3).toStdString();
   EXPECT_FALSE(label("summary").empty());
 }
 
