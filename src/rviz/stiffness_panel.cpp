@@ -210,7 +210,7 @@ void StiffnessPanel::show_effects() {
   for (const EffectRow& row : state_.rows()) {
     QTreeWidgetItem* line = item(row);
     effects_->addTopLevelItem(line);
-    if (text(row.effect) == selected) effects_->setCurrentItem(line);
+    if (!selected.isEmpty() && text(row.effect) == selected) effects_->setCurrentItem(line);
   }
   misfit_view_->show_curve(state_.misfit_curve(), "mm", state_.noise_floor());
   add_->setEnabled(!waiting_ && !chosen(false).empty());
@@ -221,9 +221,8 @@ void StiffnessPanel::show_effects() {
 
 std::string StiffnessPanel::chosen(bool added) const {
   const QTreeWidgetItem* selected = effects_->currentItem();
-  if (selected != nullptr && selected->data(0, kAddedRole).toBool() == added) {
-    return selected->data(0, kEffectRole).toString().toStdString();
-  }
+  const QString effect = selected != nullptr ? selected->data(0, kEffectRole).toString() : QString();
+  if (!effect.isEmpty() && selected->data(0, kAddedRole).toBool() == added) return effect.toStdString();
   return added ? state_.last_added() : state_.best_candidate();
 }
 
