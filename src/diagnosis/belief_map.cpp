@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
+#include <vector>
 
 #include "tissue_stiffness/diagnosis/scores.hpp"
 #include "tissue_stiffness/meshing/farthest_nodes.hpp"
@@ -16,9 +16,9 @@ constexpr std::size_t kNodesOfAPart = 3;  // at least
 constexpr double kLeast = 0.1, kMost = 100.0;
 constexpr int kExcesses = 16;
 
-// Of each node that is seen, the nearest centre.
-std::map<int, int> part_nodes(const TetMesh& mesh, const Study::Rows& rows, BeliefMap& out) {
-  std::map<int, int> part_of;
+// Of each row that says something the part that it sees, else -1.
+std::vector<int> part_rows(const TetMesh& mesh, const Study::Rows& rows, BeliefMap& out) {
+  std::map<int, int> part_of;  // of each node that is seen, the nearest centre
   for (Eigen::Index r = 0; r < rows.error.size(); ++r) {
     if (rows.used[r] > 0.0) part_of[rows.nodes[r]] = 0;
   }
@@ -34,7 +34,11 @@ std::map<int, int> part_nodes(const TetMesh& mesh, const Study::Rows& rows, Beli
     part = static_cast<int>(nearest);
     out.parts.push_back(part);
   }
-  return part_of;
+  std::vector<int> seen;
+  for (Eigen::Index r = 0; r < rows.error.size(); ++r) {
+    seen.push_back(rows.used[r] > 0.0 ? part_of.at(rows.nodes[r]) : -1);
+  }
+  return seen;
 }
 
 // The noise is that of the whole body.
@@ -59,17 +63,15 @@ double log_evidence_of_excess(double x, double degrees_of_freedom) {
 BeliefMap belief_map(const Fitted& model, const Eigen::VectorXd& left, const ModelComparison& comparison) {
   BeliefMap out;
   const Study::Rows& rows = model.rows;
-  const std::map<int, int> part_of = part_nodes(model.study->model().mesh(), rows, out);
+  const std::vector<int> seen = part_rows(model.study->model().mesh(), rows, out);
   if (out.nodes.empty()) return out;
   const Eigen::VectorXd white = comparison.whitened(left);
   const MisfitTest whole = comparison.test_of(white, 0.0);
   const auto frames = static_cast<Eigen::Index>(rows.offsets.size()) - 1;
   out.probability.resize(out.centres.cols(), 3);
   for (Eigen::Index part = 0; part < out.probability.rows(); ++part) {
+    const auto inside = [&](Eigen::Index row) { return seen[static_cast<std::size_t>(row)] == part; };
     for (Eigen::Index third = 0; third < 3; ++third) {
-      const auto inside = [&](Eigen::Index row) {
-        return rows.used[row] > 0.0 && part_of.at(rows.nodes[row]) == static_cast<int>(part);
-      };
       out.probability(part, third) =
           probability(comparison.test_where(white, third * frames / 3, (third + 1) * frames / 3, inside), whole);
     }

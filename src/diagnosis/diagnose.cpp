@@ -28,7 +28,7 @@ namespace {
 
 constexpr std::size_t kFewestFrames = 18;
 constexpr double kBaseSpread = 0.1;    // prior standard deviations, of the sigma points of the first fit
-constexpr int kMostBases = 3;          // times that the model is fitted anew from where a larger one has it
+constexpr int kMostBases = 3;          // looks that are repeated because the model fits better elsewhere
 constexpr std::size_t kGrown = 2;      // leaders that are tried as one of several effects
 constexpr double kAddedSpread = 0.02;  // and of a model's that starts from a refit
 
@@ -214,7 +214,7 @@ class Search {
   }
 
   void conclude() {
-    out_.valid_final = validity();
+    if (!out_.final_effects.empty()) out_.valid_final = validity();
     // What was added first was fitted while the rest was missing.
     fit_entries(out_.entries, model_.study->model(), model_.fit);
     estimate(doubt_of_nonlinear(model_, recording_));
@@ -228,18 +228,18 @@ class Search {
  private:
   bool lacks_something() const { return finding_.verdict == Verdict::missing || finding_.verdict == Verdict::unexplained; }
 
-  // Looks until the model fits nowhere better; `moved`: it has been fitted anew.
+  // Looks until the model fits nowhere better; `moved`: it does not stay where it was.
   Finding examine(
       Fitted& model, const Earlier& earlier, bool& moved,
       const CandidatesSoFar& so_far = [](std::vector<MissingEffect>) {}) {
     const int most = earlier.beside ? 1 : kMostBases;
     Finding out = look(model, {}, options_, earlier, so_far);
-    for (int k = 1; out.better_base; ++k) {
-      model = fit_study(std::move(model.study), *out.better_base, kAddedSpread);
-      moved = true;
+    moved = out.base_moved;
+    for (int k = 1; out.to_repeat; ++k) {
       Earlier next = out.earlier;
       next.settled = k == most;
       out = look(model, {}, options_, next, so_far);
+      moved = true;
     }
     return out;
   }
@@ -264,7 +264,7 @@ class Search {
       finding_.believe(all);
       if (finding_.verdict != Verdict::missing) continue;
       take_over(leader.effect, deeper.effects);
-      finding_.believe(all);
+      finding_.believe(std::move(all));
       std::rotate(finding_.refits.begin(), finding_.refits.begin() + static_cast<std::ptrdiff_t>(i),
                   finding_.refits.begin() + static_cast<std::ptrdiff_t>(i) + 1);
       grown_ = std::move(deeper);
@@ -286,10 +286,11 @@ class Search {
     }
   }
 
-  BeliefMap validity() const { return belief_map(model_, finding_.models->assess(explained_).left, *finding_.models); }
+  Assessment assessment() const { return finding_.models->assess(explained_); }
+  BeliefMap validity() const { return belief_map(model_, assessment().left, *finding_.models); }
 
   // The model leaves no structure beyond chance: there is nothing left to look for.
-  bool nothing_left() const { return !(finding_.models->assess(explained_).test.discrepancy() > 0.0); }
+  bool nothing_left() const { return !(assessment().test.discrepancy() > 0.0); }
 
   // The library of tangents that the next look may take over.
   Library add(const Refit& best) {
@@ -308,15 +309,24 @@ class Search {
     return library;
   }
 
-  // The model has been fitted anew.
-  void replace_step() {
-    out_.steps.pop_back();
-    add_step();
+  void add_step() {
+    out_.steps.emplace_back(next_step());
+    publish_step();
   }
 
-  void add_step() {
+  // The model has been fitted anew.
+  void replace_step() {
+    out_.steps.back() = next_step();
+    publish_step();
+  }
+
+  // May be interrupted: what is published stays whole.
+  DiagnosisStep next_step() {
     explained_ = explain(model_);
-    out_.steps.push_back(step_of(model_, explained_, recording_, out_.final_effects));
+    return step_of(model_, explained_, recording_, out_.final_effects);
+  }
+
+  void publish_step() {
     estimate(Eigen::MatrixXd::Zero(model_.fit.w.size(), model_.fit.w.size()));
     publish();
   }

@@ -76,8 +76,8 @@ std::vector<MissingEffect> describe(const FirstLook& look, const RefitList& refi
 
 }  // namespace
 
-void Finding::believe(const Comparison& known) {
-  comparison = known;
+void Finding::believe(Comparison known) {
+  comparison = std::move(known);
   verdict = judge(comparison);
   set.clear();
   if (verdict == Verdict::missing || verdict == Verdict::unexplained) set = believed_effects(comparison);
@@ -92,22 +92,21 @@ void Finding::believe(const Comparison& known) {
   }
 }
 
-Finding look(const Fitted& base, const std::vector<std::string>& wanted, const DiagnosisOptions& options,
-             const Earlier& earlier, const CandidatesSoFar& so_far) {
-  const FirstLook look(base, options, earlier);
+Finding look(Fitted& base, const std::vector<std::string>& wanted, const DiagnosisOptions& options, const Earlier& earlier,
+             const CandidatesSoFar& so_far) {
+  FirstLook look(base, options, earlier);
   require_proposed(look, wanted);
   Finding out;
   RefitList refits(look, options, [&](const RefitList& fitted) { so_far(describe(look, fitted)); });
   so_far(describe(look, refits));
-  search_refits(look, wanted, refits);
-  out.comparison = refits.compare();
+  out.to_repeat = search_refits(look, wanted, refits);
   out.models = std::make_shared<const ModelComparison>(refits.comparison());
   out.effects = describe(look, refits);
-  out.believe(out.comparison);
+  out.believe(refits.compare());
   out.refits = refits.take();
   out.floor = look.floor;
   out.earlier = {look.finer.study, look.library, look.beside};
-  out.better_base = refits.better_base();
+  out.base_moved = refits.base_moved();
   return out;
 }
 

@@ -27,7 +27,7 @@ Eigen::VectorXd mesh_change(const Fitted& base, const FinerMesh& finer) {
 
 }  // namespace
 
-FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Earlier earlier)
+FirstLook::FirstLook(Fitted& fitted, const DiagnosisOptions& options, Earlier earlier)
     : base(fitted),
       cost(fitted.rows.error.squaredNorm()),
       beside(earlier.beside),
@@ -53,10 +53,21 @@ FirstLook::FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Earl
   known << own, of_mesh;
   known = comparison.whitened(known);
   error = comparison.whitened(explained.error);
-  for (Candidate& candidate : candidates) candidate.tangent.columns = comparison.whitened(candidate.tangent.columns);
+  for_each_index(candidates.size(), [&](std::size_t c) {
+    candidates[c].tangent.columns = comparison.whitened(candidates[c].tangent.columns);
+  });
   scorer = std::make_unique<Scorer>(error, known, comparison.noise_variance());
   floor = finer.change.norm() / std::sqrt(base.rows.count());
   ranked = rank(*scorer, candidates);
+}
+
+void FirstLook::move_base(const BatchFit& fit) {
+  base.fit = fit;
+  base.rows = base.study->rows(fit.w);
+  cost = base.rows.error.squaredNorm();
+  explained = explain(base, {}, !given.test.passes());
+  comparison.note(base.rows.error);
+  given = comparison.assess(explained);
 }
 
 }  // namespace tissue_stiffness

@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <set>
 
-#include "tissue_stiffness/diagnosis/force_smoother.hpp"
 #include "tissue_stiffness/forward/reduced_trajectory.hpp"
 #include "tissue_stiffness/meshing/farthest_nodes.hpp"
 
@@ -19,7 +18,8 @@ constexpr double kSameSpan = 1e-6;   // relative
 constexpr double kShortest = 1e-9;   // [s]
 constexpr double kLocal = 0.5;       // of the largest force per mass: near it
 
-std::vector<int> surface_nodes(const TetMesh& mesh) {
+// Of the facets, without the nodes between them.
+std::vector<int> surface_corners(const TetMesh& mesh) {
   std::set<int> surface;
   for (Eigen::Index f = 0; f < mesh.facets.cols(); ++f) {
     for (Eigen::Index i = 0; i < 3; ++i) surface.insert(mesh.facets(i, f));
@@ -150,7 +150,7 @@ MissingForce missing_force(const Study& study, const Eigen::VectorXd& w) {
 
   const Eigen::Index count = modes.shapes.cols(), frames = modes.displacement.cols();
   out.parameters = study.model().values(w);
-  out.nodes = farthest_nodes(mesh, surface_nodes(mesh), kNodes);
+  out.nodes = farthest_nodes(mesh, surface_corners(mesh), kNodes);
   out.places = at(out.nodes, Eigen::Map<const Eigen::VectorXd>(mesh.nodes.data(), mesh.nodes.size()));
   Eigen::MatrixXd force(count, frames), q(count, frames), v(count, frames);
   Eigen::VectorXd before = Eigen::VectorXd::Zero(count);

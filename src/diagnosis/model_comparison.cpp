@@ -68,6 +68,13 @@ Eigen::VectorXd most_probable(const Linearisation& model, const Eigen::VectorXd&
   return u;
 }
 
+void find_probabilities_of(std::vector<Hypothesis>& hypotheses) {
+  double most = -std::numeric_limits<double>::infinity(), sum = 0.0;
+  for (const Hypothesis& h : hypotheses) most = std::max(most, h.log_weight);
+  for (Hypothesis& h : hypotheses) sum += h.probability = std::exp(h.log_weight - most);
+  for (Hypothesis& h : hypotheses) h.probability /= sum;
+}
+
 // Of the amplitudes' priors, over the stated width.
 std::vector<double> scales_of(const Linearisation& model) {
   std::vector<double> out;
@@ -161,7 +168,7 @@ void ModelComparison::allow_for_mesh(const Eigen::VectorXd& change) {
   const Eigen::VectorXd std =
       (part * mesh_.leftCols(modes).colwise().norm().transpose()).cwiseQuotient(size.cwiseSqrt().cwiseMax(kTiny));
   basis_ = Eigen::MatrixXd::Zero(along_.rows(), modes);
-  left_ = Eigen::MatrixXd::Zero(modes, frames);
+  variances_ = Eigen::MatrixXd::Zero(modes, frames);
   for (Eigen::Index k = 0; k < frames; ++k) {
     const Eigen::Index from = offsets_[static_cast<std::size_t>(k)],
                        rows = offsets_[static_cast<std::size_t>(k) + 1] - from;
@@ -171,7 +178,7 @@ void ModelComparison::allow_for_mesh(const Eigen::VectorXd& change) {
       const double variance = eigen.eigenvalues()[i];
       if (!(variance > kTiny)) continue;
       basis_.block(from, i, rows, 1) = root * eigen.eigenvectors().col(i) / std::sqrt(variance);
-      left_(i, k) = variance;
+      variances_(i, k) = variance;
     }
   }
 }
@@ -181,9 +188,9 @@ Eigen::MatrixXd ModelComparison::whitened(const Eigen::MatrixXd& rows) const {
   const double s = noise_variance_;
   for (std::size_t k = 0; k + 1 < offsets_.size(); ++k) {
     const Eigen::Index from = offsets_[k], size = offsets_[k + 1] - from;
-    if (size == 0 || left_.size() == 0) continue;
+    if (size == 0 || variances_.size() == 0) continue;
     const auto basis = basis_.middleRows(from, size);
-    const Eigen::ArrayXd shrink = 1.0 - (s / (s + left_.col(static_cast<Eigen::Index>(k)).array())).sqrt();
+    const Eigen::ArrayXd shrink = 1.0 - (s / (s + variances_.col(static_cast<Eigen::Index>(k)).array())).sqrt();
     out.middleRows(from, size) -=
         basis * (shrink.matrix().asDiagonal() * (basis.transpose() * rows.middleRows(from, size)));
   }
@@ -252,9 +259,9 @@ double ModelComparison::beyond_bound(const Eigen::VectorXd& left) const {
   double mixed = 0.0;                              // y^2 L / (s + L) / s
   for (std::size_t k = 0; k + 1 < offsets_.size(); ++k) {
     const Eigen::Index from = offsets_[k], size = offsets_[k + 1] - from;
-    if (size == 0 || left_.size() == 0) continue;
+    if (size == 0 || variances_.size() == 0) continue;
     const Eigen::ArrayXd y = basis_.middleRows(from, size).transpose() * left.segment(from, size);
-    const Eigen::ArrayXd variance = left_.col(static_cast<Eigen::Index>(k)).array(), all = s + variance;
+    const Eigen::ArrayXd variance = variances_.col(static_cast<Eigen::Index>(k)).array(), all = s + variance;
     most += (s * variance / all.square()).sum();
     square += (y.square() * variance / all.square()).sum();
     across += (y.square() / all).sum();
@@ -301,6 +308,19 @@ bool Hypothesis::holds(const std::string& effect) const {
   return std::find(effects.begin(), effects.end(), effect) != effects.end();
 }
 
+bool Hypothesis::extends(const Hypothesis& other) const {
+  const bool all = std::all_of(other.effects.begin(), other.effects.end(), [this](const auto& e) { return holds(e); });
+  return all && (effects.size() > other.effects.size() || (random_force && !other.random_force));
+}
+
+void Hypothesis::weigh(const Assessment& assessment, const ModelComparison& models) {
+  log_weight = assessment.log_evidence + log_prior;
+  if (random_force) log_weight += log_evidence_gained(*random_force, assessment, models);
+  z = assessment.test.z();
+  passes = !random_force && assessment.test.passes();
+  structured = random_force || assessment.test.discrepancy() > 0.0;
+}
+
 const Hypothesis& Comparison::best() const {
   return *std::max_element(hypotheses.begin(), hypotheses.end(),
                            [](const Hypothesis& a, const Hypothesis& b) { return a.probability < b.probability; });
@@ -318,30 +338,21 @@ double Comparison::probability_of(const std::string& effect) const {
   return sum;
 }
 
-namespace {
-
-void find_probabilities_of(std::vector<Hypothesis>& hypotheses) {
-  double most = -std::numeric_limits<double>::infinity(), sum = 0.0;
-  for (const Hypothesis& h : hypotheses) most = std::max(most, h.log_weight);
-  for (Hypothesis& h : hypotheses) sum += h.probability = std::exp(h.log_weight - most);
-  for (Hypothesis& h : hypotheses) h.probability /= sum;
-}
-
-}  // namespace
-
 void Comparison::find_probabilities() {
+  std::vector<double> weights;
+  for (Hypothesis& h : hypotheses) {
+    weights.push_back(h.log_weight);
+    const auto enough = [&h](const Hypothesis& other) { return !other.structured && h.extends(other); };
+    if (std::any_of(hypotheses.begin(), hypotheses.end(), enough)) h.log_weight = -std::numeric_limits<double>::infinity();
+  }
   find_probabilities_of(hypotheses);
+  for (std::size_t i = 0; i < weights.size(); ++i) hypotheses[i].log_weight = weights[i];
 }
 
 void Comparison::assess(const ModelComparison& models) {
   tbb::parallel_for(std::size_t{0}, hypotheses.size(), [&](std::size_t i) {
-    Hypothesis& h = hypotheses[i];
-    const Assessment assessment = models.assess(*h.explained);
-    h.log_weight = assessment.log_evidence + h.log_prior;
-    if (h.random_force) h.log_weight += log_evidence_gained(*h.random_force, assessment, models);
-    h.z = assessment.test.z();
-    h.passes = !h.random_force && assessment.test.passes();
-    if (i == 0) structured = assessment.test.discrepancy() > 0.0;
+    const Assessment assessment = models.assess(*hypotheses[i].explained);
+    hypotheses[i].weigh(assessment, models);
   });
   find_probabilities();
 }
@@ -359,7 +370,7 @@ void Comparison::merge(const std::vector<std::string>& effects, const Comparison
 
 Verdict judge(const Comparison& c) {
   const Hypothesis& given = c.given();
-  if (!c.structured || given.probability > 1.0 - kComparison.believed)
+  if (given.probability > 1.0 - kComparison.believed)
     return given.passes ? (c.passes_without_mesh ? Verdict::adequate : Verdict::numerics) : Verdict::unexplained;
   const Hypothesis& best = c.best();
   return !best.effects.empty() && !best.random_force && best.passes ? Verdict::missing : Verdict::unexplained;

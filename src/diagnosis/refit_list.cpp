@@ -96,33 +96,42 @@ double RefitList::log_bayes_factor(const Refit& refit) const {
 
 // Beforehand the given model is as probable as all effects together, and those are alike, whatever the ways each has.
 // Something that the library does not have is as probable as one of them, and may act beside the best one, too.
-Comparison RefitList::compare() const {
+const Comparison& RefitList::compare() {
+  if (compared_) return *compared_;
   const double prior = -std::log(static_cast<double>(std::max<std::size_t>(1, look_.ranked.size())));
-  Comparison out;
-  out.passes_without_mesh =
-      comparison_.test_of(look_.base.rows.error, static_cast<double>(look_.base.fit.w.size())).passes();
-  const auto add = [&out](std::vector<std::string> effects, double log_prior, std::shared_ptr<const Explained> explained) {
+  compared_.emplace();
+  std::vector<Hypothesis>& hypotheses = compared_->hypotheses;
+  const auto add = [&](Hypothesis h, const Assessment& assessment) {
+    h.weigh(assessment, comparison_);
+    hypotheses.push_back(std::move(h));
+  };
+  const auto alone = [](std::vector<std::string> effects, double log_prior, std::shared_ptr<const Explained> explained) {
     Hypothesis h;
     h.effects = std::move(effects);
     h.log_prior = log_prior;
     h.explained = std::move(explained);
-    out.hypotheses.push_back(std::move(h));
+    return h;
   };
-  add({}, 0.0, base_);
-  for (const Refit& refit : refits_) add({refit.effect}, prior - std::log(ways_of(refit.effect)), refit.explained);
-  const auto beside = [&](const Fitted& model, std::size_t alone) {
-    Hypothesis both = out.hypotheses[alone];
-    both.random_force = std::make_shared<const RandomForce>(model);
-    both.log_prior += prior;
-    out.hypotheses.push_back(std::move(both));
+  const auto beside = [prior](Hypothesis h, std::shared_ptr<const RandomForce> force) {
+    h.random_force = std::move(force);
+    h.log_prior += prior;
+    return h;
   };
-  beside(look_.base, 0);
-  if (!empty() && best().model) beside(*best().model, 1);
-  out.assess(comparison_);
-  return out;
+  add(alone({}, 0.0, base_), given_);
+  for (const Refit& refit : refits_)
+    add(alone({refit.effect}, prior - std::log(ways_of(refit.effect)), refit.explained), refit.assessment);
+  if (!base_force_) base_force_ = std::make_shared<const RandomForce>(look_.base);
+  add(beside(hypotheses[0], base_force_), given_);
+  if (!empty() && best().model) {
+    add(beside(hypotheses[1], std::make_shared<const RandomForce>(*best().model)), best().assessment);
+  }
+  compared_->passes_without_mesh =
+      comparison_.test_of(look_.base.rows.error, static_cast<double>(look_.base.fit.w.size())).passes();
+  compared_->find_probabilities();
+  return *compared_;
 }
 
-bool RefitList::find_better_base() {
+bool RefitList::move_to_better_base() {
   const Study& study = *look_.base.study;
   if (study.model().nonlinear()) return false;
   Study::Place start = study.scan_near(look_.base.fit.w, study.tuning_shared_with(study));
@@ -131,12 +140,19 @@ bool RefitList::find_better_base() {
     if (place.cost < start.cost) start = std::move(place);
   }
   const BatchFit fit = study.quick_fit(start.w, kSpread * study.model().prior_std());
-  if (look_.base.fit.cost - fit.cost > 2.0 * kComparison.worthwhile * comparison_.noise_variance()) better_base_ = fit.w;
-  return better_base_.has_value();
+  if (!(look_.base.fit.cost - fit.cost > 2.0 * kComparison.worthwhile * comparison_.noise_variance())) return false;
+  base_moved_ = true;
+  look_.move_base(fit);
+  base_ = std::make_shared<const Explained>(look_.explained);
+  base_force_.reset();
+  comparison_.note(base_->error);
+  assess();
+  return true;
 }
 
 // All models anew, because the noise is that of the model that leaves least.
 void RefitList::assess() {
+  compared_.reset();
   given_ = comparison_.assess(*base_);
   tbb::parallel_for(std::size_t{0}, refits_.size(),
                     [&](std::size_t i) { refits_[i].assessment = comparison_.assess(*refits_[i].explained); });

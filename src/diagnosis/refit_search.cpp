@@ -18,13 +18,20 @@ class Search {
  public:
   Search(const FirstLook& look, RefitList& refits) : look_(look), refits_(refits) {}
 
-  void operator()(const std::vector<std::string>& wanted) {
-    if (!wanted.empty()) return refit_wanted(wanted);
+  /// See search_refits.
+  bool operator()(const std::vector<std::string>& wanted) {
+    if (!wanted.empty()) {
+      refit_wanted(wanted);
+      return false;
+    }
     refit_from_tangents();
-    if (!look_.settled && refits_.find_better_base()) return;
+    if (!look_.settled && refits_.move_to_better_base()) return verdict() == Verdict::unexplained;
+    // What a model that already has an effect leaves is small: it is not worth a longer search.
+    if (look_.beside || !wide()) return false;
     if (!explained()) refit_other_ways();
     if (!explained()) refit_from_beginning();
     if (!explained()) refit_other_kinds();
+    return false;
   }
 
  private:
@@ -38,8 +45,8 @@ class Search {
   /// Something is to be explained that tangents may not show. What a model that already has an effect leaves is small
   /// once it passes its test, and tangents are taken at the right place.
   bool wide() const { return look_.beside ? !look_.given.test.passes() : look_.given.test.discrepancy() > 0.0; }
-  /// Or not worth a longer search: what a model that already has an effect leaves is small.
-  bool explained() const { return look_.beside || !wide() || judge(refits_.compare()) == Verdict::missing; }
+  Verdict verdict() const { return judge(refits_.compare()); }
+  bool explained() const { return verdict() == Verdict::missing; }
   /// Runs in full take long: none for an effect whose tangent explains next to nothing.
   bool worth_full_runs(const Ranked& r) const {
     return r.best->linear || r.score.explained > kComparison.promising * structured_squares(look_.base.rows);
@@ -154,8 +161,8 @@ std::vector<const Candidate*> Search::ways_as_it_begins() const {
 
 }  // namespace
 
-void search_refits(const FirstLook& look, const std::vector<std::string>& wanted, RefitList& refits) {
-  Search(look, refits)(wanted);
+bool search_refits(const FirstLook& look, const std::vector<std::string>& wanted, RefitList& refits) {
+  return Search(look, refits)(wanted);
 }
 
 }  // namespace tissue_stiffness

@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "tissue_stiffness/estimation/compare.hpp"
 #include "tissue_stiffness/estimation/coordinate_scan.hpp"
 #include "tissue_stiffness/forward/extra_force.hpp"
-#include "tissue_stiffness/forward/for_each_index.hpp"
 #include "tissue_stiffness/meshing/build_mesh.hpp"
 
 namespace tissue_stiffness {

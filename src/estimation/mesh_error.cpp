@@ -52,6 +52,15 @@ void drive(const MeshError::Question& question, Model& model) {
   model.set_first_stamp(question.first_stamp);
 }
 
+// Of each free parameter: 1 for a Young's modulus, else 0.
+Eigen::VectorXd young_moduli(const Model& model) {
+  const std::vector<FreeParameter>& free = model.free_parameters();
+  Eigen::VectorXd out(static_cast<Eigen::Index>(free.size()));
+  for (std::size_t i = 0; i < free.size(); ++i)
+    out[static_cast<Eigen::Index>(i)] = is_young_modulus(free[i].name) ? 1.0 : 0.0;
+  return out;
+}
+
 // Gauss-Newton from `start` on, with steps that are cut while they do not lower the cost; where none does, that is the end.
 template <typename Run>
 MeshError::Answer fit(const Run& run, AnchoredFilter filter, const MeshError::Question& q, const Eigen::VectorXd& start) {
@@ -92,10 +101,7 @@ BasisOptions basis_beside(const TetMesh& mesh, const TetMesh& finer) {
 
 Eigen::MatrixXd mesh_doubt(const Model& model, const Eigen::VectorXd& shift) {
   const double left = model.nonlinear() ? 1.0 : kLeftByCorrection;
-  Eigen::VectorXd modulus = Eigen::VectorXd::Zero(shift.size());
-  for (Eigen::Index i = 0; i < shift.size(); ++i) {
-    if (is_young_modulus(model.free_parameters()[static_cast<std::size_t>(i)].name)) modulus[i] = 1.0;
-  }
+  const Eigen::VectorXd modulus = young_moduli(model);
   const double mean_square = modulus.dot(shift.cwiseAbs2()) / std::max(1.0, modulus.sum());
   Eigen::MatrixXd doubt = shift * shift.transpose();
   doubt.diagonal().array() += modulus.array() * (mean_square - shift.array().square()).max(0.0);
@@ -147,10 +153,7 @@ struct MeshError::Studies {
   // A coarse mesh makes the whole body too stiff, and a body that rings soon has other minima: the best common factor of
   // all moduli not far from w.
   Eigen::VectorXd best_near(const Question& q, const std::vector<Prediction>& truth) const {
-    Eigen::VectorXd stiffer = Eigen::VectorXd::Zero(q.w.size());
-    for (Eigen::Index i = 0; i < q.w.size(); ++i) {
-      if (is_young_modulus(coarse.free_parameters()[static_cast<std::size_t>(i)].name)) stiffer[i] = q.prior_std[i];
-    }
+    const Eigen::VectorXd stiffer = young_moduli(coarse).cwiseProduct(q.prior_std);
     const auto cost = [&](const Eigen::VectorXd& x) {
       const std::vector<Prediction> own = predictions(*coarse_runs, q, q.w + x[0] * stiffer);
       double sum = 0.0;

@@ -72,13 +72,15 @@ TEST(Diagnose, StartsTheGivenModelWhereARefitEnds) {
   base.study = std::make_unique<Study>(box_settings(bar("{prior: 35.0e3, factor: 3}")), bar_mesh(), recording);
   base.fit = base.study->fit(base.study->model().prior_mean(), 0.1 * base.study->model().prior_std());
   base.rows = base.study->rows(base.fit.w);
-  EXPECT_FALSE(look(base, {}, {}).better_base);
+  EXPECT_FALSE(look(base, {}, {}).base_moved);
   base.fit.w[0] = std::log(1.25 * kTruth);
   base.rows = base.study->rows(base.fit.w);
   base.fit.cost = base.rows.error.squaredNorm();
   const Finding finding = look(base, {}, {});
-  ASSERT_TRUE(finding.better_base);
-  EXPECT_NEAR(std::exp((*finding.better_base)[0]) / kTruth, 1.0, 0.01);
+  EXPECT_TRUE(finding.base_moved);
+  EXPECT_NEAR(std::exp(base.fit.w[0]) / kTruth, 1.0, 0.01);
+  EXPECT_EQ(finding.verdict, Verdict::adequate);
+  EXPECT_FALSE(finding.to_repeat);
 }
 
 TEST(Diagnose, DoesNotLookForWhatItIsToldToIgnore) {

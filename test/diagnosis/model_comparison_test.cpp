@@ -212,7 +212,7 @@ TEST_F(CleanBar, AssessesAllHypothesesAlike) {
     c.hypotheses.push_back(std::move(h));
   }
   c.assess(models);
-  EXPECT_FALSE(c.structured);
+  EXPECT_FALSE(c.given().structured);
   for (const Hypothesis& h : c.hypotheses) {
     const Assessment own = models.assess(*h.explained);
     EXPECT_DOUBLE_EQ(h.log_weight, own.log_evidence - 1.5);
@@ -265,6 +265,22 @@ TEST(Comparison, MergesWhatIsFoundBesideALeader) {
   EXPECT_EQ(believed_effects(c), (std::vector<std::string>{"a", "b", "c"}));
 }
 
+// What is added to a model that leaves nothing but noise is too small to be missing, whatever it gains.
+TEST(Comparison, GivesNothingToWhatExtendsASufficientModel) {
+  std::vector<Hypothesis> list{hypothesis({}, 0.0, true), hypothesis({"a"}, 50.0, true), hypothesis({"b"}, 49.0, true),
+                               hypothesis({"a", "b"}, 90.0, true), hypothesis({"a"}, 60.0, false, true)};
+  list[1].structured = false;
+  Comparison c = compared(list);
+  EXPECT_NEAR(c.probability_of("a"), 1.0 / (1.0 + std::exp(-1.0)), 1e-9);
+  EXPECT_EQ(c.none_of_these(), 0.0);
+  EXPECT_DOUBLE_EQ(c.hypotheses[3].log_weight, 90.0);
+  EXPECT_EQ(judge(c), Verdict::missing);
+  c.hypotheses[0].structured = false;
+  c.find_probabilities();
+  EXPECT_EQ(c.given().probability, 1.0);
+  EXPECT_EQ(judge(c), Verdict::adequate);
+}
+
 TEST(Judge, NeedsBothAProbabilityAndAFit) {
   const auto verdict = [](double given, bool given_passes, double named, bool named_passes, double none) {
     return judge(compared({hypothesis({}, std::log(given), given_passes), hypothesis({"a"}, std::log(named), named_passes),
@@ -280,10 +296,7 @@ TEST(Judge, NeedsBothAProbabilityAndAFit) {
   EXPECT_EQ(
       judge(compared({hypothesis({}, 0.0, false), hypothesis({"a"}, 50.0, true), hypothesis({"a"}, 60.0, false, true)})),
       Verdict::unexplained);
-  Comparison noise = compared({hypothesis({}, 0.0, true), hypothesis({"a"}, 50.0, true)});
-  EXPECT_EQ(judge(noise), Verdict::missing);
-  noise.structured = false;  // what is no more than noise needs no name
-  EXPECT_EQ(judge(noise), Verdict::adequate);
+  EXPECT_EQ(judge(compared({hypothesis({}, 0.0, true), hypothesis({"a"}, 50.0, true)})), Verdict::missing);
   Comparison mesh = compared({hypothesis({}, 0.0, true)});
   mesh.passes_without_mesh = false;
   EXPECT_EQ(judge(mesh), Verdict::numerics);

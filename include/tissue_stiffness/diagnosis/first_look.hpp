@@ -21,10 +21,13 @@ struct Earlier {
 
 /// What a fitted model's error shows before anything is refitted: the library, ranked by its tangents, and the mesh's part.
 struct FirstLook {
-  FirstLook(const Fitted& fitted, const DiagnosisOptions& options, Earlier earlier = {});
+  FirstLook(Fitted& fitted, const DiagnosisOptions& options, Earlier earlier = {});
 
-  const Fitted& base;
-  const double cost;                  ///< sum of squared errors [sigma^2]
+  /// Another fit takes the place of the base's. Tangents stay those of the first place.
+  void move_base(const BatchFit& fit);
+
+  Fitted& base;
+  double cost;                        ///< sum of squared errors [sigma^2]
   const bool beside, settled;         ///< see Earlier
   std::vector<Candidate> candidates;  ///< their tangents are whitened
   Library library;                    ///< that they were read from

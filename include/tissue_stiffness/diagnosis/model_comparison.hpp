@@ -96,15 +96,15 @@ class ModelComparison {
                         const std::function<bool(Eigen::Index)>& inside) const;
 
  private:
-  Eigen::VectorXd used_;  ///< 1 where a row says something, else 0
-  std::vector<Eigen::Index> offsets_;
-  Eigen::MatrixXd along_;  ///< rows / amplitude of each mode
-  Eigen::MatrixXd mesh_;   ///< D
   /// What a bound on the displacement along the modes adds to the sum of squares over s of `left`.
   double beyond_bound(const Eigen::VectorXd& left) const;
 
-  Eigen::MatrixXd basis_;  ///< B, frame under frame
-  Eigen::MatrixXd left_;   ///< L of each frame, a column each
+  Eigen::VectorXd used_;  ///< 1 where a row says something, else 0
+  std::vector<Eigen::Index> offsets_;
+  Eigen::MatrixXd along_;      ///< rows / amplitude of each mode
+  Eigen::MatrixXd mesh_;       ///< D
+  Eigen::MatrixXd basis_;      ///< B, frame under frame
+  Eigen::MatrixXd variances_;  ///< L of each frame, a column each
   double noise_variance_ = 0.0;
 };
 
@@ -120,11 +120,15 @@ struct Hypothesis {
   double log_weight = 0.0;                     ///< log evidence and log prior, but for a constant
   double z = 0.0;                              ///< of the residual's test; of a random force's it is that without the force
   bool passes = false;                         ///< that test
+  bool structured = true;                      ///< something beyond chance is left
   double probability = 0.0;
   bool holds(const std::string& effect) const;
+  /// All that the other one has, and something more.
+  bool extends(const Hypothesis& other) const;
+  /// Weight and test as these models assess the explained one.
+  void weigh(const Assessment& assessment, const ModelComparison& models);
 };
 struct Comparison {
-  bool structured = true;              ///< the given model leaves structure beyond chance
   bool passes_without_mesh = false;    ///< the given model's residual, with the error of the mesh in it
   std::vector<Hypothesis> hypotheses;  ///< the given model first
 
@@ -134,7 +138,8 @@ struct Comparison {
   double probability_of(const std::string& effect) const;  ///< of all others that hold it
   /// Weights, tests and probabilities of all hypotheses by one likelihood.
   void assess(const ModelComparison& models);
-  /// From the weights.
+  /// From the weights. What extends a hypothesis that leaves no structure beyond chance has none: what it has more is too
+  /// small to be missing, whatever it gains.
   void find_probabilities();
   /// `deeper`: about the model with `effects` added. Its hypotheses take the place of those with these effects alone, and
   /// are to be assessed together with the others.
@@ -142,7 +147,7 @@ struct Comparison {
 };
 
 enum class Verdict { adequate, missing, numerics, unexplained };
-/// `adequate`: the given model leaves no structure beyond chance, or is within the believed set and its residual passes.
+/// `adequate`: the given model is within the believed set and its residual passes.
 /// `numerics`: it passes only beside the mesh's error. `missing`: it is not in that set, named effects alone are the most
 /// probable hypothesis, and what they leave passes. Otherwise `unexplained`.
 Verdict judge(const Comparison& comparison);

@@ -25,7 +25,7 @@ using RefitsSoFar = std::function<void(const RefitList&)>;
 /// The refits of one look: best first, one an effect.
 class RefitList {
  public:
-  RefitList(const FirstLook& look, const DiagnosisOptions& options, RefitsSoFar so_far)
+  RefitList(FirstLook& look, const DiagnosisOptions& options, RefitsSoFar so_far)
       : look_(look),
         options_(options),
         so_far_(std::move(so_far)),
@@ -38,15 +38,16 @@ class RefitList {
   void add(std::vector<Addition> list);
 
   /// Fits the given model as refits are fitted: from the best place near its fit, or from where a refit has its parameters.
-  /// A refit that has found another minimum may have found it for the given model, too. True if that fits better.
-  bool find_better_base();
-  const std::optional<Eigen::VectorXd>& better_base() const { return better_base_; }
+  /// A refit that has found another minimum may have found it for the given model, too. True if that fits better: the
+  /// look's base is there then.
+  bool move_to_better_base();
+  bool base_moved() const { return base_moved_; }
 
   bool empty() const { return refits_.empty(); }
   const std::vector<Refit>& all() const { return refits_; }
   const Refit& best() const { return refits_.front(); }
   /// The given model, each refit, and something unknown beside the given model and beside the best refit.
-  Comparison compare() const;
+  const Comparison& compare();
   const Assessment& given() const { return given_; }  ///< of the given model
   /// Log evidence of a refit beyond the given model's, over all ways of its effect, of which one was fitted.
   double log_bayes_factor(const Refit& refit) const;
@@ -64,14 +65,16 @@ class RefitList {
   void assess();
   void drop_worse_ways();
 
-  const FirstLook& look_;
+  FirstLook& look_;
   const DiagnosisOptions& options_;
   RefitsSoFar so_far_;
   ModelComparison comparison_;
-  std::shared_ptr<const Explained> base_;  ///< the given model as it is compared
-  Assessment given_;                       ///< of it
+  std::shared_ptr<const Explained> base_;          ///< the given model as it is compared
+  Assessment given_;                               ///< of it
+  std::shared_ptr<const RandomForce> base_force_;  ///< null until it is asked for
   std::vector<Refit> refits_;
-  std::optional<Eigen::VectorXd> better_base_;
+  std::optional<Comparison> compared_;  ///< empty where there is a refit or another base since
+  bool base_moved_ = false;
 };
 
 }  // namespace tissue_stiffness
