@@ -190,13 +190,11 @@ RandomForce::RandomForce(const Fitted& model) : offsets(model.rows.offsets) {
 
 double log_evidence_gained(const RandomForce& force, const Assessment& alone, const ModelComparison& comparison) {
   const double s = comparison.noise_variance();
-  const Eigen::VectorXd error = alone.beyond_mesh ? alone.left : Eigen::VectorXd(comparison.whitened(alone.left));
-  const std::vector<FrameEvidence> evidence =
-      evidence_of(error, alone.beyond_mesh ? force.along : comparison.whitened(force.along), force.offsets, s);
+  const Eigen::VectorXd error = comparison.whitened(alone.left);
+  const std::vector<FrameEvidence> evidence = evidence_of(error, comparison.whitened(force.along), force.offsets, s);
   const ForcePrior prior = likeliest_force_prior(force.transitions, evidence, force.scale);
   const double gain = 0.5 * (error.squaredNorm() / s - smooth_force(force.transitions, evidence, prior).deviance);
-  const double without_mesh = alone.beyond_mesh ? alone.log_plain - alone.log_likelihood : 0.0;
-  return gain + without_mesh - log_of_tried_priors(force.along.cols());
+  return gain - log_of_tried_priors(force.along.cols());
 }
 
 }  // namespace tissue_stiffness

@@ -161,10 +161,9 @@ ModelComparison::ModelComparison(const Fitted& base, const Eigen::VectorXd& mesh
 void ModelComparison::allow_for_mesh(const Eigen::VectorXd& change) {
   mesh_ = parted(kComparison.whole_mesh * change, along_, offsets_);
   const Eigen::Index modes = mesh_.cols() - 1, frames = static_cast<Eigen::Index>(offsets_.size()) - 1;
-  // Amplitudes that are independent from frame to frame, whose sum over the frames along any course in time has the
-  // variance of that part of D.
+  // Amplitudes that are independent from frame to frame and have the mean square of that part of D.
   constexpr double part = kComparison.left_of_mesh / kComparison.whole_mesh;
-  const Eigen::VectorXd size = along_.leftCols(modes).colwise().squaredNorm().transpose() / static_cast<double>(frames);
+  const Eigen::VectorXd size = along_.leftCols(modes).colwise().squaredNorm().transpose();
   const Eigen::VectorXd std =
       (part * mesh_.leftCols(modes).colwise().norm().transpose()).cwiseQuotient(size.cwiseSqrt().cwiseMax(kTiny));
   basis_ = Eigen::MatrixXd::Zero(along_.rows(), modes);
@@ -239,39 +238,10 @@ Assessment ModelComparison::assess(const Explained& explained) const {
   }
   out.log_evidence = log_mean_exp(evidence);
   out.left = explained.error - j * u;
-  const double beyond = 0.5 * beyond_bound(out.left);
-  out.beyond_mesh = beyond > 0.0;
-  out.log_likelihood -= beyond;
-  out.log_evidence -= beyond;
-  out.log_plain = model.log_root_weights - 0.5 * out.left.squaredNorm() / s;
   out.test = test_of(out.left, static_cast<double>(model.columns.cols()));
   constexpr double part = kComparison.left_of_mesh / kComparison.whole_mesh;
   out.test.set_numerics(part * part * along_modes(mesh_) / used_.sum());
   return out;
-}
-
-// Along B_k the most probable displacement is d = L (s + L)^-1 y of a residual y, with the square m^2 = d^T L^-1 d summed
-// over the frames. Where m is more than noise and the bound give, only a part c of d is believed.
-double ModelComparison::beyond_bound(const Eigen::VectorXd& left) const {
-  const double s = noise_variance_;
-  double most = kComparison.most_numerics * kComparison.most_numerics;
-  double square = 0.0, across = 0.0, whole = 0.0;  // of y: y^2 L / (s + L)^2, y^2 / (s + L) and y^2 / s
-  double mixed = 0.0;                              // y^2 L / (s + L) / s
-  for (std::size_t k = 0; k + 1 < offsets_.size(); ++k) {
-    const Eigen::Index from = offsets_[k], size = offsets_[k + 1] - from;
-    if (size == 0 || variances_.size() == 0) continue;
-    const Eigen::ArrayXd y = basis_.middleRows(from, size).transpose() * left.segment(from, size);
-    const Eigen::ArrayXd variance = variances_.col(static_cast<Eigen::Index>(k)).array(), all = s + variance;
-    most += (s * variance / all.square()).sum();
-    square += (y.square() * variance / all.square()).sum();
-    across += (y.square() / all).sum();
-    whole += (y.square() / s).sum();
-    mixed += (y.square() * variance / all / s).sum();
-  }
-  if (!(square > most)) return 0.0;
-  // |y - c d|^2 / s + c^2 m^2; the sum of d^2 / s is mixed - square.
-  const double c = std::sqrt(most / square);
-  return whole - 2.0 * c * mixed + c * c * (mixed - square) + c * c * square - across;
 }
 
 MisfitTest ModelComparison::test_of(const Eigen::VectorXd& error, double fitted) const {
@@ -308,9 +278,9 @@ bool Hypothesis::holds(const std::string& effect) const {
   return std::find(effects.begin(), effects.end(), effect) != effects.end();
 }
 
-bool Hypothesis::extends(const Hypothesis& other) const {
+bool Hypothesis::superfluous_beside(const Hypothesis& other) const {
   const bool all = std::all_of(other.effects.begin(), other.effects.end(), [this](const auto& e) { return holds(e); });
-  return all && (effects.size() > other.effects.size() || (random_force && !other.random_force));
+  return all && !other.structured && (effects.size() > other.effects.size() || (random_force && !other.random_force));
 }
 
 void Hypothesis::weigh(const Assessment& assessment, const ModelComparison& models) {
@@ -339,14 +309,23 @@ double Comparison::probability_of(const std::string& effect) const {
 }
 
 void Comparison::find_probabilities() {
-  std::vector<double> weights;
-  for (Hypothesis& h : hypotheses) {
-    weights.push_back(h.log_weight);
-    const auto enough = [&h](const Hypothesis& other) { return !other.structured && h.extends(other); };
-    if (std::any_of(hypotheses.begin(), hypotheses.end(), enough)) h.log_weight = -std::numeric_limits<double>::infinity();
+  constexpr double none = -std::numeric_limits<double>::infinity();
+  std::vector<Hypothesis> weighed = hypotheses;
+  for (Hypothesis& h : weighed) {
+    const auto enough = [&h](const Hypothesis& other) { return h.superfluous_beside(other); };
+    if (std::any_of(hypotheses.begin(), hypotheses.end(), enough)) h.log_weight = none;
   }
-  find_probabilities_of(hypotheses);
-  for (std::size_t i = 0; i < weights.size(); ++i) hypotheses[i].log_weight = weights[i];
+  const Hypothesis* best = &weighed.front();
+  for (const Hypothesis& h : weighed) {
+    if (!h.random_force && h.log_weight > best->log_weight) best = &h;
+  }
+  const double model = best->log_weight - best->log_prior, more = log_bayes_factor_bound(best->z);
+  for (Hypothesis& h : weighed) {
+    if (h.random_force && h.log_weight > none && h.effects == best->effects)
+      h.log_weight = std::max(h.log_weight, model + h.log_prior + more);
+  }
+  find_probabilities_of(weighed);
+  for (std::size_t i = 0; i < weighed.size(); ++i) hypotheses[i].probability = weighed[i].probability;
 }
 
 void Comparison::assess(const ModelComparison& models) {

@@ -78,6 +78,16 @@ TEST(LogMeanExp, SurvivesLargeNumbers) {
   EXPECT_NEAR(log_mean_exp({0.0, std::log(3.0)}), std::log(2.0), 1e-12);
 }
 
+// -e p log p of p = 0.05 and 0.001, as Sellke, Bayarri & Berger print it: 2.5 and 53 to one.
+TEST(LogBayesFactorBound, CalibratesAPValue) {
+  EXPECT_NEAR(std::exp(log_bayes_factor_bound(1.6449)), 2.456, 0.01);
+  EXPECT_NEAR(std::exp(log_bayes_factor_bound(3.0902)), 53.25, 0.1);
+  EXPECT_EQ(log_bayes_factor_bound(0.0), 0.0);
+  EXPECT_EQ(log_bayes_factor_bound(-20.0), 0.0);
+  EXPECT_NEAR(log_bayes_factor_bound(29.999), log_bayes_factor_bound(30.001), 0.1);  // on either side of the asymptote
+  EXPECT_NEAR(log_bayes_factor_bound(1000.0), 5e5, 100.0);
+}
+
 TEST(LikelihoodRatio, HasThePValueOfChiSquared) {
   EXPECT_NEAR(likelihood_ratio_p_value(3.841, 1.0), 0.05, 1e-4);
   EXPECT_NEAR(likelihood_ratio_p_value(7.815, 3.0), 0.05, 1e-4);

@@ -29,8 +29,7 @@ struct RandomForce {
 };
 /// Log evidence of what a model leaves being the work of such a force, beyond that of its being noise and the mesh's error:
 /// the force's marginal likelihood (Schweppe 1965) at its best prior, less the log of the number of priors that were tried.
-/// `alone`: the model without the force. Where that leaves more than the mesh's error may be, the force is compared beside
-/// noise alone.
+/// `alone`: the model without the force.
 double log_evidence_gained(const RandomForce& force, const Assessment& alone, const ModelComparison& comparison);
 
 }  // namespace tissue_stiffness

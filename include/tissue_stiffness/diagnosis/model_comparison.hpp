@@ -55,8 +55,6 @@ Explained explain(const Fitted& fitted, const std::vector<std::string>& amplitud
 struct Assessment {
   double log_evidence = 0.0;    ///< log p(e), but for a constant that all models share
   double log_likelihood = 0.0;  ///< log p(e | u) at the most probable u; but for the same constant
-  double log_plain = 0.0;       ///< the same with covariance s I alone
-  bool beyond_mesh = false;     ///< what is left along the modes is more than `most_numerics` allow
   Eigen::VectorXd left;         ///< of the residual at the most probable u
   /// Of what that leaves: missing physics moves the lowest modes.
   MisfitTest test;
@@ -68,10 +66,10 @@ struct Assessment {
 ///   log p += sum log sqrt(q).
 /// D: what a finer mesh changes, parted into its shares along the lowest modes and the rest. v: mean square across the
 /// lowest modes, which missing physics hardly moves, and m: that part's memory from frame to frame; both are those of the
-/// model that leaves least there. B_k L_k B_k^T, of frame k: a displacement along the lowest modes, each with the variance
-/// of `left_of_mesh` times its share of D, because the mesh's error has directions that D does not hold; evidence and test
-/// allow for the same. No error of the numerics is believed beyond `most_numerics` standard deviations, that displacement
-/// as a whole included: what is left beyond counts against s alone. Laplace's approximation of the evidence (MacKay 2003,
+/// model that leaves least there. B_k L_k B_k^T, of frame k: a displacement along the lowest modes, whose mean square is
+/// that of `left_of_mesh` times what a refinement changes along each: the mesh's error has directions that D does not hold.
+/// The test allows for as much. No coefficient of the numerics is believed beyond `most_numerics` standard deviations.
+/// Laplace's approximation of the evidence (MacKay 2003,
 /// eq. 28.10) with the numerics as further unknowns. An added amplitude's prior is a mixture of normal ones from its stated
 /// width down to `smallest` of it, alike: an effect pays for the order of its size and not for the width that a proposal
 /// happens to state.
@@ -96,9 +94,6 @@ class ModelComparison {
                         const std::function<bool(Eigen::Index)>& inside) const;
 
  private:
-  /// What a bound on the displacement along the modes adds to the sum of squares over s of `left`.
-  double beyond_bound(const Eigen::VectorXd& left) const;
-
   Eigen::VectorXd used_;  ///< 1 where a row says something, else 0
   std::vector<Eigen::Index> offsets_;
   Eigen::MatrixXd along_;      ///< rows / amplitude of each mode
@@ -123,8 +118,8 @@ struct Hypothesis {
   bool structured = true;                      ///< something beyond chance is left
   double probability = 0.0;
   bool holds(const std::string& effect) const;
-  /// All that the other one has, and something more.
-  bool extends(const Hypothesis& other) const;
+  /// It has all that the other one has, which leaves no structure beyond chance, and something more.
+  bool superfluous_beside(const Hypothesis& other) const;
   /// Weight and test as these models assess the explained one.
   void weigh(const Assessment& assessment, const ModelComparison& models);
 };
@@ -138,8 +133,8 @@ struct Comparison {
   double probability_of(const std::string& effect) const;  ///< of all others that hold it
   /// Weights, tests and probabilities of all hypotheses by one likelihood.
   void assess(const ModelComparison& models);
-  /// From the weights. What extends a hypothesis that leaves no structure beyond chance has none: what it has more is too
-  /// small to be missing, whatever it gains.
+  /// From the weights. What is superfluous has none: what it has more is too small to be missing, whatever it gains. Where
+  /// the most probable model does not pass its test a random force beside it gains what that test says, or more.
   void find_probabilities();
   /// `deeper`: about the model with `effects` added. Its hypotheses take the place of those with these effects alone, and
   /// are to be assessed together with the others.

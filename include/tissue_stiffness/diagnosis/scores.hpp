@@ -43,4 +43,9 @@ double log_mean_exp(const std::vector<double>& values);
 /// P(chi^2 >= `gain`) with so many degrees of freedom: the p-value of a likelihood ratio of exp(gain / 2) (Wilks 1938).
 double likelihood_ratio_p_value(double gain, double parameters);
 
+/// The largest log Bayes factor against a hypothesis whose test lies z standard deviations above its mean, over all
+/// alternatives under which that is likelier the larger z is: -log(-e p log p), p = P(Z >= z); 0 where p > 1/e (Sellke,
+/// Bayarri & Berger 2001, eq. 2).
+double log_bayes_factor_bound(double z);
+
 }  // namespace tissue_stiffness
