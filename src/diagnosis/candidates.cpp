@@ -115,7 +115,7 @@ std::set<std::string> linear_effects(const Study& base, const std::vector<Candid
   for (const Candidate& candidate : candidates) {
     if (!names.empty() && names.back() == candidate.effect) continue;
     names.push_back(candidate.effect);
-    add_effect(settings, candidate.proposal.yaml);
+    add_effect(settings, candidate.proposal.entry);
   }
   const Model model(settings, base.model());
   std::set<std::string> linear;
@@ -166,7 +166,7 @@ std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd&
     ModelSettings settings = base.model().settings();
     std::vector<Candidate*> candidates;
     for (const std::size_t c : members) {
-      add_effect(settings, all[c].proposal.yaml);
+      add_effect(settings, all[c].proposal.entry);
       candidates.push_back(&all[c]);
     }
     BasisOptions options;
@@ -181,18 +181,18 @@ std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd&
   return all;
 }
 
-std::vector<std::string> entries_of_time_steps(const Study& study, const Eigen::VectorXd& w) {
+std::vector<EffectEntry> entries_of_time_steps(const Study& study, const Eigen::VectorXd& w) {
   const ProposalContext context = context_of(study, w);
-  std::vector<std::string> entries;
+  std::vector<EffectEntry> entries;
   for (const EffectSpec& spec : effect_specs()) {
     if (!spec.of_simulation) continue;
-    for (const Proposal& proposal : spec.proposals(context)) entries.push_back(proposal.yaml);
+    for (const Proposal& proposal : spec.proposals(context)) entries.push_back(proposal.entry);
   }
   return entries;
 }
 
 Eigen::MatrixXd tangents_of_time_steps(const Study& study, const Eigen::VectorXd& w, const Study::Rows& rows) {
-  const std::vector<std::string> entries = entries_of_time_steps(study, w);
+  const std::vector<EffectEntry> entries = entries_of_time_steps(study, w);
   if (entries.empty()) return Eigen::MatrixXd(rows.error.size(), 0);
   const Study extended(extend_model(study.model().settings(), entries), study, {});
   const Eigen::VectorXd start = extended.extend(study, w), std = extended.model().prior_std();

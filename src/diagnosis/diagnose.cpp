@@ -216,7 +216,9 @@ class Search {
   void conclude() {
     if (!out_.final_effects.empty()) out_.valid_final = validity();
     // What was added first was fitted while the rest was missing.
-    fit_entries(out_.entries, model_.study->model(), model_.fit);
+    fit_entries(entries_, model_.study->model(), model_.fit);
+    out_.entries.clear();
+    for (const EffectEntry& entry : entries_) out_.entries.push_back(to_yaml(entry));
     estimate(doubt_of_nonlinear(model_, recording_));
     options_.progress("run the models once more for the report", 0, 0);
     publish();
@@ -301,7 +303,8 @@ class Search {
     Library library =
         same_body(model_.study->model(), next.study->model()) ? std::move(finding_.earlier.library) : Library();
     out_.final_effects.push_back(best.effect);
-    out_.entries.push_back(best.entry);
+    entries_.push_back(best.entry);
+    out_.entries.push_back(to_yaml(best.entry));
     out_.final_verdict = "unfinished";
     if (!given_.study) given_ = std::move(model_);
     model_ = std::move(next);
@@ -344,10 +347,11 @@ class Search {
   const Recording& recording_;
   DiagnosisOptions options_;
   Diagnosis& out_;
-  Fitted given_, model_;          ///< given_ is empty as long as model_ is the given one
-  Explained explained_;           ///< model_ as it is compared
-  Finding finding_;               ///< of model_
-  std::optional<Finding> grown_;  ///< of model_ with the best refit; empty where that explains the error alone
+  Fitted given_, model_;              ///< given_ is empty as long as model_ is the given one
+  Explained explained_;               ///< model_ as it is compared
+  Finding finding_;                   ///< of model_
+  std::optional<Finding> grown_;      ///< of model_ with the best refit; empty where that explains the error alone
+  std::vector<EffectEntry> entries_;  ///< of out_.final_effects
 };
 
 }  // namespace

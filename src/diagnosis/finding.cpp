@@ -25,7 +25,7 @@ void require_proposed(const FirstLook& look, const std::vector<std::string>& wan
 MissingEffect describe(const FirstLook& look, const Ranked& r) {
   MissingEffect out;
   out.effect = r.effect;
-  out.entry = r.best->proposal.yaml;
+  out.entry = to_yaml(r.best->proposal.entry);
   out.log_bayes_factor = r.evidence;
   const Eigen::VectorXd& amplitude = r.score.amplitude;
   const double gain = r.score.explained / look.comparison.noise_variance();
@@ -41,7 +41,7 @@ MissingEffect describe(const FirstLook& look, const Ranked& r) {
 MissingEffect describe(const FirstLook& look, const RefitList& refits, const Refit& refit) {
   MissingEffect out;
   out.effect = refit.effect;
-  out.entry = refit.entry;
+  out.entry = to_yaml(refit.entry);
   out.parameters = refit.parameters;
   out.log_bayes_factor = refits.log_bayes_factor(refit);
   const double gain = 2.0 * (refit.assessment.log_likelihood - refits.given().log_likelihood);

@@ -6,7 +6,6 @@
 #include "tissue_stiffness/diagnosis/fit_entries.hpp"
 #include "tissue_stiffness/diagnosis/model_comparison.hpp"
 #include "tissue_stiffness/diagnosis/ranking.hpp"
-#include "tissue_stiffness/settings/extend_model.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
@@ -115,7 +114,7 @@ Refit refit(const Fitted& base, const Addition& addition, double rival) {
   Refit out;
   out.effect = addition.effect();
   out.way = addition.way;
-  std::vector<std::string> entries{addition.way->proposal.refine};
+  std::vector<EffectEntry> entries{addition.way->proposal.refine};
   fit_entries(entries, study.model(), start->fit);
   out.entry = entries.front();
   out.parameters = study.model().values(start->fit.w);

@@ -11,7 +11,6 @@
 #include "tissue_stiffness/diagnosis/missing_force.hpp"
 #include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/forward/for_each_index.hpp"
-#include "tissue_stiffness/settings/extend_model.hpp"
 #include "tissue_stiffness/types/error.hpp"
 #include "tissue_stiffness/types/stop_request.hpp"
 
@@ -24,9 +23,7 @@ constexpr double kReach = 1.05;   // times the best cost so far: fewer parameter
 }  // namespace
 
 std::ptrdiff_t parameters_of(const Candidate& way) {
-  ModelSettings alone;
-  add_effect(alone, way.proposal.refine);
-  const std::vector<Quantity> quantities = read_parameters(alone.effects.front());
+  const std::vector<Quantity> quantities = read_parameters(to_settings(way.proposal.refine));
   return std::count_if(quantities.begin(), quantities.end(), [](const Quantity& q) { return q.estimated(); });
 }
 

@@ -109,7 +109,7 @@ void Search::refit_other_ways() {
 void Search::refit_other_kinds() {
   std::vector<Addition> list;
   for (const Refit& leader : leaders()) {
-    if (leader.way->proposal.kind.empty()) continue;
+    if (leader.way->proposal.kind_key.empty()) continue;
     for (const Candidate& candidate : look_.candidates) {
       if (candidate.effect == leader.effect && candidate.proposal.is_other_kind_of(leader.way->proposal))
         list.push_back({&candidate, {}, leader.parameters});
@@ -151,7 +151,7 @@ std::vector<const Candidate*> Search::ways_as_it_begins() const {
     if (!candidate.linear) continue;
     const Tangent beginning{candidate.tangent.columns.topRows(rows), candidate.tangent.prior_std};
     const double evidence = scorer.score(beginning).log_bayes_factor;
-    auto& known = best[candidate.effect + " " + candidate.proposal.kind];
+    auto& known = best[candidate.effect + " " + candidate.proposal.kind()];
     if (known.second == nullptr || evidence > known.first) known = {evidence, &candidate};
   }
   std::vector<const Candidate*> out;

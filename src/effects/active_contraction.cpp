@@ -79,17 +79,23 @@ std::vector<Proposal> propose(const ProposalContext& context) {
   const double scale = 0.03 * context.young_modulus;
   std::vector<Proposal> list;
   for (const FibreField::Trial& trial : FibreField::trials(context.mesh)) {
-    if (trial.angle != 0.0 || trial.direction == "radial") continue;
-    const std::string head = "active_contraction: {direction: " + trial.direction;
+    if (trial.angle != 0.0 || trial.direction.is("radial")) continue;
+    const auto with = [&trial](const Argument& period, const Argument& onset, const Argument& duration,
+                               const Quantity& amplitude) {
+      return EffectEntry{"active_contraction",
+                         {{"direction", trial.direction},
+                          {"period", period},
+                          {"onset", onset},
+                          {"duration", duration},
+                          {"amplitude", amplitude}}};
+    };
     for (const double period : periods(context)) {
       for (const double phase : kPhases) {
         const double onset = phase * period, arch = 0.5 * period;
-        list.push_back({head + ", period: " + yaml(period) + ", onset: " + yaml(onset) + ", duration: " + yaml(arch) +
-                            ", amplitude: " + normal(0.0, scale) + "}",
-                        "amplitude",
-                        head + ", period: " + log_normal(period, 1.15) + ", onset: " + normal(onset, 0.2 * period) +
-                            ", duration: " + log_normal(arch, 1.5) + ", amplitude: " + normal(scale, 2.0 * scale) + "}",
-                        trial.direction});
+        list.push_back(
+            {with(period, onset, arch, normal(0.0, scale)), "amplitude",
+             with(log_normal(period, 1.15), normal(onset, 0.2 * period), log_normal(arch, 1.5), normal(scale, 2.0 * scale)),
+             "direction"});
       }
     }
   }

@@ -38,8 +38,10 @@ std::vector<Proposal> propose(const ProposalContext& context) {
   std::vector<Proposal> list;
   for (const auto& [name, region] : context.regions) {
     if (region.nodes.empty() || context.names("fixed", name)) continue;
-    const std::string head = "added_mass: {region: " + name + ", mass: ";
-    list.push_back({head + normal(0.0, scale) + "}", "mass", head + log_normal(scale, 4.0) + "}", name});
+    const auto with = [&where = name](const Quantity& mass) {
+      return EffectEntry{"added_mass", {{"region", where}, {"mass", mass}}};
+    };
+    list.push_back({with(normal(0.0, scale)), "mass", with(log_normal(scale, 4.0)), "region"});
   }
   return list;
 }

@@ -55,7 +55,7 @@ class Compressibility : public Effect {
 
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.holds("compressibility")) return {};
-  const std::string entry = "compressibility: {shift: " + normal(0.0, 0.05) + "}";
+  const EffectEntry entry{"compressibility", {{"shift", normal(0.0, 0.05)}}};
   return {{entry, "shift", entry}};
 }
 

@@ -15,7 +15,7 @@ std::vector<Proposal> propose(const ProposalContext& context) {
   const bool surface =
       context.observes(ObservationSettings::Kind::contour) || context.observes(ObservationSettings::Kind::points);
   if (context.holds("contour_bias") || !surface) return {};
-  const std::string entry = "contour_bias: {bias: " + normal(0.0, 0.005 * context.size()) + "}";
+  const EffectEntry entry{"contour_bias", {{"bias", normal(0.0, 0.005 * context.size())}}};
   return {{entry, "bias", entry}};
 }
 

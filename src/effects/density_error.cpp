@@ -14,7 +14,7 @@ class DensityError : public Effect {
 // Not where a density is estimated anyhow.
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.holds("density_error") || context.estimates("inertia", "density")) return {};
-  const std::string entry = "density_error: {relative: " + normal(0.0, 0.1) + "}";
+  const EffectEntry entry{"density_error", {{"relative", normal(0.0, 0.1)}}};
   return {{entry, "relative", entry}};
 }
 

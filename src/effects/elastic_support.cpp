@@ -43,8 +43,10 @@ std::vector<Proposal> propose(const ProposalContext& context) {
   for (const EffectSettings* fixed : context.all("fixed")) {
     const std::string name = fixed->arguments.at("region").as_text();
     if (context.regions.at(name).facets.empty()) continue;
-    const std::string head = "elastic_support: {region: " + name + ", compliance: ";
-    list.push_back({head + normal(0.0, scale) + "}", "compliance", head + log_normal(scale, 4.0) + "}", name});
+    const auto with = [&name](const Quantity& compliance) {
+      return EffectEntry{"elastic_support", {{"region", name}, {"compliance", compliance}}};
+    };
+    list.push_back({with(normal(0.0, scale)), "compliance", with(log_normal(scale, 4.0)), "region"});
   }
   return list;
 }

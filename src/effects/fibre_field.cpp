@@ -102,7 +102,7 @@ std::vector<FibreField::Trial> FibreField::trials(const TetMesh& mesh) {
   std::vector<Trial> list{{"circumferential", 0.0}, {"longitudinal", 0.0}, {"radial", 0.0}};
   for (const double angle : {-M_PI / 4.0, M_PI / 4.0}) list.push_back({"circumferential", angle});
   for (int i = 0; i < 3; ++i) {
-    if (std::abs(axis[i]) < 0.95) list.push_back({yaml(Eigen::Vector3d(Eigen::Vector3d::Unit(i))), 0.0});
+    if (std::abs(axis[i]) < 0.95) list.push_back({Eigen::Vector3d(Eigen::Vector3d::Unit(i)), 0.0});
   }
   return list;
 }

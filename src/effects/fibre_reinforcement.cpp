@@ -45,10 +45,11 @@ std::vector<Proposal> propose(const ProposalContext& context) {
   const double scale = 0.5 * context.young_modulus;
   std::vector<Proposal> list;
   for (const FibreField::Trial& trial : FibreField::trials(context.mesh)) {
-    const std::string head = "fibre_reinforcement: {direction: " + trial.direction + ", ";
-    list.push_back({head + "angle: " + yaml(trial.angle) + ", modulus: " + normal(0.0, scale) + "}", "modulus",
-                    head + "angle: " + normal(trial.angle, 0.3) + ", modulus: " + log_normal(scale, 3.0) + "}",
-                    trial.direction});
+    const auto with = [&trial](const Argument& angle, const Quantity& modulus) {
+      return EffectEntry{"fibre_reinforcement", {{"direction", trial.direction}, {"angle", angle}, {"modulus", modulus}}};
+    };
+    list.push_back({with(trial.angle, normal(0.0, scale)), "modulus",
+                    with(normal(trial.angle, 0.3), log_normal(scale, 3.0)), "direction"});
   }
   return list;
 }

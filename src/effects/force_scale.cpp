@@ -15,7 +15,7 @@ class ForceScale : public Effect {
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.holds("force_scale") || !(context.holds("pressure") || context.holds("traction"))) return {};
   if (context.estimates("pressure", "scale") || context.estimates("traction", "scale")) return {};
-  const std::string entry = "force_scale: {relative: " + normal(0.0, 0.1) + "}";
+  const EffectEntry entry{"force_scale", {{"relative", normal(0.0, 0.1)}}};
   return {{entry, "relative", entry}};
 }
 

@@ -39,13 +39,18 @@ std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.holds("foundation")) return {};
   const double scale = 0.1 * context.young_modulus / context.size();
   std::vector<Proposal> list;
-  const auto add = [&](const std::string& head) {
-    list.push_back({head + normal(0.0, scale) + "}", "stiffness", head + log_normal(scale, 4.0) + "}", head});
+  const auto add = [&](const std::vector<std::pair<std::string, Argument>>& where) {
+    const auto with = [&where](const Quantity& stiffness) {
+      EffectEntry entry{"foundation", where};
+      entry.arguments.emplace_back("stiffness", stiffness);
+      return entry;
+    };
+    list.push_back({with(normal(0.0, scale)), "stiffness", with(log_normal(scale, 4.0)), "region"});
   };
-  add("foundation: {stiffness: ");
+  add({});
   for (const auto& [name, region] : context.regions) {
     if (region.facets.empty() || context.names("fixed", name)) continue;
-    add("foundation: {region: " + name + ", stiffness: ");
+    add({{"region", name}});
   }
   return list;
 }

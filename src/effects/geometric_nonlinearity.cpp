@@ -16,7 +16,8 @@ std::vector<Proposal> propose(const ProposalContext& context) {
   for (const EffectSettings* elasticity : context.all("elasticity")) {
     if (elasticity->arguments.at("law").as_text() != "linear") return {};
   }
-  return {{"geometric_nonlinearity: {share: " + normal(0.0, 0.5) + "}", "share", "geometric_nonlinearity: {share: 1}"}};
+  const auto with = [](const Argument& share) { return EffectEntry{"geometric_nonlinearity", {{"share", share}}}; };
+  return {{with(normal(0.0, 0.5)), "share", with(1.0)}};
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ class Gravity : public Effect {
 // A declared gravity may be wrong: an entry more is what it is off by.
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.estimates("gravity", "acceleration")) return {};
-  const std::string entry = "gravity: {acceleration: " + normal(Eigen::Vector3d::Zero(), 6.0) + "}";
+  const EffectEntry entry{"gravity", {{"acceleration", normal(Eigen::Vector3d::Zero(), 6.0)}}};
   return {{entry, "acceleration", entry}};
 }
 

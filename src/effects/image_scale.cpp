@@ -15,7 +15,7 @@ class ImageScale : public Effect {
 
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.holds("image_scale")) return {};
-  const std::string entry = "image_scale: {ratio: " + normal(1.0, 0.05) + "}";
+  const EffectEntry entry{"image_scale", {{"ratio", normal(1.0, 0.05)}}};
   return {{entry, "ratio", entry}};
 }
 

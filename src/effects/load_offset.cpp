@@ -34,8 +34,8 @@ std::vector<Proposal> propose(const ProposalContext& context) {
   for (const EffectSettings* traction : context.all("traction")) {
     const std::string name = traction->arguments.at("region").as_text();
     if (context.names("load_offset", name)) continue;
-    const std::string entry = "load_offset: {region: " + name + ", force: " + normal(Eigen::Vector3d::Zero(), scale) + "}";
-    list.push_back({entry, "force", entry, name});
+    const EffectEntry entry{"load_offset", {{"region", name}, {"force", normal(Eigen::Vector3d::Zero(), scale)}}};
+    list.push_back({entry, "force", entry, "region"});
   }
   return list;
 }

@@ -54,8 +54,8 @@ std::vector<Proposal> propose(const ProposalContext& context) {
   for (const EffectSettings* traction : context.all("traction")) {
     const std::string name = traction->arguments.at("region").as_text();
     if (context.names("load_rotation", name)) continue;
-    const std::string entry = "load_rotation: {region: " + name + ", angles: " + normal(Eigen::Vector3d::Zero(), 0.1) + "}";
-    list.push_back({entry, "angles", entry, name});
+    const EffectEntry entry{"load_rotation", {{"region", name}, {"angles", normal(Eigen::Vector3d::Zero(), 0.1)}}};
+    list.push_back({entry, "angles", entry, "region"});
   }
   return list;
 }

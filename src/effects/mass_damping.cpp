@@ -13,8 +13,8 @@ class MassDamping : public Effect {
 
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.holds("mass_damping")) return {};
-  return {
-      {"mass_damping: {alpha: " + normal(0.0, 3.0) + "}", "alpha", "mass_damping: {alpha: " + log_normal(3.0, 4.0) + "}"}};
+  const auto with = [](const Quantity& alpha) { return EffectEntry{"mass_damping", {{"alpha", alpha}}}; };
+  return {{with(normal(0.0, 3.0)), "alpha", with(log_normal(3.0, 4.0))}};
 }
 
 }  // namespace

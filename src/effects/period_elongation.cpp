@@ -15,8 +15,8 @@ class PeriodElongation : public Effect {
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.holds("period_elongation")) return {};
   const double step = 0.25 * context.frame_interval, longest = 0.5 * context.frame_interval;
-  return {{"period_elongation: {step_squared: " + normal(0.0, longest * longest) + "}", "step_squared",
-           "period_elongation: {step_squared: " + log_normal(step * step, 4.0) + "}"}};
+  const auto with = [](const Quantity& square) { return EffectEntry{"period_elongation", {{"step_squared", square}}}; };
+  return {{with(normal(0.0, longest * longest)), "step_squared", with(log_normal(step * step, 4.0))}};
 }
 
 }  // namespace

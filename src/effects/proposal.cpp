@@ -1,7 +1,6 @@
 #include "tissue_stiffness/effects/proposal.hpp"
 
 #include <algorithm>
-#include <cstdio>
 
 namespace tissue_stiffness {
 
@@ -36,33 +35,13 @@ bool ProposalContext::observes(ObservationSettings::Kind kind) const {
                      [kind](const ObservationSettings& entry) { return entry.kind == kind; });
 }
 
+std::string Proposal::kind() const {
+  const Argument* argument = refine.find(kind_key);
+  return argument == nullptr ? "" : to_yaml(*argument);
+}
+
 bool Proposal::is_other_kind_of(const Proposal& other) const {
-  if (kind.empty() || kind == other.kind) return false;
-  std::string text = refine;
-  text.replace(text.find(kind), kind.size(), other.kind);
-  return text == other.refine;
-}
-
-std::string yaml(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
-std::string yaml(const Eigen::Vector3d& v) {
-  return "[" + yaml(v.x()) + ", " + yaml(v.y()) + ", " + yaml(v.z()) + "]";
-}
-
-std::string normal(double mean, double std) {
-  return "{mean: " + yaml(mean) + ", std: " + yaml(std) + "}";
-}
-
-std::string normal(const Eigen::Vector3d& mean, double std) {
-  return "{mean: " + yaml(mean) + ", std: " + yaml(std) + "}";
-}
-
-std::string log_normal(double median, double factor) {
-  return "{prior: " + yaml(median) + ", factor: " + yaml(factor) + "}";
+  return !kind_key.empty() && kind() != other.kind() && refine.without(kind_key).same(other.refine.without(kind_key));
 }
 
 }  // namespace tissue_stiffness

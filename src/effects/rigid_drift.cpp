@@ -26,10 +26,10 @@ class RigidDrift : public Effect {
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.holds("rigid_drift")) return {};
   const double speed = 0.01 * context.size() / context.duration, rate = 0.01 / context.duration;
-  const std::string velocity = "velocity: " + normal(Eigen::Vector3d::Zero(), speed),
-                    rotation = "rotation: " + normal(Eigen::Vector3d::Zero(), rate),
-                    both = "rigid_drift: {" + velocity + ", " + rotation + "}";
-  return {{"rigid_drift: {" + velocity + "}", "velocity", both}, {"rigid_drift: {" + rotation + "}", "rotation", both}};
+  const EffectEntry both{
+      "rigid_drift",
+      {{"velocity", normal(Eigen::Vector3d::Zero(), speed)}, {"rotation", normal(Eigen::Vector3d::Zero(), rate)}}};
+  return {{both.without("rotation"), "velocity", both}, {both.without("velocity"), "rotation", both}};
 }
 
 }  // namespace

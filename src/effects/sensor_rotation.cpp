@@ -23,7 +23,7 @@ std::vector<Proposal> propose(const ProposalContext& context) {
   const bool points =
       context.observes(ObservationSettings::Kind::vertices) || context.observes(ObservationSettings::Kind::markers);
   if (context.holds("sensor_rotation") || !points) return {};
-  const std::string entry = "sensor_rotation: {angles: " + normal(Eigen::Vector3d::Zero(), 0.1) + "}";
+  const EffectEntry entry{"sensor_rotation", {{"angles", normal(Eigen::Vector3d::Zero(), 0.1)}}};
   return {{entry, "angles", entry}};
 }
 

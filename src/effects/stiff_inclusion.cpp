@@ -78,11 +78,11 @@ std::vector<Proposal> propose(const ProposalContext& context) {
     const Eigen::Vector3d center = places.points.col(i);
     for (const double size : {kSmall, kLarge}) {
       const double radius = size * places.distance;
-      list.push_back({"stiff_inclusion: {center: " + yaml(center) + ", radius: " + yaml(radius) +
-                          ", excess: " + normal(0.0, 2.0) + "}",
-                      "excess",
-                      "stiff_inclusion: {center: " + normal(center, 0.5 * places.distance) +
-                          ", radius: " + log_normal(radius, 1.5) + ", excess: " + normal(1.0, 3.0) + "}"});
+      const auto with = [](const Argument& center, const Argument& radius, const Quantity& excess) {
+        return EffectEntry{"stiff_inclusion", {{"center", center}, {"radius", radius}, {"excess", excess}}};
+      };
+      list.push_back({with(center, radius, normal(0.0, 2.0)), "excess",
+                      with(normal(center, 0.5 * places.distance), log_normal(radius, 1.5), normal(1.0, 3.0))});
     }
   }
   return list;

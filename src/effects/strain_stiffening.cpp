@@ -88,8 +88,8 @@ class StrainStiffening : public Effect {
 
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.holds("strain_stiffening")) return {};
-  return {{"strain_stiffening: {exponent: " + normal(0.0, 10.0) + "}", "exponent",
-           "strain_stiffening: {exponent: " + log_normal(10.0, 4.0) + "}"}};
+  const auto with = [](const Quantity& exponent) { return EffectEntry{"strain_stiffening", {{"exponent", exponent}}}; };
+  return {{with(normal(0.0, 10.0)), "exponent", with(log_normal(10.0, 4.0))}};
 }
 
 }  // namespace

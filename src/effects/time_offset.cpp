@@ -12,7 +12,7 @@ class TimeOffset : public Effect {
 
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.holds("time_offset")) return {};
-  const std::string entry = "time_offset: {offset: " + normal(0.0, context.frame_interval) + "}";
+  const EffectEntry entry{"time_offset", {{"offset", normal(0.0, context.frame_interval)}}};
   return {{entry, "offset", entry}};
 }
 

@@ -15,11 +15,13 @@ class Viscoelasticity : public Effect {
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.holds("viscoelasticity")) return {};
   constexpr int count = 7;
+  const auto with = [](const Quantity& gamma, const Argument& tau) {
+    return EffectEntry{"viscoelasticity", {{"gamma", gamma}, {"tau", tau}}};
+  };
   std::vector<Proposal> list;
   for (int i = 0; i < count; ++i) {
     const double tau = context.frame_interval * std::pow(context.duration / context.frame_interval, i / (count - 1.0));
-    list.push_back({"viscoelasticity: {gamma: " + normal(0.0, 0.3) + ", tau: " + yaml(tau) + "}", "gamma",
-                    "viscoelasticity: {gamma: " + log_normal(0.3, 3.0) + ", tau: " + log_normal(tau, 3.0) + "}"});
+    list.push_back({with(normal(0.0, 0.3), tau), "gamma", with(log_normal(0.3, 3.0), log_normal(tau, 3.0))});
   }
   return list;
 }

@@ -14,8 +14,8 @@ class ViscousDamping : public Effect {
 // Scaled by a damping ratio of a few per cent at ten hertz.
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.holds("viscous_damping")) return {};
-  return {{"viscous_damping: {beta: " + normal(0.0, 2e-3) + "}", "beta",
-           "viscous_damping: {beta: " + log_normal(2e-3, 4.0) + "}"}};
+  const auto with = [](const Quantity& beta) { return EffectEntry{"viscous_damping", {{"beta", beta}}}; };
+  return {{with(normal(0.0, 2e-3)), "beta", with(log_normal(2e-3, 4.0))}};
 }
 
 }  // namespace

@@ -26,6 +26,11 @@ void make_absolute(YAML::Node node, const std::string& directory) {
 
 }  // namespace
 
+ModelSettings extend_model(ModelSettings model, const std::vector<EffectEntry>& entries) {
+  for (const EffectEntry& entry : entries) add_effect(model, entry);
+  return model;
+}
+
 ModelSettings extend_model(ModelSettings model, const std::vector<std::string>& entries) {
   for (const std::string& entry : entries) add_effect(model, entry);
   return model;

@@ -111,12 +111,15 @@ ModelSettings read_model(const Value& root, const std::string& directory) {
   return model;
 }
 
-void add_effect(ModelSettings& model, const std::string& entry) {
-  EffectSettings effect = read_effect(parse_yaml(entry, "effect"));
+void add_effect(ModelSettings& model, EffectSettings effect) {
   const auto same = [&](const EffectSettings& other) { return other.name == effect.name; };
   const auto number = std::count_if(model.effects.begin(), model.effects.end(), same) + 1;
   effect.label = number == 1 ? effect.name : effect.name + "#" + std::to_string(number);
   model.effects.push_back(std::move(effect));
+}
+
+void add_effect(ModelSettings& model, const std::string& entry) {
+  add_effect(model, read_effect(parse_yaml(entry, "effect")));
 }
 
 void remove_effect(ModelSettings& model, const std::string& name) {

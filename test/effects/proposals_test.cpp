@@ -47,16 +47,20 @@ std::vector<std::string> with(const std::string& effect) {
   return effects;
 }
 
+std::vector<std::string> with(const EffectEntry& effect) {
+  return with(to_yaml(effect));
+}
+
 TEST(Proposals, ChangeNothingAtTheirAbsentValue) {
   const TetMesh mesh = bar_mesh(2);
   const Model base(box_settings(kBase, kObservations), mesh);
   const Swing without = swing(kBase, mesh);
   for (const EffectSpec& spec : effect_specs()) {
     for (const Proposal& proposal : proposals_of(spec, base)) {
-      const Swing absent = swing(with(proposal.yaml), mesh);
-      EXPECT_EQ(absent.displacement, without.displacement) << proposal.yaml;
-      EXPECT_EQ(absent.delay, 0.0) << proposal.yaml;
-      EXPECT_EQ(absent.outward, 0.0) << proposal.yaml;
+      const Swing absent = swing(with(proposal.entry), mesh);
+      EXPECT_EQ(absent.displacement, without.displacement) << to_yaml(proposal.entry);
+      EXPECT_EQ(absent.delay, 0.0) << to_yaml(proposal.entry);
+      EXPECT_EQ(absent.outward, 0.0) << to_yaml(proposal.entry);
     }
   }
 }
@@ -66,15 +70,16 @@ TEST(Proposals, EstimateTheirAmplitudeAndNothingElse) {
   const Model base(box_settings(kBase, kObservations), mesh);
   for (const EffectSpec& spec : effect_specs()) {
     for (const Proposal& proposal : proposals_of(spec, base)) {
-      const Model model(box_settings(with(proposal.yaml), kObservations), mesh);
+      const Model model(box_settings(with(proposal.entry), kObservations), mesh);
       const auto parameter = std::find_if(spec.parameters.begin(), spec.parameters.end(),
                                           [&](const ParameterSpec& p) { return p.name == proposal.amplitude; });
-      ASSERT_NE(parameter, spec.parameters.end()) << proposal.yaml;
-      ASSERT_EQ(model.free_parameters().size(), 1U + static_cast<std::size_t>(parameter->components)) << proposal.yaml;
+      ASSERT_NE(parameter, spec.parameters.end()) << to_yaml(proposal.entry);
+      ASSERT_EQ(model.free_parameters().size(), 1U + static_cast<std::size_t>(parameter->components))
+          << to_yaml(proposal.entry);
       for (std::size_t i = 1; i < model.free_parameters().size(); ++i) {
         const FreeParameter& free = model.free_parameters()[i];
         EXPECT_EQ(free.name.find(spec.name + "." + proposal.amplitude), 0U) << free.name;
-        EXPECT_EQ(free.prior.value, parameter->absent) << proposal.yaml;
+        EXPECT_EQ(free.prior.value, parameter->absent) << to_yaml(proposal.entry);
         EXPECT_GT(free.prior.spread, 0.0);
       }
     }
@@ -88,10 +93,11 @@ TEST(Proposals, StartARefitThatMovesTheModel) {
   for (const EffectSpec& spec : effect_specs()) {
     std::map<std::string, int> seen;
     for (const Proposal& proposal : proposals_of(spec, base)) {
-      EXPECT_EQ(++seen[proposal.yaml], 1) << proposal.yaml << " twice";
+      EXPECT_EQ(++seen[to_yaml(proposal.entry)], 1) << to_yaml(proposal.entry) << " twice";
       const Model model(box_settings(with(proposal.refine), kObservations), mesh);
-      EXPECT_TRUE(model.free_parameters().size() >= 2U || model.nonlinear()) << proposal.refine;
-      EXPECT_EQ(proposal.refine.find(spec.name + ":"), 0U) << proposal.refine;
+      EXPECT_TRUE(model.free_parameters().size() >= 2U || model.nonlinear()) << to_yaml(proposal.refine);
+      EXPECT_EQ(proposal.entry.effect, spec.name);
+      EXPECT_EQ(proposal.refine.effect, spec.name);
     }
   }
 }
@@ -104,10 +110,63 @@ TEST(Proposals, AreNotMadeForWhatIsThere) {
     const std::vector<Proposal> list = proposals_of(spec, base);
     if (list.empty()) continue;
     ++effects;
-    const Model model(box_settings(with(list.front().yaml), kObservations), mesh);
-    for (const Proposal& again : proposals_of(spec, model)) EXPECT_NE(again.yaml, list.front().yaml);
+    const Model model(box_settings(with(list.front().entry), kObservations), mesh);
+    for (const Proposal& again : proposals_of(spec, model)) EXPECT_FALSE(again.entry.same(list.front().entry));
   }
   EXPECT_GE(effects, 5);
+}
+
+// A model file that holds the text of a proposal has the very effect that the proposal stands for.
+TEST(Proposals, ReadBackFromTheirText) {
+  const TetMesh mesh = bar_mesh(2);
+  const Model base(box_settings(kBase, kObservations), mesh);
+  for (const EffectSpec& spec : effect_specs()) {
+    for (const Proposal& proposal : proposals_of(spec, base)) {
+      for (const EffectEntry& entry : {proposal.entry, proposal.refine}) {
+        const std::string text = to_yaml(entry);
+        EXPECT_TRUE(parse_yaml(text, "").at(spec.name).same(to_settings(entry).arguments)) << text;
+      }
+    }
+  }
+}
+
+std::vector<Proposal> proposals_of(const std::string& effect, const Model& model) {
+  for (const EffectSpec& spec : effect_specs()) {
+    if (spec.name == effect) return proposals_of(spec, model);
+  }
+  return {};
+}
+
+// How many of an effect's proposals are the first one but for its kind.
+std::ptrdiff_t other_kinds(const std::vector<Proposal>& list) {
+  return std::count_if(list.begin(), list.end(), [&](const Proposal& p) { return p.is_other_kind_of(list.front()); });
+}
+
+TEST(Proposals, KnowTheirOtherKinds) {
+  const TetMesh mesh = bar_mesh(2);
+  const Model base(box_settings(kBase, kObservations), mesh);
+  const auto foundations = proposals_of("foundation", base);
+  ASSERT_EQ(to_yaml(foundations[0].refine.without("stiffness")), "foundation: {}");  // on the whole surface
+  EXPECT_EQ(foundations[0].kind(), "");
+  EXPECT_EQ(foundations[1].kind(), "far");
+  EXPECT_TRUE(foundations[0].is_other_kind_of(foundations[1]));
+  EXPECT_FALSE(foundations[0].is_other_kind_of(foundations[0]));
+  for (const std::string effect : {"foundation", "added_mass"}) {
+    const auto list = proposals_of(effect, base);
+    EXPECT_EQ(other_kinds(list), static_cast<std::ptrdiff_t>(list.size()) - 1) << effect;
+  }
+  // Along x, the bar's length: circumferential, longitudinal, radial, y and z without an angle, and circumferential with
+  // two.
+  const auto fibres = proposals_of("fibre_reinforcement", base);
+  EXPECT_EQ(fibres.front().kind(), "circumferential");
+  EXPECT_EQ(fibres.back().kind(), "[0, 0, 1]");
+  EXPECT_EQ(fibres.size(), 7U);
+  EXPECT_EQ(other_kinds(fibres), 4);
+  // The same rhythm in the other directions.
+  EXPECT_EQ(other_kinds(proposals_of("active_contraction", base)), 3);
+  for (const std::string effect : {"viscoelasticity", "stiff_inclusion", "rigid_drift"}) {
+    EXPECT_EQ(other_kinds(proposals_of(effect, base)), 0) << effect;
+  }
 }
 
 TEST(Proposals, DoubtADeclaredGravityButNoEstimatedOne) {

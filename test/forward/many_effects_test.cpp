@@ -21,6 +21,7 @@ double since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+// As a model file has them.
 std::vector<std::string> linear_proposals(const Model& base, const std::vector<std::string>& effects) {
   const ProposalContext context{base.settings(), base.mesh(), base.regions(), 3e4, 0.45, 1000.0, 0.02, 0.4};
   std::vector<std::string> list;
@@ -28,9 +29,9 @@ std::vector<std::string> linear_proposals(const Model& base, const std::vector<s
     if (!spec.proposals) continue;
     for (const Proposal& proposal : spec.proposals(context)) {
       std::vector<std::string> all = effects;
-      all.push_back(proposal.yaml);
+      all.push_back(to_yaml(proposal.entry));
       static const TetMesh small = bar_mesh(1);
-      if (!Model(box_settings(all), small).nonlinear()) list.push_back(proposal.yaml);
+      if (!Model(box_settings(all), small).nonlinear()) list.push_back(all.back());
     }
   }
   return list;

@@ -118,7 +118,8 @@ TEST(ReducedEffects, PeriodElongationStandsForLongSteps) {
   const TetMesh mesh = bar_mesh(4);
   const auto left = [&](double h, double step_squared) {
     const Model stepped(box_settings(bar_with({})), mesh);
-    const Model model(box_settings(bar_with({"period_elongation: {step_squared: " + yaml(step_squared) + "}"})), mesh);
+    const Model model(box_settings(bar_with({to_yaml(EffectEntry{"period_elongation", {{"step_squared", step_squared}}})})),
+                      mesh);
     const double error = full_against_reduced(stepped, ReducedModel(model), model.theta(model.prior_mean()), h);
     std::printf("steps of %g s, step_squared %g: %.1e of the motion\n", h, step_squared, error);
     return error;

@@ -42,7 +42,7 @@ std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd&
                                        const CountProgress& progress, Library& library);
 
 /// Entries for the time steps of a simulated recording, which the model does not allow for.
-std::vector<std::string> entries_of_time_steps(const Study& study, const Eigen::VectorXd& w);
+std::vector<EffectEntry> entries_of_time_steps(const Study& study, const Eigen::VectorXd& w);
 
 /// What the time steps of a simulated recording do to the rows of a model that does not allow for them: one column a
 /// prior's standard deviation of the squared step [sigma]. No columns where the model has them.

@@ -1,14 +1,14 @@
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "tissue_stiffness/estimation/batch_fit.hpp"
+#include "tissue_stiffness/settings/effect_entry.hpp"
 
 namespace tissue_stiffness {
 
-/// Replaces every estimated quantity of `entries`, "name: {key: value, ...}" each, by a prior around its fit, five
-/// posterior standard deviations wide. They are the model's last effects, in order.
-void fit_entries(std::vector<std::string>& entries, const Model& model, const BatchFit& fit);
+/// Replaces every prior of `entries` by one around its fit, five posterior standard deviations wide. They are the model's
+/// last effects, in order.
+void fit_entries(std::vector<EffectEntry>& entries, const Model& model, const BatchFit& fit);
 
 }  // namespace tissue_stiffness

@@ -45,7 +45,7 @@ BeginningFit fit_beginning(const Fitted& base, const Candidate& way);
 struct Refit {
   std::string effect;
   const Candidate* way = nullptr;              ///< whose entry `refine` it was fitted with; valid as long as its look
-  std::string entry;                           ///< for the model file: estimated parameters with their fit as prior
+  EffectEntry entry;                           ///< for the model file: estimated parameters with their fit as prior
   std::map<std::string, double> parameters;    ///< of the whole model, by name
   double held_out_rms = 0.0;                   ///< [m]
   double fitted = 0.0;                         ///< cost of the training frames and the prior

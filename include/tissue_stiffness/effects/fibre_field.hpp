@@ -32,9 +32,9 @@ class FibreField {
   /// The keys, for an effect's spec, and its parameters `angle` and `tilt`.
   static std::vector<std::pair<std::string, std::string>> keys();
   static std::vector<ParameterSpec> angles();
-  /// Directions worth trying on a body: the `direction: ...` entry and an angle each.
+  /// Directions worth trying on a body: the argument `direction` and an angle [rad] each.
   struct Trial {
-    std::string direction;
+    Argument direction;
     double angle;
   };
   static std::vector<Trial> trials(const TetMesh& mesh);

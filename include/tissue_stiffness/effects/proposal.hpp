@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tissue_stiffness/settings/effect_entry.hpp"
 #include "tissue_stiffness/settings/model_settings.hpp"
 #include "tissue_stiffness/types/tet_mesh.hpp"
 
@@ -38,24 +39,20 @@ struct ProposalContext {
 
 /// A way in which the effect might be missing: an entry for the model file's list of effects.
 struct Proposal {
-  std::string yaml;       ///< the amplitude estimated about its absent value, {mean: ABSENT, std: SCALE}; the rest numbers
+  EffectEntry entry;      ///< the amplitude estimated about its absent value, a normal prior; the rest as given
   std::string amplitude;  ///< parameter that removes the effect at its absent value
-  std::string refine;     ///< the same with amplitude and scanned numbers estimated: where a refit starts
-  std::string kind = {};  ///< direction or region, that no refit leaves; empty where there is but one
+  EffectEntry refine;     ///< the same with amplitude and scanned numbers estimated: where a refit starts
+  /// The key of a direction or a region that no refit leaves; empty where there is but one. An entry without the key is of
+  /// a kind, too: a foundation without a region is the one on the whole surface.
+  std::string kind_key = {};
 
+  /// The argument of that key, as a model file has it; empty where there is none.
+  std::string kind() const;
   /// The same but for the kind.
   bool is_other_kind_of(const Proposal& other) const;
 };
 
 /// The ways in which an effect might be missing; none where it makes no sense or is there already.
 using Proposer = std::function<std::vector<Proposal>(const ProposalContext&)>;
-
-/// A number as YAML, to six digits. A vector as [x, y, z].
-std::string yaml(double value);
-std::string yaml(const Eigen::Vector3d& value);
-/// "{mean: m, std: s}" and "{prior: m, factor: f}".
-std::string normal(double mean, double std);
-std::string normal(const Eigen::Vector3d& mean, double std);
-std::string log_normal(double median, double factor);
 
 }  // namespace tissue_stiffness

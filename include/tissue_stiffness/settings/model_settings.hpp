@@ -116,6 +116,9 @@ struct ModelSettings {
 /// InputError.
 ModelSettings read_model(const Value& root, const std::string& directory);
 
+/// Appends an effect and labels it; what label it had does not matter.
+void add_effect(ModelSettings& model, EffectSettings effect);
+
 /// Appends one entry of `effects`, as YAML: "viscous_damping: {beta: 0.01}". Throws InputError for what is no such entry.
 void add_effect(ModelSettings& model, const std::string& entry);
 
