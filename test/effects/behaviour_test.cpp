@@ -117,6 +117,20 @@ TEST(Pressure, FollowsTheSurfaceWhenTheStrainIsFinite) {
   EXPECT_LT((resultant(load(model, 0.0, u)) - expected).norm(), 1e-12 * expected.norm());
 }
 
+// The zero of a transducer acts as a pressure that never changes, with small and with finite strain.
+TEST(PressureOffset, IsAPressureThatStays) {
+  const TetMesh mesh = bar_mesh();
+  for (const std::string& law : {kLinear, kFinite}) {
+    Model measured(box_settings({kInertia, law, "pressure: {region: top, topic: /p}"}), mesh);
+    measured.courses().at("/p")->add(0.0, one(300.0));
+    Model offset(box_settings({kInertia, law, "pressure_offset: {region: top, pressure: 300}"}), mesh);
+    const Eigen::VectorXd u = 0.003 * Eigen::VectorXd::LinSpaced(zero(measured).size(), 0.0, 30.0).array().sin();
+    const Eigen::VectorXd expected = load(measured, 0.5, u);
+    EXPECT_GT(expected.norm(), 0.01);
+    EXPECT_LT((load(offset, 0.5, u) - expected).norm(), 1e-12 * expected.norm());
+  }
+}
+
 // The symmetric part of a follower's derivative is what the stiffness holds where the loaded surface has an edge.
 TEST(Pressure, TangentOnAPatchIsTheSymmetricPart) {
   const TetMesh mesh = bar_mesh(2);

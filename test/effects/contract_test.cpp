@@ -49,6 +49,7 @@ std::string example(const EffectSpec& spec, const ParameterSpec& parameter) {
       {"density_error.relative", "0.2"},
       {"force_scale.relative", "0.2"},
       {"load_offset.force", "[0.01, 0.02, -0.01]"},
+      {"pressure_offset.pressure", "20"},
       {"image_scale.ratio", "1.1"},
       {"time_offset.offset", "0.004"},
       {"contour_bias.bias", "0.001"},

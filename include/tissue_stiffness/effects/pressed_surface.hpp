@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "tissue_stiffness/effects/effect.hpp"
+#include "tissue_stiffness/fem/facet_quadrature.hpp"
+
+namespace tissue_stiffness::effects {
+
+/// A surface under a pressure p that pushes on the tissue: the nodal forces -p int N_a n dA (Bonet & Wood 2008,
+/// sec. 8.5.2), n the outward normal.
+class PressedSurface {
+ public:
+  /// `region`: facets of the mesh. Throws InputError where it is none.
+  PressedSurface(const Value& region, const EffectContext& context);
+
+  /// Adds the force [N] of `pressure` [Pa] on the surface at rest, or displaced by u [m], where that is not null.
+  void add_force(const Eigen::VectorXd* u, double pressure, Eigen::VectorXd& force) const;
+  /// Adds -d force / d u, its symmetric part: exact but for the edge of the surface.
+  void add_stiffness(const Eigen::VectorXd& u, double pressure, SparseMatrix& stiffness) const;
+  /// The force of a unit pressure on the surface at rest [N/Pa].
+  Eigen::VectorXd unit_force() const;
+
+ private:
+  void add_facet_stiffness(std::size_t i, const Eigen::VectorXd& u, double pressure, SparseMatrix& stiffness) const;
+
+  const TetMesh& mesh_;
+  const Discretisation& fem_;
+  std::vector<int> facets_;
+  std::vector<std::vector<int>> local_;
+  FacetQuadrature rule_;
+};
+
+}  // namespace tissue_stiffness::effects
