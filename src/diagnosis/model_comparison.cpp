@@ -197,9 +197,11 @@ Eigen::MatrixXd ModelComparison::whitened(const Eigen::MatrixXd& rows) const {
 }
 
 void ModelComparison::note(const Eigen::VectorXd& error) {
-  const MisfitTest left = test_of(error, 0.0);
+  MisfitTest left = test_of(error, 0.0);
+  left.set_noise(MisfitTest::most_noise);
   const double memory = left.memory(), variance = left.noise_level() * (1.0 + memory) / (1.0 - memory);
   noise_variance_ = noise_variance_ > 0.0 ? std::min(noise_variance_, variance) : variance;
+  noise_level_ = std::min(noise_level_, left.noise_level());
 }
 
 Assessment ModelComparison::assess(const Explained& explained) const {
@@ -240,7 +242,8 @@ Assessment ModelComparison::assess(const Explained& explained) const {
   out.left = explained.error - j * u;
   out.test = test_of(out.left, static_cast<double>(model.columns.cols()));
   constexpr double part = kComparison.left_of_mesh / kComparison.whole_mesh;
-  out.test.set_numerics(part * part * along_modes(mesh_) / used_.sum());
+  const double across = mesh_.cols() > 0 ? mesh_.rightCols(1).squaredNorm() : 0.0;
+  out.test.set_numerics(part * part * along_modes(mesh_) / used_.sum(), part * part * across / used_.sum());
   return out;
 }
 
@@ -253,6 +256,7 @@ MisfitTest ModelComparison::test_of(const Eigen::VectorXd& error, double fitted)
 MisfitTest ModelComparison::test_where(const Eigen::VectorXd& error, Eigen::Index first, Eigen::Index last,
                                        const std::function<bool(Eigen::Index)>& inside) const {
   MisfitTest out;
+  out.set_noise(noise_level_);
   for (Eigen::Index k = first; k < last; ++k) {
     std::vector<Eigen::Index> rows;
     for (Eigen::Index r = offsets_[static_cast<std::size_t>(k)]; r < offsets_[static_cast<std::size_t>(k) + 1]; ++r) {

@@ -3,6 +3,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tissue_stiffness {
 namespace {
@@ -37,7 +38,7 @@ void MisfitTest::add(const Eigen::VectorXd& residual, const Eigen::VectorXd& pre
 }
 
 double MisfitTest::noise_level() const {
-  return rest_dof_ > 0.0 ? std::clamp(rest_ / rest_dof_, 1.0, most_noise) : 1.0;
+  return rest_dof_ > 0.0 ? std::min(std::clamp(rest_ / rest_dof_, 1.0, most_noise), known_noise_) : 1.0;
 }
 
 double MisfitTest::excess() const {
@@ -50,17 +51,33 @@ double MisfitTest::memory() const {
 }
 
 double MisfitTest::deviation() const {
-  const double square = memory() * memory(), repeated = (1.0 + square) / (1.0 - square);
-  return noise_level() * std::sqrt(2.0 * repeated / std::max(1.0, along_dof_ - fitted_));
+  return noise_level() * std::sqrt(2.0 * repeated() / std::max(1.0, along_dof_ - fitted_));
 }
 
 double MisfitTest::z() const {
-  return frames_ > 0 ? (excess() - tolerated * noise_level()) / deviation() : 0.0;
+  return frames_ > 0 ? std::max((excess() - tolerated * noise_level()) / deviation(), z_across()) : 0.0;
+}
+
+// What is far above the known noise only: of the mesh's error less is known there.
+double MisfitTest::z_across() const {
+  if (known_noise_ >= most_noise || !(rest_dof_ > 0.0)) return -std::numeric_limits<double>::infinity();
+  return (excess_across() / noise_level() - tolerated) / std::sqrt(2.0 * repeated() / rest_dof_);
+}
+
+double MisfitTest::excess_across() const {
+  return (rest_ - numerics_across_ * rows_) / rest_dof_ - noise_level();
+}
+
+double MisfitTest::repeated() const {
+  const double square = memory() * memory();
+  return (1.0 + square) / (1.0 - square);
 }
 
 double MisfitTest::discrepancy() const {
-  if (frames_ == 0 || excess() < kBeyondChance * deviation()) return 0.0;
-  return excess() * along_dof_ / std::max(1.0, rows_);
+  if (frames_ == 0) return 0.0;
+  const double along = excess() < kBeyondChance * deviation() ? 0.0 : excess() * along_dof_;
+  const double across = z_across() <= bound ? 0.0 : excess_across() * rest_dof_;
+  return (along + across) / std::max(1.0, rows_);
 }
 
 }  // namespace tissue_stiffness

@@ -202,6 +202,18 @@ Comparison compared(std::vector<Hypothesis> hypotheses) {
   return out;
 }
 
+// A residual that looks like noise of twice the level is a misfit once another model has shown how little noise there is.
+TEST_F(CleanBar, TestsAllModelsAgainstTheSameNoise) {
+  const ModelComparison models(base_, Eigen::VectorXd::Zero(base_.rows.error.size()));
+  const Eigen::VectorXd loud = 2.0 * base_.rows.error;
+  EXPECT_FALSE(models.test_of(loud, 1.0).passes());
+  EXPECT_NEAR(models.test_of(loud, 1.0).noise_level(), 1.0, 0.05);
+  MisfitTest own = models.test_of(loud, 1.0);
+  own.set_noise(MisfitTest::most_noise);
+  EXPECT_NEAR(own.noise_level(), 4.0, 0.2);
+  EXPECT_TRUE(own.passes());
+}
+
 // Hypotheses of several looks are weighed by one likelihood.
 TEST_F(CleanBar, AssessesAllHypothesesAlike) {
   const ModelComparison models(base_, Eigen::VectorXd::Zero(base_.rows.error.size()));

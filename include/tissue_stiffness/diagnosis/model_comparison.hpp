@@ -80,14 +80,14 @@ class ModelComparison {
 
   /// Replaces that change.
   void allow_for_mesh(const Eigen::VectorXd& change);
-  /// Takes note of how little a residual leaves across the lowest modes.
+  /// Takes note of how little a residual leaves across the lowest modes: the noise is the same for all models.
   void note(const Eigen::VectorXd& error);
   double noise_variance() const { return noise_variance_; }         ///< s
   const Eigen::MatrixXd& mesh_directions() const { return mesh_; }  ///< D
   /// Rows (N x k) in which the covariance is s I: along B_k they shrink by the root of s / (s + L_k).
   Eigen::MatrixXd whitened(const Eigen::MatrixXd& rows) const;
   Assessment assess(const Explained& model) const;
-  /// The test of a residual itself, of a model with that many parameters.
+  /// The test of a residual itself, of a model with that many parameters, against the noise that is known so far.
   MisfitTest test_of(const Eigen::VectorXd& error, double fitted) const;
   /// The same of those rows in the frames from `first` to before `last`.
   MisfitTest test_where(const Eigen::VectorXd& error, Eigen::Index first, Eigen::Index last,
@@ -101,6 +101,7 @@ class ModelComparison {
   Eigen::MatrixXd basis_;      ///< B, frame under frame
   Eigen::MatrixXd variances_;  ///< L of each frame, a column each
   double noise_variance_ = 0.0;
+  double noise_level_ = MisfitTest::most_noise;  ///< v
 };
 
 struct RandomForce;

@@ -16,14 +16,19 @@ class MisfitTest {
 
   /// Degrees of freedom that the fit took of the part along the modes.
   void set_fitted(double dof) { fitted_ = dof; }
-  /// Mean square, in units of the noise's variance, that the mesh and the basis leave of each row.
-  void set_numerics(double mean_square) { numerics_ = mean_square; }
+  /// Mean square, in units of the noise's variance, that the mesh and the basis leave of each row, along the modes and
+  /// across them.
+  void set_numerics(double along, double across = 0.0) { numerics_ = along, numerics_across_ = across; }
+
+  /// Level of the noise that another model of the same recording has shown. This one's residuals across the modes cannot
+  /// have more, and are tested, too.
+  void set_noise(double level) { known_noise_ = level; }
 
   /// Mean square along the modes a degree of freedom beyond what noise and numerics leave [noise variances].
   double excess() const;
   /// Standard deviation of `excess` under noise alone.
   double deviation() const;
-  /// (excess - tolerated) / deviation.
+  /// (excess - tolerated) / deviation; the larger one of both parts where the noise is known.
   double z() const;
   /// Passed while z <= bound.
   bool passes() const { return z() <= bound; }
@@ -31,7 +36,8 @@ class MisfitTest {
   double discrepancy() const;
   /// Degrees of freedom along the modes.
   double structured_dof() const { return along_dof_; }
-  /// Mean square of the residuals across the shapes a degree of freedom, in noise variances, between 1 and `most_noise`.
+  /// Mean square of the residuals across the shapes a degree of freedom, in noise variances, between 1 and `most_noise`, or
+  /// what is known of it if that is less.
   double noise_level() const;
   /// Correlation of consecutive frames' residuals across the shapes, 0 to 0.95.
   double memory() const;
@@ -44,7 +50,11 @@ class MisfitTest {
  private:
   double along_ = 0.0, along_dof_ = 0.0, rest_ = 0.0, rest_dof_ = 0.0;
   double product_ = 0.0, square_ = 0.0;  ///< of successive frames' rest, for its memory
-  double fitted_ = 0.0, numerics_ = 0.0, rows_ = 0.0;
+  double excess_across() const;
+  double z_across() const;
+  double repeated() const;  ///< frames that count as one, by the memory of the noise
+
+  double fitted_ = 0.0, numerics_ = 0.0, numerics_across_ = 0.0, known_noise_ = most_noise, rows_ = 0.0;
   int frames_ = 0;
   Eigen::VectorXd last_;
 };
