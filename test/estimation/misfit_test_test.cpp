@@ -1,0 +1,67 @@
+// The posterior predictive test of a residual, on noise whose structure is known.
+#include "tissue_stiffness/estimation/misfit_test.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr int kFrames = 200, kRows = 100, kModes = 4;
+
+// White noise of these levels along the first rows, which the modes see, and across them.
+MisfitTest test_of(double along, double across) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  const Eigen::MatrixXd shapes = Eigen::MatrixXd::Identity(kRows, kModes);
+  MisfitTest out;
+  for (int k = 0; k < kFrames; ++k) {
+    Eigen::VectorXd residual(kRows);
+    for (int i = 0; i < kRows; ++i) residual[i] = std::sqrt(i < kModes ? along : across) * normal(random);
+    out.add(residual, Eigen::VectorXd::Ones(kRows), shapes);
+  }
+  return out;
+}
+
+TEST(MisfitTest, TakesNoiseForNoiseWhateverItsLevel) {
+  for (const double level : {1.0, 4.0}) {
+    const MisfitTest test = test_of(level, level);
+    EXPECT_NEAR(test.noise_level(), level, 0.1 * level);
+    EXPECT_TRUE(test.passes());
+    EXPECT_EQ(test.discrepancy(), 0.0);
+  }
+  EXPECT_FALSE(test_of(36.0, 36.0).passes()) << "six times the stated noise";
+}
+
+TEST(MisfitTest, SeesWhatTheModesHaveBeyondTheRest) {
+  const MisfitTest test = test_of(9.0, 1.0);
+  EXPECT_NEAR(test.excess(), 8.0, 1.5);
+  EXPECT_GT(test.z(), 20.0);
+  EXPECT_NEAR(test.discrepancy(), 8.0 * kModes / kRows, 0.06);
+  MisfitTest allowed = test;
+  allowed.set_numerics(9.0 * kModes / kRows);
+  EXPECT_TRUE(allowed.passes());
+}
+
+// Noise that another model has shown not to be there is a misfit, where the modes see it and where they do not.
+TEST(MisfitTest, KnowsTheNoiseFromAnotherModel) {
+  MisfitTest test = test_of(1.0, 4.0);
+  EXPECT_TRUE(test.passes());
+  test.set_noise(1.0);
+  EXPECT_EQ(test.noise_level(), 1.0);
+  EXPECT_GT(test.z(), 20.0);
+  EXPECT_NEAR(test.discrepancy(), 3.0 * (kRows - kModes) / kRows, 0.3);
+  test.set_numerics(0.0, 4.0);
+  EXPECT_TRUE(test.passes());
+  MisfitTest little = test_of(1.0, 1.5);
+  little.set_noise(1.0);
+  EXPECT_TRUE(little.passes()) << "less than one noise variance";
+  EXPECT_EQ(little.discrepancy(), 0.0);
+  MisfitTest louder = test_of(1.0, 1.0);
+  louder.set_noise(4.0);
+  EXPECT_NEAR(louder.noise_level(), 1.0, 0.1) << "its own is less";
+}
+
+}  // namespace
+}  // namespace tissue_stiffness
