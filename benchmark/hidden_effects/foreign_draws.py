@@ -37,7 +37,8 @@ TWINS = [
 CALLED = {
     'density': {'density_error', 'force_scale'}, 'poisson': {'compressibility'},
     'gravity direction': {'gravity'}, 'gravity size': {'gravity'},
-    'load gain': {'force_scale', 'density_error'}, 'load zero': {'load_offset', 'pressure_offset'}, 'load direction': {'load_rotation'},
+    'load gain': {'force_scale', 'density_error'}, 'load zero': {'load_offset', 'pressure_offset'},
+    'load direction': {'load_rotation'},
     'time offset': {'time_offset'}, 'image scale': {'image_scale'},
     'clamp too large': {'elastic_support', 'foundation', 'stiff_inclusion'},
     'clamp too small': {'elastic_support', 'foundation', 'stiff_inclusion'},

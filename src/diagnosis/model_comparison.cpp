@@ -284,7 +284,7 @@ bool Hypothesis::holds(const std::string& effect) const {
 
 bool Hypothesis::superfluous_beside(const Hypothesis& other) const {
   const bool all = std::all_of(other.effects.begin(), other.effects.end(), [this](const auto& e) { return holds(e); });
-  return all && !other.structured && (effects.size() > other.effects.size() || (random_force && !other.random_force));
+  return all && !other.structured && (effects.size() > other.effects.size() || random_force);
 }
 
 void Hypothesis::weigh(const Assessment& assessment, const ModelComparison& models) {

@@ -76,8 +76,7 @@ double likelihood_ratio_p_value(double gain, double parameters) {
 
 double log_bayes_factor_bound(double z) {
   constexpr double far = 30.0;  // the tail underflows soon after
-  const double log_p =
-      z < far ? std::log(0.5 * std::erfc(z / std::sqrt(2.0))) : -0.5 * z * z - std::log(z * std::sqrt(2.0 * M_PI));
+  const double log_p = z < far ? std::log(normal_cdf(-z)) : -0.5 * z * z - std::log(z * std::sqrt(2.0 * M_PI));
   return log_p < -1.0 ? -(1.0 + log_p + std::log(-log_p)) : 0.0;
 }
 

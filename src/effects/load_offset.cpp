@@ -31,9 +31,7 @@ std::vector<Proposal> propose(const ProposalContext& context) {
   const Eigen::Vector3d edges = context.high() - context.low();
   const double scale = 1e-3 * context.young_modulus * edges.prod() / edges.maxCoeff();
   std::vector<Proposal> list;
-  for (const EffectSettings* traction : context.all("traction")) {
-    const std::string name = traction->arguments.at("region").as_text();
-    if (context.names("load_offset", name)) continue;
+  for (const std::string& name : context.regions_of("traction", "load_offset")) {
     const EffectEntry entry{"load_offset", {{"region", name}, {"force", normal(Eigen::Vector3d::Zero(), scale)}}};
     list.push_back({entry, "force", entry, "region"});
   }

@@ -51,9 +51,7 @@ class LoadRotation : public Effect {
 
 std::vector<Proposal> propose(const ProposalContext& context) {
   std::vector<Proposal> list;
-  for (const EffectSettings* traction : context.all("traction")) {
-    const std::string name = traction->arguments.at("region").as_text();
-    if (context.names("load_rotation", name)) continue;
+  for (const std::string& name : context.regions_of("traction", "load_rotation")) {
     const EffectEntry entry{"load_rotation", {{"region", name}, {"angles", normal(Eigen::Vector3d::Zero(), 0.1)}}};
     list.push_back({entry, "angles", entry, "region"});
   }

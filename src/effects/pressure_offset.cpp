@@ -33,9 +33,7 @@ class PressureOffset : public Effect {
 
 std::vector<Proposal> propose(const ProposalContext& context) {
   std::vector<Proposal> list;
-  for (const EffectSettings* pressure : context.all("pressure")) {
-    const std::string region = pressure->arguments.at("region").as_text();
-    if (context.names("pressure_offset", region)) continue;
+  for (const std::string& region : context.regions_of("pressure", "pressure_offset")) {
     const EffectEntry entry{"pressure_offset",
                             {{"region", region}, {"pressure", normal(0.0, kScale * context.young_modulus)}}};
     list.push_back({entry, "pressure", entry, "region"});

@@ -23,6 +23,15 @@ bool ProposalContext::names(const std::string& effect, const std::string& region
   });
 }
 
+std::vector<std::string> ProposalContext::regions_of(const std::string& acting, const std::string& absent) const {
+  std::vector<std::string> regions;
+  for (const EffectSettings* entry : all(acting)) {
+    const std::string region = entry->arguments.at("region").as_text();
+    if (!names(absent, region)) regions.push_back(region);
+  }
+  return regions;
+}
+
 bool ProposalContext::estimates(const std::string& effect, const std::string& parameter) const {
   const auto found = all(effect);
   return std::any_of(found.begin(), found.end(), [&](const EffectSettings* entry) {

@@ -23,7 +23,8 @@ struct Earlier {
 struct FirstLook {
   FirstLook(Fitted& fitted, const DiagnosisOptions& options, Earlier earlier = {});
 
-  /// Another fit takes the place of the base's. Tangents stay those of the first place.
+  /// Another fit takes the place of the base's. Tangents, and what the base was assessed as, stay
+  /// those of the first place.
   void move_base(const BatchFit& fit);
 
   Fitted& base;

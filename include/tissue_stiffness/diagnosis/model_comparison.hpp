@@ -69,10 +69,9 @@ struct Assessment {
 /// model that leaves least there. B_k L_k B_k^T, of frame k: a displacement along the lowest modes, whose mean square is
 /// that of `left_of_mesh` times what a refinement changes along each: the mesh's error has directions that D does not hold.
 /// The test allows for as much. No coefficient of the numerics is believed beyond `most_numerics` standard deviations.
-/// Laplace's approximation of the evidence (MacKay 2003,
-/// eq. 28.10) with the numerics as further unknowns. An added amplitude's prior is a mixture of normal ones from its stated
-/// width down to `smallest` of it, alike: an effect pays for the order of its size and not for the width that a proposal
-/// happens to state.
+/// Laplace's approximation of the evidence (MacKay 2003, eq. 28.10) with the numerics as further unknowns. An added
+/// amplitude's prior is a mixture of normal ones from its stated width down to `smallest` of it, alike: an effect pays for
+/// the order of its size and not for the width that a proposal happens to state.
 class ModelComparison {
  public:
   /// `mesh_change`: what a finer mesh changes of the base's rows [sigma].
@@ -116,7 +115,7 @@ struct Hypothesis {
   double log_weight = 0.0;                     ///< log evidence and log prior, but for a constant
   double z = 0.0;                              ///< of the residual's test; of a random force's it is that without the force
   bool passes = false;                         ///< that test
-  bool structured = true;                      ///< something beyond chance is left
+  bool structured = true;                      ///< something beyond chance is left, or a random force acts
   double probability = 0.0;
   bool holds(const std::string& effect) const;
   /// It has all that the other one has, which leaves no structure beyond chance, and something more.

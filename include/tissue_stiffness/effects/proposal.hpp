@@ -29,6 +29,8 @@ struct ProposalContext {
   std::vector<const EffectSettings*> all(const std::string& effect) const;
   /// An effect of that name acts on that region.
   bool names(const std::string& effect, const std::string& region) const;
+  /// Regions on which an effect `acting` acts and none of the name `absent`, in the order of the model.
+  std::vector<std::string> regions_of(const std::string& acting, const std::string& absent) const;
   /// An effect of that name has that parameter estimated.
   bool estimates(const std::string& effect, const std::string& parameter) const;
   Eigen::Vector3d low() const { return mesh.nodes.rowwise().minCoeff(); }
