@@ -125,6 +125,16 @@ Eigen::VectorXd believed(const Fitted& model, const Finding& finding) {
   return model.study->model().coordinates(finding.refits.front().parameters, model.fit.w);
 }
 
+std::map<std::string, double> modulus_ratios(const std::map<std::string, double>& parameters,
+                                             const std::map<std::string, double>& over) {
+  std::map<std::string, double> out;
+  for (const auto& [name, value] : parameters) {
+    const auto own = over.find(name);
+    if (is_young_modulus(name) && own != over.end()) out[name] = value / own->second;
+  }
+  return out;
+}
+
 // The other explanations of the set, by their shares of its probability.
 std::vector<RivalExplanation> rivals_of(const Finding& finding, const Refit& added) {
   const auto believed = [&](const std::string& effect) {
@@ -137,13 +147,22 @@ std::vector<RivalExplanation> rivals_of(const Finding& finding, const Refit& add
     if (!believed(effect.effect)) continue;
     all += effect.probability;
     if (effect.effect == added.effect) continue;
-    out.push_back({effect.effect, effect.probability, {}});
-    for (const auto& [name, value] : effect.parameters) {
-      const auto own = added.parameters.find(name);
-      if (is_young_modulus(name) && own != added.parameters.end()) out.back().modulus_ratio[name] = value / own->second;
-    }
+    out.push_back({effect.effect, effect.probability, modulus_ratios(effect.parameters, added.parameters)});
   }
   for (RivalExplanation& rival : out) rival.probability = all > 0.0 ? rival.probability / all : 0.0;
+  return out;
+}
+
+// What may act besides, by what it would do to the last model's moduli.
+std::vector<RivalExplanation> traces_of(const Finding& finding, const Fitted& last) {
+  const std::map<std::string, double> own = last.study->model().values(last.fit.w);
+  std::vector<RivalExplanation> out;
+  for (const Trace& trace : finding.comparison.traces()) {
+    const auto same = [&](const Refit& r) { return r.effect == trace.hypothesis->effects.back(); };
+    const auto refit = std::find_if(finding.refits.begin(), finding.refits.end(), same);
+    if (trace.hypothesis->effects.size() > 1 || refit == finding.refits.end()) continue;
+    out.push_back({refit->effect, trace.share, modulus_ratios(refit->parameters, own)});
+  }
   return out;
 }
 
@@ -201,12 +220,8 @@ class Search {
           k < asked ? look(model_, {options_.add[k]}, options_, finding_.earlier).refits : finding_.refits;
       if (refits.empty()) break;
       const Library library = add(refits.front());
-      if (k + 1 >= asked && nothing_left()) {
-        out_.final_verdict = "adequate";
-        break;
-      }
       bool moved = false;
-      finding_ = grown_ ? std::move(*grown_) : examine(model_, {finding_.earlier.finer, library, true}, moved);
+      finding_ = grown_ ? std::move(*grown_) : examine(model_, beside(library, SearchDepth::tangents), moved);
       grown_.reset();
       if (moved) replace_step();
       out_.final_verdict = to_string(finding_.verdict);
@@ -220,21 +235,29 @@ class Search {
     out_.entries.clear();
     for (const EffectEntry& entry : entries_) out_.entries.push_back(to_yaml(entry));
     estimate(doubt_of_nonlinear(model_, recording_));
+    out_.traces = traces_of(finding_, model_);
     options_.progress("run the models once more for the report", 0, 0);
     publish();
     options_.at_end(out_, given_.study ? given_ : model_, model_, finding_.earlier.finer.get());
-    mix_explanations(out_.rivals, out_.estimate.parameters);
+    std::vector<std::vector<RivalExplanation>> mixed = out_.rivals;
+    mixed.push_back(out_.traces);
+    mix_explanations(mixed, out_.estimate.parameters);
     out_.interrupted.clear();
   }
 
  private:
   bool lacks_something() const { return finding_.verdict == Verdict::missing || finding_.verdict == Verdict::unexplained; }
 
+  // For a look at a model that has an effect more.
+  Earlier beside(const Library& library, SearchDepth search) const {
+    return {finding_.earlier.finer, finding_.models, library, search};
+  }
+
   // Looks until the model fits nowhere better; `moved`: it does not stay where it was.
   Finding examine(
       Fitted& model, const Earlier& earlier, bool& moved,
       const CandidatesSoFar& so_far = [](std::vector<MissingEffect>) {}) {
-    const int most = earlier.beside ? 1 : kMostBases;
+    const int most = earlier.search == SearchDepth::all ? kMostBases : 1;
     Finding out = look(model, {}, options_, earlier, so_far);
     moved = out.base_moved;
     for (int k = 1; out.to_repeat; ++k) {
@@ -257,7 +280,8 @@ class Search {
       auto next = std::make_shared<Fitted>(extended(model_, leader));
       const bool same = same_body(model_.study->model(), next->study->model());
       bool moved = false;
-      Finding deeper = examine(*next, {finding_.earlier.finer, same ? finding_.earlier.library : Library(), true}, moved);
+      const SearchDepth depth = i == 0 ? SearchDepth::beginning : SearchDepth::tangents;
+      Finding deeper = examine(*next, beside(same ? finding_.earlier.library : Library(), depth), moved);
       leader.model = next;
       if (deeper.models->noise_variance() < finding_.models->noise_variance()) finding_.models = deeper.models;
       Comparison all = finding_.comparison;
@@ -290,9 +314,6 @@ class Search {
 
   Assessment assessment() const { return finding_.models->assess(explained_); }
   BeliefMap validity() const { return belief_map(model_, assessment().left, *finding_.models); }
-
-  // The model leaves no structure beyond chance: there is nothing left to look for.
-  bool nothing_left() const { return !(assessment().test.discrepancy() > 0.0); }
 
   // The library of tangents that the next look may take over.
   Library add(const Refit& best) {

@@ -105,7 +105,7 @@ Finding look(Fitted& base, const std::vector<std::string>& wanted, const Diagnos
   out.believe(refits.compare());
   out.refits = refits.take();
   out.floor = look.floor;
-  out.earlier = {look.finer.study, look.library, look.beside};
+  out.earlier = {look.finer.study, out.models, look.library, look.search};
   out.base_moved = refits.base_moved();
   return out;
 }

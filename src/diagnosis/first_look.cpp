@@ -30,12 +30,13 @@ Eigen::VectorXd mesh_change(const Fitted& base, const FinerMesh& finer) {
 FirstLook::FirstLook(Fitted& fitted, const DiagnosisOptions& options, Earlier earlier)
     : base(fitted),
       cost(fitted.rows.error.squaredNorm()),
-      beside(earlier.beside),
+      search(earlier.search),
       settled(earlier.settled),
       library(std::move(earlier.library)),
       explained(explain(base)),
       comparison(base, Eigen::VectorXd::Zero(base.rows.error.size())),
       given(comparison.assess(explained)) {
+  if (earlier.models) comparison.note(*earlier.models);
   if (!given.test.passes()) explained = explain(base, {}, true);
   const std::string step = "tangents of the library, and what a finer mesh would change";
   options.progress(step, 0, 0);

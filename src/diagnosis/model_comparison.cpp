@@ -204,6 +204,11 @@ void ModelComparison::note(const Eigen::VectorXd& error) {
   noise_level_ = std::min(noise_level_, left.noise_level());
 }
 
+void ModelComparison::note(const ModelComparison& other) {
+  noise_variance_ = std::min(noise_variance_, other.noise_variance_);
+  noise_level_ = std::min(noise_level_, other.noise_level_);
+}
+
 Assessment ModelComparison::assess(const Explained& explained) const {
   const Linearisation& model = explained.linearisation;
   const double s = noise_variance_;
@@ -312,12 +317,30 @@ double Comparison::probability_of(const std::string& effect) const {
   return sum;
 }
 
+std::vector<Trace> Comparison::traces() const {
+  const Hypothesis& plain = best();
+  std::vector<Hypothesis> weighed{plain};
+  std::vector<Trace> out;
+  for (const Hypothesis& h : hypotheses) {
+    if (h.random_force || !h.superfluous_beside(plain)) continue;
+    out.push_back({&h, 0.0});
+    weighed.push_back(h);
+  }
+  find_probabilities_of(weighed);
+  const double sum = 1.0 - weighed.front().probability, together = std::min(sum, 0.5);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i].share = sum > 0.0 ? together * weighed[i + 1].probability / sum : 0.0;
+  return out;
+}
+
 void Comparison::find_probabilities() {
   constexpr double none = -std::numeric_limits<double>::infinity();
+  for (Hypothesis& h : hypotheses) {
+    const auto enough = [&h](const Hypothesis& other) { return h.superfluous_beside(other); };
+    h.superfluous = std::any_of(hypotheses.begin(), hypotheses.end(), enough);
+  }
   std::vector<Hypothesis> weighed = hypotheses;
   for (Hypothesis& h : weighed) {
-    const auto enough = [&h](const Hypothesis& other) { return h.superfluous_beside(other); };
-    if (std::any_of(hypotheses.begin(), hypotheses.end(), enough)) h.log_weight = none;
+    if (h.superfluous) h.log_weight = none;
   }
   const Hypothesis* best = &weighed.front();
   for (const Hypothesis& h : weighed) {
@@ -362,7 +385,7 @@ Verdict judge(const Comparison& c) {
 std::vector<std::string> believed_effects(const Comparison& comparison) {
   std::vector<Hypothesis> named;
   for (const Hypothesis& h : comparison.hypotheses) {
-    if (!h.effects.empty()) named.push_back(h);
+    if (!h.effects.empty() && !h.superfluous) named.push_back(h);
   }
   find_probabilities_of(named);
   std::stable_sort(named.begin(), named.end(),

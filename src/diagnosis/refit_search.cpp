@@ -26,11 +26,11 @@ class Search {
     }
     refit_from_tangents();
     if (!look_.settled && refits_.move_to_better_base()) return verdict() == Verdict::unexplained;
-    // What a model that already has an effect leaves is small: it is not worth a longer search.
-    if (look_.beside || !wide()) return false;
-    if (!explained()) refit_other_ways();
-    if (!explained()) refit_from_beginning();
-    if (!explained()) refit_other_kinds();
+    if (!wide()) return false;
+    const bool all = look_.search == SearchDepth::all;
+    if (all && !explained()) refit_other_ways();
+    if (look_.search != SearchDepth::tangents && !explained()) refit_from_beginning();
+    if (all && !explained()) refit_other_kinds();
     return false;
   }
 
@@ -44,7 +44,9 @@ class Search {
   std::vector<Refit> leaders() const;
   /// Something is to be explained that tangents may not show. What a model that already has an effect leaves is small
   /// once it passes its test, and tangents are taken at the right place.
-  bool wide() const { return look_.beside ? !look_.given.test.passes() : look_.given.test.discrepancy() > 0.0; }
+  bool wide() const {
+    return look_.search == SearchDepth::all ? look_.given.test.discrepancy() > 0.0 : !look_.given.test.passes();
+  }
   Verdict verdict() const { return judge(refits_.compare()); }
   bool explained() const { return verdict() == Verdict::missing; }
   /// Runs in full take long: none for an effect whose tangent explains next to nothing.
@@ -69,7 +71,7 @@ void Search::refit_wanted(const std::vector<std::string>& wanted) {
 void Search::refit_from_tangents() {
   std::vector<Addition> first, others;
   for (const Ranked& r : look_.ranked) {
-    if (!worth_full_runs(r) || (!wide() && r.evidence < kSameEvidence)) continue;
+    if (!worth_full_runs(r) || (!wide() && r.evidence < 0.0)) continue;
     (first.empty() ? first : others).push_back({r.best, r.score.amplitude});
   }
   refits_.add(first);
@@ -109,7 +111,7 @@ void Search::refit_other_ways() {
 void Search::refit_other_kinds() {
   std::vector<Addition> list;
   for (const Refit& leader : leaders()) {
-    if (leader.way->proposal.kind_key.empty()) continue;
+    if (leader.way->proposal.kind_keys.empty()) continue;
     for (const Candidate& candidate : look_.candidates) {
       if (candidate.effect == leader.effect && candidate.proposal.is_other_kind_of(leader.way->proposal))
         list.push_back({&candidate, {}, leader.parameters});

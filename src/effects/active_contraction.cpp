@@ -93,9 +93,10 @@ std::vector<Proposal> propose(const ProposalContext& context) {
       for (const double phase : kPhases) {
         const double onset = phase * period, arch = 0.5 * period;
         list.push_back(
-            {with(period, onset, arch, normal(0.0, scale)), "amplitude",
+            {with(period, onset, arch, normal(0.0, scale)),
+             "amplitude",
              with(log_normal(period, 1.15), normal(onset, 0.2 * period), log_normal(arch, 1.5), normal(scale, 2.0 * scale)),
-             "direction"});
+             {"direction"}});
       }
     }
   }

@@ -41,7 +41,7 @@ std::vector<Proposal> propose(const ProposalContext& context) {
     const auto with = [&where = name](const Quantity& mass) {
       return EffectEntry{"added_mass", {{"region", where}, {"mass", mass}}};
     };
-    list.push_back({with(normal(0.0, scale)), "mass", with(log_normal(scale, 4.0)), "region"});
+    list.push_back({with(normal(0.0, scale)), "mass", with(log_normal(scale, 4.0)), {"region"}});
   }
   return list;
 }

@@ -46,7 +46,7 @@ std::vector<Proposal> propose(const ProposalContext& context) {
     const auto with = [&name](const Quantity& compliance) {
       return EffectEntry{"elastic_support", {{"region", name}, {"compliance", compliance}}};
     };
-    list.push_back({with(normal(0.0, scale)), "compliance", with(log_normal(scale, 4.0)), "region"});
+    list.push_back({with(normal(0.0, scale)), "compliance", with(log_normal(scale, 4.0)), {"region"}});
   }
   return list;
 }

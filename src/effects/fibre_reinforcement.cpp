@@ -48,8 +48,10 @@ std::vector<Proposal> propose(const ProposalContext& context) {
     const auto with = [&trial](const Argument& angle, const Quantity& modulus) {
       return EffectEntry{"fibre_reinforcement", {{"direction", trial.direction}, {"angle", angle}, {"modulus", modulus}}};
     };
-    list.push_back({with(trial.angle, normal(0.0, scale)), "modulus",
-                    with(normal(trial.angle, 0.3), log_normal(scale, 3.0)), "direction"});
+    list.push_back({with(trial.angle, normal(0.0, scale)),
+                    "modulus",
+                    with(normal(trial.angle, 0.3), log_normal(scale, 3.0)),
+                    {"direction"}});
   }
   return list;
 }

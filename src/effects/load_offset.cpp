@@ -33,7 +33,7 @@ std::vector<Proposal> propose(const ProposalContext& context) {
   std::vector<Proposal> list;
   for (const std::string& name : context.regions_of("traction", "load_offset")) {
     const EffectEntry entry{"load_offset", {{"region", name}, {"force", normal(Eigen::Vector3d::Zero(), scale)}}};
-    list.push_back({entry, "force", entry, "region"});
+    list.push_back({entry, "force", entry, {"region"}});
   }
   return list;
 }

@@ -53,7 +53,7 @@ std::vector<Proposal> propose(const ProposalContext& context) {
   std::vector<Proposal> list;
   for (const std::string& name : context.regions_of("traction", "load_rotation")) {
     const EffectEntry entry{"load_rotation", {{"region", name}, {"angles", normal(Eigen::Vector3d::Zero(), 0.1)}}};
-    list.push_back({entry, "angles", entry, "region"});
+    list.push_back({entry, "angles", entry, {"region"}});
   }
   return list;
 }

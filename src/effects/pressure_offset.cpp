@@ -36,7 +36,7 @@ std::vector<Proposal> propose(const ProposalContext& context) {
   for (const std::string& region : context.regions_of("pressure", "pressure_offset")) {
     const EffectEntry entry{"pressure_offset",
                             {{"region", region}, {"pressure", normal(0.0, kScale * context.young_modulus)}}};
-    list.push_back({entry, "pressure", entry, "region"});
+    list.push_back({entry, "pressure", entry, {"region"}});
   }
   return list;
 }

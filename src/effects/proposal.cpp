@@ -45,12 +45,22 @@ bool ProposalContext::observes(ObservationSettings::Kind kind) const {
 }
 
 std::string Proposal::kind() const {
-  const Argument* argument = refine.find(kind_key);
-  return argument == nullptr ? "" : to_yaml(*argument);
+  std::string out;
+  for (const std::string& key : kind_keys) {
+    const Argument* argument = refine.find(key);
+    if (argument != nullptr) out += (out.empty() ? "" : " ") + to_yaml(*argument);
+  }
+  return out;
 }
 
 bool Proposal::is_other_kind_of(const Proposal& other) const {
-  return !kind_key.empty() && kind() != other.kind() && refine.without(kind_key).same(other.refine.without(kind_key));
+  if (kind_keys.empty() || kind() == other.kind()) return false;
+  EffectEntry own = refine, others = other.refine;
+  for (const std::string& key : kind_keys) {
+    own = own.without(key);
+    others = others.without(key);
+  }
+  return own.same(others);
 }
 
 }  // namespace tissue_stiffness

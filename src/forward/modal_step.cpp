@@ -17,10 +17,16 @@ constexpr double kMostDamping = 0.9;  // damping ratio, squared: near one it wou
 constexpr int kMostBranches = 6;
 using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostBranches + 4, kMostBranches + 4>;
 
-Small exponential(const Small& a) {
-  if (a.rows() != 4) return a.exp();
-  const Eigen::Matrix4d fixed = a;
+template <int size>
+Small exponential_of(const Small& a) {
+  const Eigen::Matrix<double, size, size> fixed = a;
   return Small(fixed.exp());
+}
+
+// Several times faster where the size is known: without a branch, and with one.
+Small exponential(const Small& a) {
+  if (a.rows() == 4) return exponential_of<4>(a);
+  return a.rows() == 5 ? exponential_of<5>(a) : Small(a.exp());
 }
 
 // Augmented exponential of a step h of q'' + d q' + w q = f without branches: rows q, q'; columns q, q', f, its increment.

@@ -82,6 +82,12 @@ json force_json(const MissingForce& f) {
           {"node_rms", numbers(std::vector<double>(rms.data(), rms.data() + rms.size()))}};
 }
 
+json rival_json(const RivalExplanation& rival) {
+  return {{"effect", rival.effect},
+          {"probability", number(rival.probability)},
+          {"modulus_ratio", numbers(rival.modulus_ratio)}};
+}
+
 }  // namespace
 
 std::string diagnosis_json(const Diagnosis& d) {
@@ -92,12 +98,9 @@ std::string diagnosis_json(const Diagnosis& d) {
         {"unit", p.unit}, {"mean", number(p.mean)}, {"interval95", {number(p.lower95), number(p.upper95)}}};
   }
   for (const std::vector<RivalExplanation>& addition : d.rivals) {
-    for (const RivalExplanation& rival : addition) {
-      final["rivals"].push_back({{"effect", rival.effect},
-                                 {"probability", number(rival.probability)},
-                                 {"modulus_ratio", numbers(rival.modulus_ratio)}});
-    }
+    for (const RivalExplanation& rival : addition) final["rivals"].push_back(rival_json(rival));
   }
+  for (const RivalExplanation& trace : d.traces) final["traces"].push_back(rival_json(trace));
   json candidates = json::array(), steps = json::array();
   for (const MissingEffect& c : d.candidates) candidates.push_back(candidate_json(c));
   for (const DiagnosisStep& s : d.steps) {

@@ -14,7 +14,8 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kTold = 0.005;  // probability
+constexpr double kTold = 0.005;   // probability
+constexpr double kTraced = 0.05;  // and that of a trace
 
 std::string millimetres(double metres) {
   return std::isfinite(metres) ? short_number(1e3 * metres, 3) + " mm" : "-";
@@ -38,9 +39,25 @@ std::string probabilities(const Diagnosis& d) {
   return text.empty() ? text : text + ".";
 }
 
-}  // namespace
+// "These may act without being missed: added mass (49 %, Young's modulus 10 % higher)."
+std::string traces(const Diagnosis& d) {
+  std::string list;
+  for (const RivalExplanation& trace : d.traces) {
+    if (trace.probability < kTraced) continue;
+    list += (list.empty() ? "" : ", ") + effect_title(trace.effect) + " (" +
+            std::to_string(std::lround(100.0 * trace.probability)) + " %";
+    for (const auto& [name, ratio] : trace.modulus_ratio) {
+      const long percent = std::lround(100.0 * std::abs(ratio - 1.0));
+      if (percent > 0)
+        list += ", " + name + " " + std::to_string(percent) + " % " + (ratio > 1.0 ? "higher" : "lower") + " with it";
+    }
+    list += ")";
+  }
+  if (list.empty()) return "";
+  return " These may act without being missed: " + list + ". The interval of Young's modulus allows for them.";
+}
 
-std::string diagnosis_sentence(const Diagnosis& d) {
+std::string verdict_sentence(const Diagnosis& d) {
   if (d.verdict == "unfinished") return "There is no verdict yet: the search for what is missing was interrupted.";
   if (d.verdict == "adequate") return "The model is adequate: what it leaves is noise.";
   if (d.verdict == "numerics") {
@@ -69,6 +86,12 @@ std::string diagnosis_sentence(const Diagnosis& d) {
     if (!d.next_experiment.empty()) text += " To tell them apart: " + effect_title(d.next_experiment) + ".";
   }
   return text;
+}
+
+}  // namespace
+
+std::string diagnosis_sentence(const Diagnosis& d) {
+  return verdict_sentence(d) + traces(d);
 }
 
 void write_diagnosis(const Diagnosis& d, const DiagnosisTexts& texts, const Showing& showing,

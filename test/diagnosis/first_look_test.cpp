@@ -58,7 +58,7 @@ TEST_F(BarWithADamping, ReadsTangentsInTheVectorsOfAnEarlierLook) {
   const Model& model = next.study->model();
   next.fit = next.study->fit(model.prior_mean(), 0.1 * model.prior_std());
   next.rows = next.study->rows(next.fit.w);
-  const FirstLook alone(next, {}), after(next, {}, {first.finer.study, first.library, true});
+  const FirstLook alone(next, {}), after(next, {}, {first.finer.study, nullptr, first.library, SearchDepth::tangents});
   ASSERT_EQ(alone.candidates.size(), after.candidates.size());
   double worst = 0.0;
   for (std::size_t c = 0; c < alone.candidates.size(); ++c) {

@@ -288,10 +288,30 @@ TEST(Comparison, GivesNothingToWhatExtendsASufficientModel) {
   EXPECT_EQ(c.none_of_these(), 0.0);
   EXPECT_DOUBLE_EQ(c.hypotheses[3].log_weight, 90.0);
   EXPECT_EQ(judge(c), Verdict::missing);
+  EXPECT_EQ(believed_effects(c), (std::vector<std::string>{"a", "b"}));  // each alone
+  EXPECT_LT(c.hypotheses[2].probability, 1.0);
   c.hypotheses[0].structured = false;
   c.find_probabilities();
   EXPECT_EQ(c.given().probability, 1.0);
   EXPECT_EQ(judge(c), Verdict::adequate);
+}
+
+// The evidence of what is superfluous still counts for E, but no more than the test that does without.
+TEST(Comparison, TracesWhatMayActWithoutBeingMissed) {
+  std::vector<Hypothesis> list{hypothesis({}, 0.0, true), hypothesis({"a"}, 2000.0, true), hypothesis({"b"}, 1999.0, true),
+                               hypothesis({"c"}, 5000.0, false, true)};
+  list[0].structured = false;
+  const Comparison strong = compared(list);
+  const std::vector<Trace> halves = strong.traces();
+  ASSERT_EQ(halves.size(), 2u);
+  EXPECT_EQ(halves[0].hypothesis->effects, std::vector<std::string>{"a"});
+  EXPECT_NEAR(halves[0].share, 0.5 / (1.0 + std::exp(-1.0)), 1e-9);
+  EXPECT_NEAR(halves[0].share + halves[1].share, 0.5, 1e-9);
+  list[1].log_weight = list[2].log_weight = -2.0;
+  const Comparison weak = compared(list);
+  EXPECT_NEAR(weak.traces()[0].share, 1.0 / (2.0 + std::exp(2.0)), 1e-9);
+  list[0].structured = true;
+  EXPECT_TRUE(compared(list).traces().empty());
 }
 
 // The most probable model decides by its own test whether something unknown acts beside it.

@@ -92,6 +92,31 @@ Eigen::VectorXd one(double value) {
   return Eigen::VectorXd::Constant(1, value);
 }
 
+// Stiffness against a shift as a whole, over the stiffness per area: the area that is held.
+double held_area(const std::string& foundation) {
+  const TetMesh mesh = bar_mesh();
+  const std::vector<std::string> base{kInertia, kLinear, "fixed: {region: clamp}"};
+  std::vector<std::string> more = base;
+  more.push_back("foundation: {" + foundation + "stiffness: 500}");
+  const Model bare(box_settings(base), mesh), resting(box_settings(more), mesh);
+  Eigen::VectorXd shift = zero(bare);
+  for (int i = 0; i < mesh.node_count(); ++i) shift[3 * i + 1] = 1.0;
+  return shift.dot(resting.stiffness(prior(resting)) * shift - bare.stiffness(prior(bare)) * shift) / 500.0;
+}
+
+TEST(Foundation, HoldsTheSideThatFacesADirection) {
+  const double side = 0.10 * 0.02, end = 0.02 * 0.02;
+  EXPECT_NEAR(held_area(""), 4.0 * side + end, 1e-9);
+  EXPECT_NEAR(held_area("facing: [0, 0, -1], "), side, 1e-9);
+  EXPECT_NEAR(held_area("facing: [3, 0, 0], "), end, 1e-9);
+  EXPECT_NEAR(held_area("facing: [0, 1, 1], "), 2.0 * side, 1e-9);
+  EXPECT_NEAR(held_area("region: skin, facing: [-1, 0, 0], "), end, 1e-9);
+  EXPECT_EQ(refusal([] { held_area("facing: [-1, 0, 0], "); }),
+            "model.yaml:13: effects[3].foundation.facing: found [-1, 0, 0]; allowed: a direction that a part of the "
+            "surface faces");
+  EXPECT_NE(refusal([] { held_area("facing: [0, 0, 0], "); }), "");
+}
+
 TEST(Pressure, OnAPatchIsPressureTimesArea) {
   const TetMesh mesh = bar_mesh();
   Model model(box_settings({kInertia, kLinear, "pressure: {region: top, topic: /p, scale: 0.5}"}), mesh);

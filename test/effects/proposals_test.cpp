@@ -148,7 +148,10 @@ TEST(Proposals, KnowTheirOtherKinds) {
   const auto foundations = proposals_of("foundation", base);
   ASSERT_EQ(to_yaml(foundations[0].refine.without("stiffness")), "foundation: {}");  // on the whole surface
   EXPECT_EQ(foundations[0].kind(), "");
-  EXPECT_EQ(foundations[1].kind(), "far");
+  EXPECT_EQ(foundations[1].kind(), "[1, 0, 0]");  // the clamp holds the end that faces -x
+  EXPECT_EQ(foundations.back().kind(), "top");
+  EXPECT_EQ(foundations.size(), 11U);  // everywhere, five sides, five regions
+  EXPECT_TRUE(foundations[1].is_other_kind_of(foundations.back()));
   EXPECT_TRUE(foundations[0].is_other_kind_of(foundations[1]));
   EXPECT_FALSE(foundations[0].is_other_kind_of(foundations[0]));
   for (const std::string effect : {"foundation", "added_mass"}) {

@@ -11,12 +11,17 @@
 
 namespace tissue_stiffness {
 
+/// How far a look searches for what its base lacks: as far as all stages go, or, where the base has an effect that an
+/// earlier look found, from tangents and the recording's beginning, or from tangents alone.
+enum class SearchDepth { all, beginning, tangents };
+
 /// What an earlier look at the same recording has found out.
 struct Earlier {
-  std::shared_ptr<const Study> finer = nullptr;  ///< the model on a finer mesh; null: none yet
-  Library library = {};                          ///< see find_candidates
-  bool beside = false;                           ///< the model has an effect that the earlier look found
-  bool settled = false;                          ///< the model is not fitted anew, wherever it fits better
+  std::shared_ptr<const Study> finer = nullptr;             ///< the model on a finer mesh; null: none yet
+  std::shared_ptr<const ModelComparison> models = nullptr;  ///< whose noise is known; null: none yet
+  Library library = {};                                     ///< see find_candidates
+  SearchDepth search = SearchDepth::all;
+  bool settled = false;  ///< the model is not fitted anew, wherever it fits better
 };
 
 /// What a fitted model's error shows before anything is refitted: the library, ranked by its tangents, and the mesh's part.
@@ -28,8 +33,9 @@ struct FirstLook {
   void move_base(const BatchFit& fit);
 
   Fitted& base;
-  double cost;                        ///< sum of squared errors [sigma^2]
-  const bool beside, settled;         ///< see Earlier
+  double cost;               ///< sum of squared errors [sigma^2]
+  const SearchDepth search;  ///< see Earlier, as the next one
+  const bool settled;
   std::vector<Candidate> candidates;  ///< their tangents are whitened
   Library library;                    ///< that they were read from
   Eigen::VectorXd error;              ///< of the base, whitened

@@ -81,6 +81,8 @@ class ModelComparison {
   void allow_for_mesh(const Eigen::VectorXd& change);
   /// Takes note of how little a residual leaves across the lowest modes: the noise is the same for all models.
   void note(const Eigen::VectorXd& error);
+  /// Takes over less noise that another comparison of the same recording has noted.
+  void note(const ModelComparison& other);
   double noise_variance() const { return noise_variance_; }         ///< s
   const Eigen::MatrixXd& mesh_directions() const { return mesh_; }  ///< D
   /// Rows (N x k) in which the covariance is s I: along B_k they shrink by the root of s / (s + L_k).
@@ -116,12 +118,18 @@ struct Hypothesis {
   double z = 0.0;                              ///< of the residual's test; of a random force's it is that without the force
   bool passes = false;                         ///< that test
   bool structured = true;                      ///< something beyond chance is left, or a random force acts
+  bool superfluous = false;                    ///< beside another hypothesis
   double probability = 0.0;
   bool holds(const std::string& effect) const;
   /// It has all that the other one has, which leaves no structure beyond chance, and something more.
   bool superfluous_beside(const Hypothesis& other) const;
   /// Weight and test as these models assess the explained one.
   void weigh(const Assessment& assessment, const ModelComparison& models);
+};
+/// A hypothesis that no test asks for, and its share of the belief where its evidence counts all the same.
+struct Trace {
+  const Hypothesis* hypothesis;
+  double share;
 };
 struct Comparison {
   bool passes_without_mesh = false;    ///< the given model's residual, with the error of the mesh in it
@@ -131,6 +139,9 @@ struct Comparison {
   const Hypothesis& best() const;                          ///< the most probable one
   double none_of_these() const;                            ///< probability of all hypotheses with a random force
   double probability_of(const std::string& effect) const;  ///< of all others that hold it
+  /// What may act beside the most probable hypothesis without being missed: extensions of it that are superfluous, by their
+  /// evidence. Together they have no more than half, because the evidence may be that of the mesh's error.
+  std::vector<Trace> traces() const;
   /// Weights, tests and probabilities of all hypotheses by one likelihood.
   void assess(const ModelComparison& models);
   /// From the weights. What is superfluous has none: what it has more is too small to be missing, whatever it gains. Where

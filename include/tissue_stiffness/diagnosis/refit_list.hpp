@@ -12,8 +12,6 @@
 
 namespace tissue_stiffness {
 
-constexpr double kSameEvidence = 5.0;  // log evidence by tangents from which a refit is worth its time
-
 /// Parameters that are fitted besides the base's.
 std::ptrdiff_t parameters_of(const Candidate& way);
 

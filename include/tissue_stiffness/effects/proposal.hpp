@@ -44,11 +44,11 @@ struct Proposal {
   EffectEntry entry;      ///< the amplitude estimated about its absent value, a normal prior; the rest as given
   std::string amplitude;  ///< parameter that removes the effect at its absent value
   EffectEntry refine;     ///< the same with amplitude and scanned numbers estimated: where a refit starts
-  /// The key of a direction or a region that no refit leaves; empty where there is but one. An entry without the key is of
-  /// a kind, too: a foundation without a region is the one on the whole surface.
-  std::string kind_key = {};
+  /// The keys of a direction or a region that no refit leaves; empty where there is but one. An entry without such a key is
+  /// of a kind, too: a foundation without a region is the one on the whole surface.
+  std::vector<std::string> kind_keys = {};
 
-  /// The argument of that key, as a model file has it; empty where there is none.
+  /// The arguments of those keys, as a model file has them; empty where there are none.
   std::string kind() const;
   /// The same but for the kind.
   bool is_other_kind_of(const Proposal& other) const;

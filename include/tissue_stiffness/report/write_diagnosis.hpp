@@ -18,8 +18,9 @@ struct DiagnosisTexts {
 
 /// `diagnosis.json`: complete, interrupted_during (where it is not), verdict, set, probability_adequate, none_of_these, z,
 /// best, candidates[], where, when, how_much, residual, steps[], next_experiment, final. `final.rivals[]` are the
-/// explanations that the data do not tell from an added one: `final`'s moduli are the mixture. A number that does not exist
-/// is null. Everything but `seconds` is the same for the same input.
+/// explanations that the data do not tell from an added one, `final.traces[]` what may act besides without being missed:
+/// `final`'s moduli are the mixture. A number that does not exist is null. Everything but `seconds` is the same for the
+/// same input.
 std::string diagnosis_json(const Diagnosis& diagnosis);
 
 /// `report.html`: one page that needs no network; as report_html.

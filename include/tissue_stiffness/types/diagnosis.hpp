@@ -113,9 +113,13 @@ struct Diagnosis {
   std::vector<std::string> final_effects;
   std::vector<std::string> entries;                   ///< of the accepted effects, for the model file
   std::vector<std::vector<RivalExplanation>> rivals;  ///< of each accepted effect
+  /// What may act beside the last model without being missed: the test asks for nothing more, but the evidence speaks for
+  /// it.
+  std::vector<RivalExplanation> traces;
   std::string interrupted;  ///< what was under way when the work was interrupted; empty: all was done
   double seconds = 0.0;
-  Estimate estimate;  ///< of the last step's model: an estimator's; in state no_data the fit's own; mixed over rivals
+  Estimate
+      estimate;  ///< of the last step's model: an estimator's; in state no_data the fit's own; mixed over rivals and traces
 };
 
 }  // namespace tissue_stiffness
