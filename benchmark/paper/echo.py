@@ -204,8 +204,8 @@ def cine_mri(work, shared):
     publish(work.root, 'mri', table(['figure', 'median', 'worst', 'best'], [
         ['mean distance of the outlines [mm]', '%.2f' % np.median(apart), '%.2f' % apart.max(), '%.2f' % apart.min()],
         ['Dice', '%.3f' % np.median(dice), '%.3f' % dice.min(), '%.3f' % dice.max()]]) +
-            '\nOutlines in %d of %d phases. End-diastolic area: ours %.1f, theirs %.1f cm²; end-systolic: %.1f and %.1f '
-            'cm².\n' %
+            '\nOutlines were found in %d of %d phases. The end-diastolic area is %.1f cm² in ours and %.1f cm² in theirs. '
+            'At end systole\nit is %.1f and %.1f cm².\n' %
             (len(kept), len(paths), sizes[0][0], sizes[0][1], min(s[0] for s in sizes), min(s[1] for s in sizes)))
 
 

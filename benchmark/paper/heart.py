@@ -201,9 +201,10 @@ def pictures(heart, rows, path):
 
 def about(heart, rows):
     worst = max(abs(off(row, label)) for row in rows for label in ('ours', 'low', 'high'))
-    return ('%d tracked vertices, 0.2 mm of noise; largest motion %.1f mm. Ours: largest error %.2f %%, largest surface '
-            'distance %.3f mm, any start.\n\n' % (len(heart.ids), rows[0]['largest'], worst,
-                                         max(row[label]['distance'][0] for row in rows for label in ('ours', 'low', 'high'))))
+    return ('There are %d tracked vertices with 0.2 mm of noise, and the largest motion is %.1f mm. From any start, our largest\n'
+            'error is %.2f %% and our largest surface distance is %.3f mm.\n\n' % (
+                len(heart.ids), rows[0]['largest'], worst,
+                max(row[label]['distance'][0] for row in rows for label in ('ours', 'low', 'high'))))
 
 
 def experiment(place, name, coarse, fine):
