@@ -104,8 +104,8 @@ def machine():
     with open('/proc/cpuinfo') as file:
         name = re.search(r'model name\s*:\s*(.*)', file.read()).group(1)
     load = os.getloadavg()[0]
-    busy = f' Others kept it busy: load {load:.1f} at the start.' if load > 1.0 else ''
-    return f'{os.cpu_count()} cores of {name}.{busy}\n'
+    busy = f' Other work kept it busy, with a load of {load:.1f} at the start.' if load > 1.0 else ''
+    return f'The machine has {os.cpu_count()} cores of {name}.{busy}\n'
 
 
 def write(path, tables):
