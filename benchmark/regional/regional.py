@@ -70,7 +70,7 @@ class Body:
         tool('estimate', os.path.join(folder, 'model.yaml'), os.path.join(folder, 'line.bag'), '--output', folder)
         with open(os.path.join(folder, 'results.json')) as file:
             results = json.load(file)
-        print('%d vertices, %d frames, estimated in %.0f s, rms error %.2f of the noise\n' % (
+        print('The body has %d vertices. The estimate from %d frames took %.0f s, with an rms error of %.2f of the noise.\n' % (
             len(self.nodes), results['frames'], time.time() - start, results['rms_error'] / noise))
         return results
 
