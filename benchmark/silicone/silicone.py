@@ -141,7 +141,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         beam = Beam(root, folder)
         diagnosis = beam.diagnose('gravity_a')
-        print('## What the elastic model lacks (gravity_a)\n\nVerdict: %s; set: %s.\n' % (
+        print('## What the elastic model lacks (gravity_a)\n\nThe verdict is `%s`, and the set holds %s.\n' % (
             diagnosis['verdict'], ', '.join(diagnosis['set'])))
         print('| model | E [kPa] | held-out error [mm] | times smaller |\n|---|---|---|---|')
         first = diagnosis['steps'][0]['held_out_rms']
