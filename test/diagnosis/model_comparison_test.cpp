@@ -161,7 +161,7 @@ TEST_F(CleanBar, AllowsForMeshErrorsThatARefinementDoesNotShow) {
 }
 
 TEST(ComparisonNumbers, AreThoseOfTheMethodsTable) {
-  std::ifstream file(std::string(TISSUE_STIFFNESS_SOURCE_DIR) + "/doc/method.md");
+  std::ifstream file(std::string(TISSUE_STIFFNESS_SOURCE_DIR) + "/doc/method/decision_rule.md");
   const std::string page((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   ASSERT_FALSE(page.empty());
   const auto row = [&](const std::string& names, const std::string& value) {
