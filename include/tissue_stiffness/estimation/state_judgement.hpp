@@ -30,7 +30,7 @@ struct StateJudgement {
   std::string reason;  ///< a sentence
 };
 
-/// The state of an estimate: `doc/method.md` has the table.
+/// The state of an estimate: `doc/method/theory.md` has the table.
 StateJudgement judge_state(const StateEvidence& evidence);
 
 }  // namespace tissue_stiffness
