@@ -10,6 +10,7 @@ import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
 from sensor_msgs.msg import PointCloud2
+from std_srvs.srv import SetBool
 from visualization_msgs.msg import Marker
 
 from tissue_stiffness.msg import Misfit, StiffnessEstimate, TetMesh
@@ -22,12 +23,16 @@ NOISE = 3e-4
 class Recorder:
     def __init__(self, topic, kind, wanted=1):
         self.messages, self.changed, self.wanted = [], threading.Condition(), wanted
-        rospy.Subscriber(topic, kind, self.on_message, queue_size=1000)
+        self.subscriber = rospy.Subscriber(topic, kind, self.on_message, queue_size=1000)
 
     def on_message(self, message):
         with self.changed:
             self.messages.append(message)
             self.changed.notify_all()
+
+    def wait_for_publisher(self):
+        while not rospy.is_shutdown() and self.subscriber.get_num_connections() == 0:
+            threading.Event().wait(0.05)
 
     def of_frames(self):
         """The last message of each frame: a study that ends after a frame gives another one of it."""
@@ -60,6 +65,10 @@ class ChainTest(unittest.TestCase):
         cls.points = Recorder('tracked_points', PointCloud2)
         cls.mesh = Recorder('mesh', TetMesh)
         cls.diagnostics = Recorder('/diagnostics', DiagnosticArray)
+        for recorder in (cls.stiffness, cls.misfit, cls.surface, cls.points):
+            recorder.wait_for_publisher()  # the player has been started paused, so that no frame is missed
+        rospy.wait_for_service('player/pause_playback')
+        rospy.ServiceProxy('player/pause_playback', SetBool)(False)
         cls.stiffness.wait()
 
     def test_every_frame_gives_an_estimate_and_the_last_one_is_right(self):
