@@ -30,7 +30,9 @@ const std::map<std::string, std::set<std::string>> kAllowed = [] {
   add("effects", {"fem"});
   add("forward", {"effects", "meshing"});
   add("filter", {"types"});
-  add("estimation", {"forward", "filter"});
+  add("observation", {"forward", "filter"});
+  add("fit", {"observation"});
+  add("estimation", {"fit"});
   add("diagnosis", {"estimation"});
   add("report", {"settings"});
   add("check", {"estimation", "segmentation", "report"});

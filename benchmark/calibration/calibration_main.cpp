@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "tissue_stiffness/filter/consistency.hpp"
-#include "tissue_stiffness/forward/observation_operator.hpp"
 #include "tissue_stiffness/meshing/box_mesh.hpp"
+#include "tissue_stiffness/observation/observation_operator.hpp"
 #include "verification/experiment.hpp"
 
 namespace tissue_stiffness {

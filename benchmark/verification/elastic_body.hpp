@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "tissue_stiffness/fem/discretisation.hpp"
+#include "tissue_stiffness/fem/generalized_alpha.hpp"
 #include "tissue_stiffness/fem/neo_hookean.hpp"
-#include "tissue_stiffness/fem/newmark.hpp"
 #include "tissue_stiffness/fem/products.hpp"
 #include "tissue_stiffness/meshing/box_mesh.hpp"
 #include "tissue_stiffness/meshing/elevate.hpp"
@@ -47,7 +47,7 @@ inline TetMesh distorted_box(const Eigen::Vector3d& size, int cells, int order) 
     if (outside[static_cast<std::size_t>(3 * i)] != 0) continue;
     for (int k = 0; k < 3; ++k) mesh.nodes(k, i) += offset(engine) * size[k] / cells;
   }
-  if (order == 2) elevate(mesh);
+  if (order == 2) elevate_to_quadratic(mesh);
   return mesh;
 }
 

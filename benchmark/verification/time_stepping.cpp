@@ -34,7 +34,7 @@ DynamicState released(ElasticBody& body, double acceleration) {
 // Largest change of the energy over a second, relative to the energy at the start.
 double drift(ElasticBody& body, double acceleration, double step) {
   DynamicState state = released(body, acceleration);
-  Newmark newmark(body, 1.0, 1e-12);
+  GeneralizedAlpha newmark(body, 1.0, 1e-12);
   newmark.initialise(state);
   const double start = body.energy(state.displacement, state.velocity);
   double worst = 0.0, fastest = 0.0;
@@ -49,7 +49,7 @@ double drift(ElasticBody& body, double acceleration, double step) {
 
 Eigen::VectorXd run(ElasticBody& body, double radius, double duration, int steps) {
   DynamicState state = released(body, 3.0);
-  Newmark newmark(body, radius, 1e-13);
+  GeneralizedAlpha newmark(body, radius, 1e-13);
   newmark.initialise(state);
   for (int k = 0; k < steps; ++k) newmark.step(state, duration / steps);
   return state.displacement;

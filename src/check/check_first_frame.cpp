@@ -35,13 +35,13 @@ Eigen::Matrix3Xd thinned(const Eigen::Matrix3Xd& points) {
   return out;
 }
 
-/// Root mean square distance from the middle; of a single point from the origin [m].
+/// Returns the root mean square distance from the middle, or of a single point from the origin [m].
 double spread(const Eigen::Matrix3Xd& points) {
   const Eigen::Vector3d middle = points.cols() > 1 ? Eigen::Vector3d(points.rowwise().mean()) : Eigen::Vector3d::Zero();
   return std::sqrt((points.colwise() - middle).squaredNorm() / static_cast<double>(points.cols()));
 }
 
-/// A cloud with where its points are at rest: each of its own, or the whole surface's nodes.
+/// A cloud and the positions of its points at rest. They are the points' own, or the nodes of the whole surface.
 struct Cloud {
   const ObservationSettings& settings;
   const TetMesh& mesh;
@@ -66,7 +66,7 @@ Cloud make_cloud(const ObservationSettings& settings, const TetMesh& mesh, const
   }
 }
 
-/// Root mean square way of the points that both have [m]; 0 without identities.
+/// Returns the root mean square distance between points that both observations have [m]; 0 without identities.
 double way(const Observation& a, const Observation& b) {
   double sum = 0.0, count = 0.0;
   for (Eigen::Index i = 0; i < std::min(a.ids.size(), b.ids.size()); ++i) {
@@ -114,8 +114,8 @@ SetupFindings check_unit(const Cloud& cloud) {
                               : "if the mesh is in mm, write `scale: 0.001` in `mesh`.")}};
 }
 
-/// Points that a sensor of a slightly wrong scale sees: the effect `image_scale`, which a diagnosis names and an estimate
-/// can have. No pose makes up for it.
+/// Returns whether a sensor with a slightly wrong scale explains the points. A diagnosis can name this effect,
+/// `image_scale`, and an estimate can include it. No pose compensates it.
 bool is_scaled(const Cloud& cloud, double allowed, double rigid_rms) {
   if (!cloud.named()) return false;
   const double scale = cloud.points.cwiseProduct(cloud.rest).sum() / cloud.rest.squaredNorm();

@@ -18,7 +18,7 @@ double mean_square(const Eigen::VectorXd& v) {
   return v.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(v.size(), 1));
 }
 
-/// The motion's parts at one modulus: a column for each load, and the last for everything else.
+/// Returns the parts of the motion at one modulus: a column for each load, and the last for everything else.
 Eigen::MatrixXd parts(const MotionStudy& study, double z) {
   const std::vector<std::size_t>& loads = study.loads();
   const Eigen::VectorXd whole = study.predicted(z);

@@ -12,8 +12,8 @@ constexpr double kTenfold = 10.0;
 constexpr Eigen::Index kLeastRows = 30, kLeastFrames = 10, kMostFrames = 200;  // of a scatter
 constexpr int kIntegrationSteps = 4000;
 
-/// Median of the Marchenko-Pastur distribution with ratio beta <= 1, whose density is proportional to
-/// sqrt((b - x)(x - a)) / x on [a, b] = (1 -+ sqrt(beta))^2; by the midpoint rule.
+/// Returns the median of the Marchenko-Pastur distribution with ratio beta <= 1, by the midpoint rule. Its density is
+/// proportional to sqrt((b - x)(x - a)) / x on [a, b] = (1 -+ sqrt(beta))^2.
 double marchenko_pastur_median(double beta) {
   const double a = std::pow(1.0 - std::sqrt(beta), 2), b = std::pow(1.0 + std::sqrt(beta), 2);
   const double step = (b - a) / kIntegrationSteps;
@@ -28,7 +28,8 @@ double marchenko_pastur_median(double beta) {
   return a + i * step;
 }
 
-/// Points with the same identities in every frame, a column a frame, without their mean; empty where there are too few.
+/// Returns points with equal identities in every frame, a column for each frame, less their mean. It is empty where there
+/// are too few.
 Eigen::MatrixXd points_over_time(const std::vector<Frame>& frames, int source) {
   std::vector<const Observation*> seen;
   for (const Frame& frame : frames) {
@@ -48,7 +49,7 @@ Eigen::MatrixXd points_over_time(const std::vector<Frame>& frames, int source) {
   return matrix.colwise() - matrix.rowwise().mean();
 }
 
-/// Root mean square of the rows of one source; of one frame, or of all [m]. 0 where there is none.
+/// Returns the root mean square of the rows of one source, in one frame or in all [m]; 0 where there is none.
 double rms(const MotionStudy& study, const Eigen::VectorXd& rows, int source, int frame = -1) {
   double sum = 0.0, count = 0.0;
   for (Eigen::Index i = 0; i < rows.size(); ++i) {

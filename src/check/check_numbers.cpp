@@ -15,7 +15,7 @@ constexpr double kLightest = 5.0;   // [kg/m^3] the lightest foams have 6
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::array<const char*, 4> kHolders = {"fixed", "elastic_support", "foundation", "contact_plane"};
 
-/// Value, median or mean of a number of the effect.
+/// Returns the value, median or mean of a number of the effect.
 double central(const Value& value, const std::string& unit) {
   return value.as_quantity(-kInfinity, kInfinity, unit).value;
 }

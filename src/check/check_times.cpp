@@ -1,4 +1,4 @@
-// What the stamps of a recording's topics tell: one that stopped, and clocks that are apart.
+// This file checks the stamps of a recording's topics: for topics that stopped, and for clocks that differ.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -23,7 +23,7 @@ double longest_gap(const std::vector<double>& times) {
   return longest;
 }
 
-/// Median of stamp - record time [s].
+/// Returns the median of stamp - record time [s].
 double lead(const TopicTimes& times) {
   std::vector<double> leads;
   for (std::size_t i = 0; i < times.stamps.size(); ++i) leads.push_back(times.stamps[i] - times.arrivals[i]);
@@ -32,7 +32,7 @@ double lead(const TopicTimes& times) {
   return *middle;
 }
 
-/// From the end of the one to the beginning of the other; negative where they overlap [s].
+/// Returns the time from the end of one topic to the start of the other [s]; it is negative where they overlap.
 double apart(const TopicTimes& a, const TopicTimes& b) {
   const auto [first_a, last_a] = std::minmax_element(a.stamps.begin(), a.stamps.end());
   const auto [first_b, last_b] = std::minmax_element(b.stamps.begin(), b.stamps.end());

@@ -11,11 +11,11 @@ std::string last_part(const std::string& name) {
   return name.substr(name.find_last_of('/') + 1);
 }
 
-/// Of those that are spelled nearly alike, or else those that only stand in another namespace.
+/// Returns a name that is spelled nearly alike, or else one that is only in another namespace.
 std::string similar_name(const std::string& name, const std::vector<Topic>& there) {
   std::vector<std::string> names;
   for (const Topic& topic : there) names.push_back(topic.name);
-  const std::string near = closest(name, names);
+  const std::string near = closest_word(name, names);
   if (!near.empty()) return near;
   const auto same = [&](const std::string& other) { return last_part(other) == last_part(name); };
   const auto found = std::find_if(names.begin(), names.end(), same);
@@ -31,7 +31,7 @@ SetupFinding missing(const NeededTopic& needed, const std::vector<Topic>& there,
   const std::string similar = similar_name(topic.name, there);
   return {topic.name, needed.key + ": " + lack + " the topic " + topic.name +
                           (similar.empty() ? "" : " (did you mean `" + similar + "`?)") + "; of its type, " + topic.type +
-                          ", there is " + join(alike) + "; mend the name or remap it."};
+                          ", there is " + join_words(alike) + "; mend the name or remap it."};
 }
 
 std::string kind_name(ObservationSettings::Kind kind) {
@@ -108,7 +108,7 @@ SetupFindings check_frames(const std::map<std::string, std::string>& frames,
     if (has(frame)) continue;
     findings.push_back({topic, topic + ": no transform on /tf or /tf_static joins its frame `" + frame + "`" +
                                    did_you_mean(frame, joined) + " with `" + model_frame + "`; joined with that is " +
-                                   join(joined) +
+                                   join_words(joined) +
                                    "; publish the sensor's pose, as static_transform_publisher does, or mend "
                                    "the messages' frame_id."});
   }

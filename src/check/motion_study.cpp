@@ -4,13 +4,13 @@
 #include <cmath>
 #include <utility>
 
-#include "tissue_stiffness/estimation/ensemble.hpp"
+#include "tissue_stiffness/fit/ensemble.hpp"
 #include "tissue_stiffness/forward/reduced_model.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
-constexpr std::size_t kMostFrames = 60;  // that are looked at, evenly over the recording
+constexpr std::size_t kMostFrames = 60;  // that are used, evenly over the recording
 constexpr double kWidest = 3.0;          // standard deviations of the prior
 constexpr double kGridStep = 0.5;
 constexpr int kSections = 10;
@@ -81,7 +81,7 @@ MotionStudy::MotionStudy(const ModelSettings& settings, const TetMesh& mesh, con
 
 Eigen::VectorXd MotionStudy::predicted(double z, std::ptrdiff_t without) const {
   Eigen::VectorXd theta = model_.theta(model_.prior_mean() + z * moduli_);
-  // A load's first parameter is the scale that it is multiplied by.
+  // A load's first parameter is its scale factor.
   if (without >= 0) theta[model_.parts()[static_cast<std::size_t>(without)].indices.front()] = 0.0;
   const auto run = forward_->start(theta, start_);
   Eigen::VectorXd out = Eigen::VectorXd::Zero(measured_.size());

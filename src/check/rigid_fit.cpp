@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tissue_stiffness/forward/closest_point.hpp"
+#include "tissue_stiffness/observation/closest_point.hpp"
 
 namespace tissue_stiffness {
 namespace {

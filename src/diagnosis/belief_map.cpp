@@ -16,9 +16,9 @@ constexpr std::size_t kNodesOfAPart = 3;  // at least
 constexpr double kLeast = 0.1, kMost = 100.0;
 constexpr int kExcesses = 16;
 
-// Of each row that says something the part that it sees, else -1.
-std::vector<int> part_rows(const TetMesh& mesh, const Study::Rows& rows, BeliefMap& out) {
-  std::map<int, int> part_of;  // of each node that is seen, the nearest centre
+// Returns for each row that says something the part that it sees, else -1.
+std::vector<int> part_rows(const TetMesh& mesh, const RecordingFit::Rows& rows, BeliefMap& out) {
+  std::map<int, int> part_of;  // nearest centre of each node that is seen
   for (Eigen::Index r = 0; r < rows.error.size(); ++r) {
     if (rows.used[r] > 0.0) part_of[rows.nodes[r]] = 0;
   }
@@ -41,10 +41,11 @@ std::vector<int> part_rows(const TetMesh& mesh, const Study::Rows& rows, BeliefM
   return seen;
 }
 
-// The noise is that of the whole body.
+// The noise is taken from the whole body.
 double probability(const MisfitTest& here, const MisfitTest& whole) {
   if (!(here.structured_dof() > 0.0)) return 0.5;
-  const double square = whole.memory() * whole.memory(), independent = (1.0 - square) / (1.0 + square);
+  const double square = whole.lag1_autocorrelation() * whole.lag1_autocorrelation(),
+               independent = (1.0 - square) / (1.0 + square);
   const double freedom = independent * here.structured_dof(), mean_square = here.excess() + here.noise_level();
   return 1.0 / (1.0 + std::exp(log_evidence_of_excess(freedom * mean_square / whole.noise_level(), freedom)));
 }
@@ -60,10 +61,10 @@ double log_evidence_of_excess(double x, double degrees_of_freedom) {
   return log_mean_exp(terms);
 }
 
-BeliefMap belief_map(const Fitted& model, const Eigen::VectorXd& left, const ModelComparison& comparison) {
+BeliefMap belief_map(const FittedModel& model, const Eigen::VectorXd& left, const ModelComparison& comparison) {
   BeliefMap out;
-  const Study::Rows& rows = model.rows;
-  const std::vector<int> seen = part_rows(model.study->model().mesh(), rows, out);
+  const RecordingFit::Rows& rows = model.rows;
+  const std::vector<int> seen = part_rows(model.recording_fit->model().mesh(), rows, out);
   if (out.nodes.empty()) return out;
   const Eigen::VectorXd white = comparison.whitened(left);
   const MisfitTest whole = comparison.test_of(white, 0.0);

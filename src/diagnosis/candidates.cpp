@@ -15,11 +15,11 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr double kProbe = 0.02;  // of a prior's standard deviation: amplitude at which tangents are read
-constexpr double kFar = 0.05;    // of the motion: a larger change is no tangent's
-constexpr double kNear = 0.01;   // and the one that is tried instead
+constexpr double kFar = 0.05;    // of the motion: a larger change is not linear
+constexpr double kNear = 0.01;   // of the motion: the change that is tried instead
 constexpr int kMostProbes = 4;
 
-ProposalContext context_of(const Study& base, const Eigen::VectorXd& w) {
+ProposalContext context_of(const RecordingFit& base, const Eigen::VectorXd& w) {
   const Model& model = base.model();
   double modulus = 0.0, ratio = 0.0, density = 0.0;
   const Eigen::VectorXd theta = model.theta(w);
@@ -40,49 +40,49 @@ ProposalContext context_of(const Study& base, const Eigen::VectorXd& w) {
           duration};
 }
 
-Eigen::VectorXd difference(const Eigen::VectorXd& changed, const Study::Rows& base, double amplitude) {
+Eigen::VectorXd difference(const Eigen::VectorXd& changed, const RecordingFit::Rows& base, double amplitude) {
   return base.used.cwiseProduct(changed - base.predicted) / amplitude;
 }
 
-// How far the rows go from where the first frame has them, rms over all [sigma].
-double motion(const Study::Rows& rows) {
+// Returns how far the rows go from those of the first frame, rms over all [sigma].
+double motion(const RecordingFit::Rows& rows) {
   return motion_of(rows).norm() / std::sqrt(static_cast<double>(rows.predicted.size()));
 }
 
-// d rows / d w_j. A slender body answers to what leaves a stout one alone: the step is cut until the answer is small beside
-// the motion of `rest`, `moves`.
-Eigen::VectorXd tangent(const Study& study, const Study::Rows& rest, double moves, const Eigen::VectorXd& start,
-                        Eigen::Index j) {
-  double amplitude = kProbe * study.model().prior_std()[j];
+// Returns d rows / d w_j. A slender body answers to what leaves a stout one alone. So the step is cut until the answer is
+// small compared with `moves`, the motion of `rest`.
+Eigen::VectorXd tangent(const RecordingFit& recording_fit, const RecordingFit::Rows& rest, double moves,
+                        const Eigen::VectorXd& start, Eigen::Index j) {
+  double amplitude = kProbe * recording_fit.model().prior_std()[j];
   for (int probe = 1;; ++probe) {
     Eigen::VectorXd moved = start;
     moved[j] += amplitude;
-    Eigen::VectorXd column = difference(study.predicted(moved), rest, amplitude);
+    Eigen::VectorXd column = difference(recording_fit.predicted(moved), rest, amplitude);
     const double change = amplitude * column.norm() / std::sqrt(static_cast<double>(column.size()));
     if (!(change > kFar * moves) || moves == 0.0 || probe == kMostProbes) return column;
     amplitude *= kNear * moves / change;
   }
 }
 
-// Free parameters that the model has beyond the base's, in order.
-std::vector<Eigen::Index> added_parameters(const Study& study, const Study& base) {
+// Returns the free parameters that the model has beyond the base's, in order.
+std::vector<Eigen::Index> added_parameters(const RecordingFit& recording_fit, const RecordingFit& base) {
   std::vector<Eigen::Index> added;
-  for (std::size_t i = 0; i < study.model().free_parameters().size(); ++i) {
-    if (base.index(study.model().free_parameters()[i].name) < 0) added.push_back(static_cast<Eigen::Index>(i));
+  for (std::size_t i = 0; i < recording_fit.model().free_parameters().size(); ++i) {
+    if (base.index(recording_fit.model().free_parameters()[i].name) < 0) added.push_back(static_cast<Eigen::Index>(i));
   }
   return added;
 }
 
-// Tangents of the added parameters of one study, `components` columns for each candidate in turn.
-void read_tangents(const Study& study, const Study& base, const Eigen::VectorXd& w,
+// Reads the tangents of the added parameters of one recording fit; each candidate in turn has `components` columns.
+void read_tangents(const RecordingFit& recording_fit, const RecordingFit& base, const Eigen::VectorXd& w,
                    const std::vector<Candidate*>& candidates, const std::function<void(double)>& over) {
-  const Eigen::VectorXd start = study.extend(base, w);
-  const Study::Rows rest = study.rows(start);
+  const Eigen::VectorXd start = recording_fit.extend(base, w);
+  const RecordingFit::Rows rest = recording_fit.rows(start);
   const double moves = motion(rest);
-  const std::vector<Eigen::Index> added = added_parameters(study, base);
+  const std::vector<Eigen::Index> added = added_parameters(recording_fit, base);
   Eigen::MatrixXd columns(rest.error.size(), static_cast<Eigen::Index>(added.size()));
   for_each_index(added.size(), [&](std::size_t j) {
-    columns.col(static_cast<Eigen::Index>(j)) = tangent(study, rest, moves, start, added[j]);
+    columns.col(static_cast<Eigen::Index>(j)) = tangent(recording_fit, rest, moves, start, added[j]);
     over(static_cast<double>(candidates.size()) / static_cast<double>(added.size()));
   });
   Eigen::Index at = 0;
@@ -101,14 +101,14 @@ void read_tangents(const Study& study, const Study& base, const Eigen::VectorXd&
     tangent.columns = columns.middleCols(at, counts[c]);
     tangent.prior_std.resize(counts[c]);
     for (Eigen::Index i = 0; i < counts[c]; ++i) {
-      tangent.prior_std[i] = study.model().prior_std()[added[static_cast<std::size_t>(at + i)]];
+      tangent.prior_std[i] = recording_fit.model().prior_std()[added[static_cast<std::size_t>(at + i)]];
     }
     at += counts[c];
   }
 }
 
-// Effects among the candidates that a reduced basis holds whole, by one model of them all.
-std::set<std::string> linear_effects(const Study& base, const std::vector<Candidate>& candidates) {
+// Returns the effects among the candidates that a reduced basis holds whole, by one model of them all.
+std::set<std::string> linear_effects(const RecordingFit& base, const std::vector<Candidate>& candidates) {
   ModelSettings settings = base.model().settings();
   const std::size_t before = settings.effects.size();
   std::vector<std::string> names;
@@ -131,8 +131,9 @@ bool Candidate::allows(const Eigen::VectorXd& amplitude) const {
   return amplitude.size() == 0 || (amplitude.minCoeff() >= lower && amplitude.maxCoeff() <= upper);
 }
 
-std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd& w, const std::vector<std::string>& ignore,
-                                       const CountProgress& progress, Library& library) {
+std::vector<Candidate> find_candidates(const RecordingFit& base, const Eigen::VectorXd& w,
+                                       const std::vector<std::string>& ignore, const CountProgress& progress,
+                                       Library& library) {
   const ProposalContext context = context_of(base, w);
   std::vector<Candidate> all;
   for (const EffectSpec& spec : effect_specs()) {
@@ -161,7 +162,7 @@ std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd&
     progress(static_cast<std::size_t>(done + 1e-6), all.size());
   };
   const auto read = [&](const std::vector<std::size_t>& members, int per_part, BasisOptions::Nonlinear nonlinear,
-                        std::shared_ptr<const Study>& study) {
+                        std::shared_ptr<const RecordingFit>& recording_fit) {
     if (members.empty()) return;
     ModelSettings settings = base.model().settings();
     std::vector<Candidate*> candidates;
@@ -172,17 +173,17 @@ std::vector<Candidate> find_candidates(const Study& base, const Eigen::VectorXd&
     BasisOptions options;
     options.per_part = per_part;
     options.nonlinear = nonlinear;
-    options.adopt = study != nullptr;
-    study = std::make_shared<const Study>(settings, study ? *study : base, options);
-    read_tangents(*study, base, w, candidates, over);
+    options.adopt = recording_fit != nullptr;
+    recording_fit = std::make_shared<const RecordingFit>(settings, recording_fit ? *recording_fit : base, options);
+    read_tangents(*recording_fit, base, w, candidates, over);
   };
   run_side_by_side([&] { read(linear_ones, 4, BasisOptions::Nonlinear::left_out, library.linear); },
                    [&] { read(others, 16, BasisOptions::Nonlinear::first_order, library.others); });
   return all;
 }
 
-std::vector<EffectEntry> entries_of_time_steps(const Study& study, const Eigen::VectorXd& w) {
-  const ProposalContext context = context_of(study, w);
+std::vector<EffectEntry> entries_of_time_steps(const RecordingFit& recording_fit, const Eigen::VectorXd& w) {
+  const ProposalContext context = context_of(recording_fit, w);
   std::vector<EffectEntry> entries;
   for (const EffectSpec& spec : effect_specs()) {
     if (!spec.of_simulation) continue;
@@ -191,13 +192,14 @@ std::vector<EffectEntry> entries_of_time_steps(const Study& study, const Eigen::
   return entries;
 }
 
-Eigen::MatrixXd tangents_of_time_steps(const Study& study, const Eigen::VectorXd& w, const Study::Rows& rows) {
-  const std::vector<EffectEntry> entries = entries_of_time_steps(study, w);
+Eigen::MatrixXd tangents_of_time_steps(const RecordingFit& recording_fit, const Eigen::VectorXd& w,
+                                       const RecordingFit::Rows& rows) {
+  const std::vector<EffectEntry> entries = entries_of_time_steps(recording_fit, w);
   if (entries.empty()) return Eigen::MatrixXd(rows.error.size(), 0);
-  const Study extended(extend_model(study.model().settings(), entries), study, {});
-  const Eigen::VectorXd start = extended.extend(study, w), std = extended.model().prior_std();
-  const std::vector<Eigen::Index> added = added_parameters(extended, study);
-  Study::Rows rest = rows;
+  const RecordingFit extended(extend_model(recording_fit.model().settings(), entries), recording_fit, {});
+  const Eigen::VectorXd start = extended.extend(recording_fit, w), std = extended.model().prior_std();
+  const std::vector<Eigen::Index> added = added_parameters(extended, recording_fit);
+  RecordingFit::Rows rest = rows;
   rest.predicted = extended.predicted(start);
   const double moves = motion(rest);
   Eigen::MatrixXd out(rows.error.size(), static_cast<Eigen::Index>(added.size()));
@@ -207,8 +209,8 @@ Eigen::MatrixXd tangents_of_time_steps(const Study& study, const Eigen::VectorXd
   return out;
 }
 
-Eigen::MatrixXd base_tangents(const Study& base, const Eigen::VectorXd& w, const Eigen::VectorXd& std,
-                              const Study::Rows& rows) {
+Eigen::MatrixXd base_tangents(const RecordingFit& base, const Eigen::VectorXd& w, const Eigen::VectorXd& std,
+                              const RecordingFit::Rows& rows) {
   Eigen::MatrixXd out(rows.error.size(), w.size());
   for_each_index(static_cast<std::size_t>(w.size()), [&](std::size_t k) {
     const auto i = static_cast<Eigen::Index>(k);

@@ -10,11 +10,11 @@
 
 #include "tissue_stiffness/diagnosis/belief_map.hpp"
 #include "tissue_stiffness/diagnosis/finding.hpp"
-#include "tissue_stiffness/diagnosis/first_look.hpp"
 #include "tissue_stiffness/diagnosis/fit_entries.hpp"
 #include "tissue_stiffness/diagnosis/missing_force.hpp"
 #include "tissue_stiffness/diagnosis/mix_explanations.hpp"
 #include "tissue_stiffness/diagnosis/residual_views.hpp"
+#include "tissue_stiffness/diagnosis/screening.hpp"
 #include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/estimation/mesh_error.hpp"
 #include "tissue_stiffness/estimation/posterior.hpp"
@@ -28,30 +28,31 @@ namespace {
 
 constexpr std::size_t kFewestFrames = 18;
 constexpr double kBaseSpread = 0.1;    // prior standard deviations, of the sigma points of the first fit
-constexpr int kMostBases = 3;          // looks that are repeated because the model fits better elsewhere
+constexpr int kMostBases = 3;          // rounds that are repeated because the model fits better elsewhere
 constexpr std::size_t kGrown = 2;      // leaders that are tried as one of several effects
-constexpr double kAddedSpread = 0.02;  // and of a model's that starts from a refit
+constexpr double kAddedSpread = 0.02;  // prior standard deviations, of those of a model that starts from a refit
 
-Fitted fit_model(const ModelSettings& settings, const TetMesh& mesh, const Recording& recording) {
-  auto study = std::make_unique<Study>(settings, mesh, recording);
-  const Eigen::VectorXd start = study->scan(study->model().prior_mean());
-  return fit_study(std::move(study), start, kBaseSpread);
+FittedModel fit_model(const ModelSettings& settings, const TetMesh& mesh, const Recording& recording) {
+  auto recording_fit = std::make_unique<RecordingFit>(settings, mesh, recording);
+  const Eigen::VectorXd start = recording_fit->scan(recording_fit->model().prior_mean());
+  return fit_recording(std::move(recording_fit), start, kBaseSpread);
 }
 
-// The refit's model; run in full where that was not worth it before.
-Fitted extended(const Fitted& base, const Refit& refit) {
+// Returns the refit's model, run in full where that was not worth it before.
+FittedModel extended(const FittedModel& base, const Refit& refit) {
   if (refit.model) return std::move(*refit.model);
-  auto study = std::make_unique<Study>(extend_model(base.study->model().settings(), {refit.entry}), *base.study);
-  const Model& model = study->model();
-  return fit_study(std::move(study), model.coordinates(refit.parameters, model.prior_mean()), kAddedSpread);
+  auto recording_fit = std::make_unique<RecordingFit>(extend_model(base.recording_fit->model().settings(), {refit.entry}),
+                                                      *base.recording_fit);
+  const Model& model = recording_fit->model();
+  return fit_recording(std::move(recording_fit), model.coordinates(refit.parameters, model.prior_mean()), kAddedSpread);
 }
 
-DiagnosisStep step_of(const Fitted& model, const Explained& explained, const Recording& recording,
+DiagnosisStep step_of(const FittedModel& model, const Explained& explained, const Recording& recording,
                       const std::vector<std::string>& effects) {
   DiagnosisStep step;
   step.effects = effects;
-  step.parameters = model.study->model().values(model.fit.w);
-  Study::Rows compared = model.rows;
+  step.parameters = model.recording_fit->model().values(model.fit.w);
+  RecordingFit::Rows compared = model.rows;
   compared.error = explained.error;
   step.train_rms = rms_error(compared, recording, false);
   step.held_out_rms = rms_error(compared, recording, true);
@@ -59,7 +60,8 @@ DiagnosisStep step_of(const Fitted& model, const Explained& explained, const Rec
   return step;
 }
 
-// What `next` has beyond the model acts on the body, or in a sensor, and leaves the body's own mass and stiffness alone.
+// Returns whether all that `next` has beyond the model acts on the body or in a sensor, and leaves the body's own mass and
+// stiffness alone.
 bool same_body(const Model& model, const Model& next) {
   return std::all_of(next.parts().begin(), next.parts().end(), [&model](const Model::Part& part) {
     const auto same = [&part](const Model::Part& known) { return known.label == part.label; };
@@ -69,11 +71,11 @@ bool same_body(const Model& model, const Model& next) {
   });
 }
 
-void describe_residual(const Fitted& model, Diagnosis& out) {
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();  // what the mesh changes, as yet
-  out.where = where_it_fails(*model.study, model.rows);
-  out.when = when_it_fails(*model.study, model.rows);
-  out.residual = residual_views(*model.study, model.rows);
+void describe_residual(const FittedModel& model, Diagnosis& out) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();  // what the mesh changes is not known yet
+  out.where = where_it_fails(*model.recording_fit, model.rows);
+  out.when = when_it_fails(*model.recording_fit, model.rows);
+  out.residual = residual_views(*model.recording_fit, model.rows);
   const double count = model.rows.count();
   const double sigma = noise_floor(model.rows);
   out.sigmas = {std::sqrt(model.rows.error.squaredNorm() / count), 1.0, unknown, 0.0};
@@ -82,21 +84,7 @@ void describe_residual(const Fitted& model, Diagnosis& out) {
   out.metres = {total, sigma, unknown, std::sqrt(std::max(0.0, total * total - sigma * sigma))};
 }
 
-std::string to_string(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::adequate:
-      return "adequate";
-    case Verdict::missing:
-      return "missing";
-    case Verdict::numerics:
-      return "numerics";
-    case Verdict::unexplained:
-      return "unexplained";
-  }
-  return "unfinished";
-}
-
-BestExplanation best_of(const Fitted& model, const Finding& finding) {
+BestExplanation best_of(const FittedModel& model, const Finding& finding) {
   if (finding.refits.empty()) return {};
   const auto named = [&](const Refit& r) { return !finding.set.empty() && r.effect == finding.set.front(); };
   const auto at = std::find_if(finding.refits.begin(), finding.refits.end(), named);
@@ -104,25 +92,25 @@ BestExplanation best_of(const Fitted& model, const Finding& finding) {
   return {{best.effect}, 1.0 - best.cost / model.rows.error.squaredNorm(), best.held_out_rms};
 }
 
-// Of a linear model its estimator finds this out, and corrects E.
-Eigen::MatrixXd doubt_of_nonlinear(const Fitted& fitted, const Recording& recording) {
-  const Model& model = fitted.study->model();
+// Returns zero for a linear model, whose estimator finds this out and corrects E.
+Eigen::MatrixXd mesh_discrepancy_of_nonlinear(const FittedModel& fitted, const Recording& recording) {
+  const Model& model = fitted.recording_fit->model();
   const Eigen::VectorXd& w = fitted.fit.w;
   const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(w.size(), w.size());
   if (!model.nonlinear() || !MeshError::why_not(model).empty()) return none;
   const MeshError::Question question(model, recording.frames, w, fitted.fit.covariance.diagonal().cwiseSqrt(),
                                      model.prior_std());
   try {
-    return mesh_doubt(model, MeshError(model, model.theta(w)).study(question).shift);
+    return mesh_discrepancy(model, MeshError(model, model.theta(w)).study(question).shift);
   } catch (const NumericalError&) {
     return none;
   }
 }
 
-// The model's parameters as the best explanation has them: without it they make up for what is missing.
-Eigen::VectorXd believed(const Fitted& model, const Finding& finding) {
+// Returns the model's parameters as the best explanation has them: without it they compensate for what is missing.
+Eigen::VectorXd believed(const FittedModel& model, const Finding& finding) {
   if (finding.verdict != Verdict::missing) return model.fit.w;
-  return model.study->model().coordinates(finding.refits.front().parameters, model.fit.w);
+  return model.recording_fit->model().coordinates(finding.refits.front().parameters, model.fit.w);
 }
 
 std::map<std::string, double> modulus_ratios(const std::map<std::string, double>& parameters,
@@ -135,7 +123,7 @@ std::map<std::string, double> modulus_ratios(const std::map<std::string, double>
   return out;
 }
 
-// The other explanations of the set, by their shares of its probability.
+// Returns the other explanations of the set, by their shares of its probability.
 std::vector<RivalExplanation> rivals_of(const Finding& finding, const Refit& added) {
   const auto believed = [&](const std::string& effect) {
     return std::find(finding.set.begin(), finding.set.end(), effect) != finding.set.end();
@@ -153,9 +141,9 @@ std::vector<RivalExplanation> rivals_of(const Finding& finding, const Refit& add
   return out;
 }
 
-// What may act besides, by what it would do to the last model's moduli.
-std::vector<RivalExplanation> traces_of(const Finding& finding, const Fitted& last) {
-  const std::map<std::string, double> own = last.study->model().values(last.fit.w);
+// Returns what else may act, by what it would do to the last model's moduli.
+std::vector<RivalExplanation> traces_of(const Finding& finding, const FittedModel& last) {
+  const std::map<std::string, double> own = last.recording_fit->model().values(last.fit.w);
   std::vector<RivalExplanation> out;
   for (const Trace& trace : finding.comparison.traces()) {
     const auto same = [&](const Refit& r) { return r.effect == trace.hypothesis->effects.back(); };
@@ -166,7 +154,7 @@ std::vector<RivalExplanation> traces_of(const Finding& finding, const Fitted& la
   return out;
 }
 
-/// The search: what is known so far is always in `out`.
+/// The search keeps all that is known so far in `out`.
 class Search {
  public:
   Search(const Recording& recording, const DiagnosisOptions& options, Diagnosis& out)
@@ -193,7 +181,7 @@ class Search {
       describe_residual(model_, out_);
     }
     if (finding_.verdict == Verdict::unexplained) grow();
-    out_.verdict = out_.final_verdict = to_string(finding_.verdict);
+    out_.verdict = out_.final_verdict = finding_.verdict;
     out_.adequate = finding_.comparison.given().probability;
     out_.none_of_these = finding_.comparison.none_of_these();
     out_.z = finding_.comparison.given().z;
@@ -203,12 +191,12 @@ class Search {
     out_.candidates = finding_.effects;
     out_.next_experiment = next_experiment(finding_.set);
     out_.valid_given = out_.valid_final = validity();
-    out_.sigmas.numerical = finding_.floor;
-    out_.metres.numerical = finding_.floor * out_.metres.noise;
+    out_.sigmas.numerical = finding_.discretisation_error;
+    out_.metres.numerical = finding_.discretisation_error * out_.metres.noise;
     publish();
     if (!lacks_something()) return;
     options_.progress("the force that is missing", 0, 0);
-    out_.force = missing_force(*model_.study, believed(model_, finding_));
+    out_.force = missing_force(*model_.recording_fit, believed(model_, finding_));
   }
 
   void add_effects() {
@@ -217,28 +205,28 @@ class Search {
     for (std::size_t k = 0; k < most; ++k) {
       if (k >= asked && finding_.verdict != Verdict::missing) break;
       const std::vector<Refit> refits =
-          k < asked ? look(model_, {options_.add[k]}, options_, finding_.earlier).refits : finding_.refits;
+          k < asked ? diagnose_once(model_, {options_.add[k]}, options_, finding_.previous).refits : finding_.refits;
       if (refits.empty()) break;
       const Library library = add(refits.front());
       bool moved = false;
-      finding_ = grown_ ? std::move(*grown_) : examine(model_, beside(library, SearchDepth::tangents), moved);
+      finding_ = grown_ ? std::move(*grown_) : examine(model_, after_adding(library, SearchDepth::tangents), moved);
       grown_.reset();
       if (moved) replace_step();
-      out_.final_verdict = to_string(finding_.verdict);
+      out_.final_verdict = finding_.verdict;
     }
   }
 
   void conclude() {
     if (!out_.final_effects.empty()) out_.valid_final = validity();
-    // What was added first was fitted while the rest was missing.
-    fit_entries(entries_, model_.study->model(), model_.fit);
+    // What was added first was fitted while the rest was missing, so its prior takes the last fit.
+    fit_entries(entries_, model_.recording_fit->model(), model_.fit);
     out_.entries.clear();
     for (const EffectEntry& entry : entries_) out_.entries.push_back(to_yaml(entry));
-    estimate(doubt_of_nonlinear(model_, recording_));
+    estimate(mesh_discrepancy_of_nonlinear(model_, recording_));
     out_.traces = traces_of(finding_, model_);
     options_.progress("run the models once more for the report", 0, 0);
     publish();
-    options_.at_end(out_, given_.study ? given_ : model_, model_, finding_.earlier.finer.get());
+    options_.at_end(out_, given_.recording_fit ? given_ : model_, model_, finding_.previous.finer.get());
     std::vector<std::vector<RivalExplanation>> mixed = out_.rivals;
     mixed.push_back(out_.traces);
     mix_explanations(mixed, out_.estimate.parameters);
@@ -248,40 +236,40 @@ class Search {
  private:
   bool lacks_something() const { return finding_.verdict == Verdict::missing || finding_.verdict == Verdict::unexplained; }
 
-  // For a look at a model that has an effect more.
-  Earlier beside(const Library& library, SearchDepth search) const {
-    return {finding_.earlier.finer, finding_.models, library, search};
+  // Returns what a round on a model with one more effect takes over.
+  PreviousRound after_adding(const Library& library, SearchDepth search) const {
+    return {finding_.previous.finer, finding_.models, library, search};
   }
 
-  // Looks until the model fits nowhere better; `moved`: it does not stay where it was.
+  // Repeats rounds until the model fits nowhere better. `moved` says that it does not stay where it was.
   Finding examine(
-      Fitted& model, const Earlier& earlier, bool& moved,
+      FittedModel& model, const PreviousRound& previous, bool& moved,
       const CandidatesSoFar& so_far = [](std::vector<MissingEffect>) {}) {
-    const int most = earlier.search == SearchDepth::all ? kMostBases : 1;
-    Finding out = look(model, {}, options_, earlier, so_far);
+    const int most = previous.search == SearchDepth::all ? kMostBases : 1;
+    Finding out = diagnose_once(model, {}, options_, previous, so_far);
     moved = out.base_moved;
     for (int k = 1; out.to_repeat; ++k) {
-      Earlier next = out.earlier;
+      PreviousRound next = out.previous;
       next.settled = k == most;
-      out = look(model, {}, options_, next, so_far);
+      out = diagnose_once(model, {}, options_, next, so_far);
       moved = true;
     }
     return out;
   }
 
   // Several effects may be missing, of which none explains the error alone. Each leader in turn that explains a part of it
-  // is taken for one of them, and what is found beside it is compared with the rest.
+  // is taken for one of them. What is found beside it is compared with the rest.
   void grow() {
     const double cost = model_.rows.error.squaredNorm(), structured = structured_squares(model_.rows);
     for (std::size_t i = 0; i < std::min(kGrown, finding_.refits.size()); ++i) {
       Refit& leader = finding_.refits[i];
       if (!(cost - leader.cost > kComparison.promising * structured)) continue;
       options_.progress("what is missing beside " + leader.effect, 0, 0);
-      auto next = std::make_shared<Fitted>(extended(model_, leader));
-      const bool same = same_body(model_.study->model(), next->study->model());
+      auto next = std::make_shared<FittedModel>(extended(model_, leader));
+      const bool same = same_body(model_.recording_fit->model(), next->recording_fit->model());
       bool moved = false;
-      const SearchDepth depth = i == 0 ? SearchDepth::beginning : SearchDepth::tangents;
-      Finding deeper = examine(*next, beside(same ? finding_.earlier.library : Library(), depth), moved);
+      const SearchDepth depth = i == 0 ? SearchDepth::initial_segment : SearchDepth::tangents;
+      Finding deeper = examine(*next, after_adding(same ? finding_.previous.library : Library(), depth), moved);
       leader.model = next;
       if (deeper.models->noise_variance() < finding_.models->noise_variance()) finding_.models = deeper.models;
       Comparison all = finding_.comparison;
@@ -315,19 +303,20 @@ class Search {
   Assessment assessment() const { return finding_.models->assess(explained_); }
   BeliefMap validity() const { return belief_map(model_, assessment().left, *finding_.models); }
 
-  // The library of tangents that the next look may take over.
+  // Returns the library of tangents that the next round may take over.
   Library add(const Refit& best) {
     options_.progress("add " + best.effect, 0, 0);
     // What is found beside another effect was compared beside that one only.
     out_.rivals.push_back(grown_ ? std::vector<RivalExplanation>() : rivals_of(finding_, best));
-    Fitted next = extended(model_, best);
-    Library library =
-        same_body(model_.study->model(), next.study->model()) ? std::move(finding_.earlier.library) : Library();
+    FittedModel next = extended(model_, best);
+    Library library = same_body(model_.recording_fit->model(), next.recording_fit->model())
+                          ? std::move(finding_.previous.library)
+                          : Library();
     out_.final_effects.push_back(best.effect);
     entries_.push_back(best.entry);
     out_.entries.push_back(to_yaml(best.entry));
-    out_.final_verdict = "unfinished";
-    if (!given_.study) given_ = std::move(model_);
+    out_.final_verdict = Verdict::unfinished;
+    if (!given_.recording_fit) given_ = std::move(model_);
     model_ = std::move(next);
     add_step();
     return library;
@@ -338,15 +327,15 @@ class Search {
     publish_step();
   }
 
-  // The model has been fitted anew.
+  // Replaces the last step after the model has been fitted anew.
   void replace_step() {
     out_.steps.back() = next_step();
     publish_step();
   }
 
-  // May be interrupted: what is published stays whole.
+  // This may be interrupted, so what is published stays whole.
   DiagnosisStep next_step() {
-    explained_ = explain(model_);
+    explained_ = compared_residual(model_);
     return step_of(model_, explained_, recording_, out_.final_effects);
   }
 
@@ -355,8 +344,9 @@ class Search {
     publish();
   }
 
-  void estimate(const Eigen::MatrixXd& doubt) {
-    out_.estimate = summarise(model_.study->model().free_parameters(), model_.fit.w, model_.fit.covariance + doubt);
+  void estimate(const Eigen::MatrixXd& discrepancy) {
+    out_.estimate = summarise_posterior(model_.recording_fit->model().free_parameters(), model_.fit.w,
+                                        model_.fit.covariance + discrepancy);
   }
 
   void publish() {
@@ -368,7 +358,7 @@ class Search {
   const Recording& recording_;
   DiagnosisOptions options_;
   Diagnosis& out_;
-  Fitted given_, model_;              ///< given_ is empty as long as model_ is the given one
+  FittedModel given_, model_;         ///< given_ is empty as long as model_ is the given one
   Explained explained_;               ///< model_ as it is compared
   Finding finding_;                   ///< of model_
   std::optional<Finding> grown_;      ///< of model_ with the best refit; empty where that explains the error alone
@@ -383,14 +373,14 @@ Diagnosis diagnose(const ModelSettings& settings, const TetMesh& mesh, const Rec
     throw InputError(settings.name, std::to_string(recording.frames.size()) + " usable frames",
                      "at least " + std::to_string(kFewestFrames) + " to hold some of them out");
   }
-  for (const std::string& name : options.ignore) effect_spec({name, name, {}});  // throws what is none
+  for (const std::string& name : options.ignore) effect_spec({name, name, {}});  // throws for an unknown effect
   Diagnosis out;
   Search search(recording, options, out);
   try {
     search.judge_given(settings, mesh);
     search.add_effects();
     search.conclude();
-  } catch (const Interrupted&) {  // `out` says during what
+  } catch (const Interrupted&) {  // `out` says during which step
   }
   return out;
 }

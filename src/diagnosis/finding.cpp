@@ -11,26 +11,27 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kTwin = 0.9;  // cosine above which two effects look alike
+constexpr double kTwin = 0.9;  // cosine above which two effects are indistinguishable
 
-void require_proposed(const FirstLook& look, const std::vector<std::string>& wanted) {
+void require_proposed(const Screening& screening, const std::vector<std::string>& wanted) {
   for (const std::string& effect : wanted) {
-    if (std::none_of(look.ranked.begin(), look.ranked.end(), [&](const Ranked& r) { return r.effect == effect; })) {
+    if (std::none_of(screening.ranked.begin(), screening.ranked.end(),
+                     [&](const Ranked& r) { return r.effect == effect; })) {
       throw InputError("--add", effect, "an effect that the library proposes for this model");
     }
   }
 }
 
-// As the tangents have it.
-MissingEffect describe(const FirstLook& look, const Ranked& r) {
+// Describes a candidate as the tangents have it.
+MissingEffect describe_candidate(const Screening& screening, const Ranked& r) {
   MissingEffect out;
   out.effect = r.effect;
   out.entry = to_yaml(r.best->proposal.entry);
   out.log_bayes_factor = r.evidence;
   const Eigen::VectorXd& amplitude = r.score.amplitude;
-  const double gain = r.score.explained / look.comparison.noise_variance();
+  const double gain = r.score.explained / screening.comparison.noise_variance();
   out.p_value = likelihood_ratio_p_value(gain, static_cast<double>(amplitude.size()));
-  out.explained = r.score.explained / look.cost;
+  out.explained = r.score.explained / screening.cost;
   for (Eigen::Index i = 0; i < amplitude.size(); ++i) {
     const std::string suffix = amplitude.size() > 1 ? std::string("_") + "xyz"[i] : "";
     out.parameters[r.effect + "." + r.best->proposal.amplitude + suffix] = amplitude[i];
@@ -38,34 +39,34 @@ MissingEffect describe(const FirstLook& look, const Ranked& r) {
   return out;
 }
 
-MissingEffect describe(const FirstLook& look, const RefitList& refits, const Refit& refit) {
+MissingEffect describe_candidate(const Screening& screening, const RefitList& refits, const Refit& refit) {
   MissingEffect out;
   out.effect = refit.effect;
   out.entry = to_yaml(refit.entry);
   out.parameters = refit.parameters;
   out.log_bayes_factor = refits.log_bayes_factor(refit);
   const double gain = 2.0 * (refit.assessment.log_likelihood - refits.given().log_likelihood);
-  out.p_value = likelihood_ratio_p_value(gain, static_cast<double>(parameters_of(*refit.way)));
-  out.explained = 1.0 - refit.cost / look.cost;
+  out.p_value = likelihood_ratio_p_value(gain, static_cast<double>(parameters_of(*refit.candidate)));
+  out.explained = 1.0 - refit.cost / screening.cost;
   out.held_out_rms_after = refit.held_out_rms;
   return out;
 }
 
-// Refitted ones first, in the order of their refits; then the others, by the tangents' evidence.
-std::vector<MissingEffect> describe(const FirstLook& look, const RefitList& refits) {
+// Refitted effects come first, in the order of their refits; then the others, by the tangents' evidence.
+std::vector<MissingEffect> describe_candidate(const Screening& screening, const RefitList& refits) {
   std::vector<MissingEffect> out;
-  for (const Refit& refit : refits.all()) out.push_back(describe(look, refits, refit));
-  for (const Ranked& r : look.ranked) {
+  for (const Refit& refit : refits.all()) out.push_back(describe_candidate(screening, refits, refit));
+  for (const Ranked& r : screening.ranked) {
     const bool known = std::any_of(out.begin(), out.end(), [&](const MissingEffect& e) { return e.effect == r.effect; });
-    if (!known) out.push_back(describe(look, r));
+    if (!known) out.push_back(describe_candidate(screening, r));
   }
-  const double before = rms_error(look.base.rows, look.base.study->recording(), true);
+  const double before = rms_error(screening.base.rows, screening.base.recording_fit->recording(), true);
   for (MissingEffect& effect : out) {
     effect.held_out_rms_before = before;
-    effect.size = std::sqrt(std::max(0.0, effect.explained) * look.cost / look.base.rows.count());
+    effect.size = std::sqrt(std::max(0.0, effect.explained) * screening.cost / screening.base.rows.count());
     const auto same = [&](const Ranked& r) { return r.effect == effect.effect; };
-    const Score& own = std::find_if(look.ranked.begin(), look.ranked.end(), same)->score;
-    for (const Ranked& other : look.ranked) {
+    const Score& own = std::find_if(screening.ranked.begin(), screening.ranked.end(), same)->score;
+    for (const Ranked& other : screening.ranked) {
       if (same(other)) continue;
       const double cosine = own.cosine_with(other.score);
       if (cosine > kTwin) effect.confusable_with.push_back({other.effect, cosine});
@@ -92,20 +93,20 @@ void Finding::believe(Comparison known) {
   }
 }
 
-Finding look(Fitted& base, const std::vector<std::string>& wanted, const DiagnosisOptions& options, const Earlier& earlier,
-             const CandidatesSoFar& so_far) {
-  FirstLook look(base, options, earlier);
-  require_proposed(look, wanted);
+Finding diagnose_once(FittedModel& base, const std::vector<std::string>& wanted, const DiagnosisOptions& options,
+                      const PreviousRound& previous, const CandidatesSoFar& so_far) {
+  Screening screening(base, options, previous);
+  require_proposed(screening, wanted);
   Finding out;
-  RefitList refits(look, options, [&](const RefitList& fitted) { so_far(describe(look, fitted)); });
-  so_far(describe(look, refits));
-  out.to_repeat = search_refits(look, wanted, refits);
+  RefitList refits(screening, options, [&](const RefitList& fitted) { so_far(describe_candidate(screening, fitted)); });
+  so_far(describe_candidate(screening, refits));
+  out.to_repeat = search_refits(screening, wanted, refits);
   out.models = std::make_shared<const ModelComparison>(refits.comparison());
-  out.effects = describe(look, refits);
+  out.effects = describe_candidate(screening, refits);
   out.believe(refits.compare());
   out.refits = refits.take();
-  out.floor = look.floor;
-  out.earlier = {look.finer.study, out.models, look.library, look.search};
+  out.discretisation_error = screening.discretisation_error;
+  out.previous = {screening.finer.recording_fit, out.models, screening.library, screening.search};
   out.base_moved = refits.base_moved();
   return out;
 }

@@ -8,23 +8,23 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kLeastFactor = 1.02;  // of a log-normal prior
+constexpr double kLeastFactor = 1.02;  // least factor of a log-normal prior
 constexpr double kPriorWidth = 5.0;    // posterior standard deviations
-constexpr double kRoom = 0.5;          // of the distance to a parameter's bound: the most that they have
-constexpr double kLeastShare = 1e-3;   // of the model's own prior: the least
+constexpr double kRoom = 0.5;          // of the distance to a parameter's bound: largest width
+constexpr double kLeastShare = 1e-3;   // of the model's own prior: smallest width
 
-// A prior that reaches beyond the parameter's bounds would have sigma points where no body can be.
+// A prior that reached beyond the parameter's bounds would have sigma points where no body can be.
 double within_bounds(double width, const FreeParameter& p, double value) {
   return std::min(width, kRoom * std::min(value - p.lower, p.upper - value));
 }
 
 Quantity fitted(const FreeParameter& p, double at, double width) {
   if (p.prior.kind == Quantity::Kind::log_normal)
-    return log_normal(p.to_value(at), std::max(std::exp(std::min(width, 3.0)), kLeastFactor));
-  return normal(p.to_value(at), std::max(within_bounds(width, p, at), kLeastShare * p.prior.spread));
+    return log_normal_prior(p.to_value(at), std::max(std::exp(std::min(width, 3.0)), kLeastFactor));
+  return normal_prior(p.to_value(at), std::max(within_bounds(width, p, at), kLeastShare * p.prior.spread));
 }
 
-// `label`: of the effect in the model.
+// `label` is that of the effect in the model.
 void fit_entry(EffectEntry& entry, const std::string& label, const Model& model, const BatchFit& fit) {
   const std::vector<FreeParameter>& free = model.free_parameters();
   for (auto& [key, argument] : entry.arguments) {
@@ -35,7 +35,7 @@ void fit_entry(EffectEntry& entry, const std::string& label, const Model& model,
     const auto k = static_cast<Eigen::Index>(at - free.begin());
     const double width = kPriorWidth * std::sqrt(fit.covariance(k, k));
     if (vector) {
-      argument = normal(Eigen::Vector3d(fit.w.segment<3>(k)), std::max(width, kLeastShare * at->prior.spread));
+      argument = normal_prior(Eigen::Vector3d(fit.w.segment<3>(k)), std::max(width, kLeastShare * at->prior.spread));
     } else {
       argument = fitted(*at, fit.w[k], width);
     }

@@ -12,13 +12,13 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr double kLevels[] = {1.0, 0.3, 0.1, 0.03, 0.01};  // of the forces that move the modes
-constexpr double kWalks[] = {0.0, 0.03, 0.1, 0.3, 1.0};    // of the level: step from frame to frame
+constexpr double kWalks[] = {0.0, 0.03, 0.1, 0.3, 1.0};    // of the level: size of the step from frame to frame
 constexpr double kModeLikelier = 10.0;                     // fall of the deviance that the force on a mode must bring
 constexpr std::pair<double, double> kNoChange{1, 1};
-// of the common level and of its step, for a mode of its own
+// These are factors on the common level and on its step, for each mode on its own.
 constexpr std::pair<double, double> kOwn[] = {{0, 0}, {0.3, 0.3}, {3, 3}, {1, 0}, {1, 0.1}, {1, 0.3}, {1, 3}, {1, 10}};
 
-/// The state, x = (q, v, f), after a transition.
+/// Returns the state, x = (q, v, f), after a transition.
 Eigen::MatrixXd after(const ModalTransition& t, const Eigen::MatrixXd& x) {
   const Eigen::Index m = t.qq.size();
   const auto q = x.topRows(m).array(), v = x.middleRows(m, m).array(), f = x.bottomRows(m).array();
@@ -29,7 +29,8 @@ Eigen::MatrixXd after(const ModalTransition& t, const Eigen::MatrixXd& x) {
   return out;
 }
 
-/// What weighs on the state before a transition of what weighs on it after: the transposed transition.
+/// Applies the transposed transition: it turns what weighs on the state after a transition into what weighs on the state
+/// before.
 Eigen::VectorXd before(const ModalTransition& t, const Eigen::VectorXd& r) {
   const Eigen::Index m = t.qq.size();
   const auto q = r.head(m).array(), v = r.segment(m, m).array(), f = r.tail(m).array();
@@ -38,16 +39,16 @@ Eigen::VectorXd before(const ModalTransition& t, const Eigen::VectorXd& r) {
   return out;
 }
 
-/// The state before a frame's evidence, and what that evidence does to it.
+/// It holds the state before a frame's evidence, and what that evidence does to it.
 struct Passed {
   Eigen::VectorXd x;
   Eigen::MatrixXd p;
-  Eigen::VectorXd pull;   ///< x + P (pull, 0, 0): after the evidence
-  Eigen::MatrixXd grasp;  ///< P - P (grasp, 0; 0, 0) P: likewise
+  Eigen::VectorXd pull;   ///< state after the evidence: x + P (pull, 0, 0)
+  Eigen::MatrixXd grasp;  ///< covariance after it: P - P (grasp, 0; 0, 0) P
 };
 
 struct Filtered {
-  std::vector<Passed> passed;  ///< a frame each
+  std::vector<Passed> passed;  ///< one for each frame
   double deviance = 0.0;
 };
 
@@ -62,7 +63,7 @@ Filtered filter_force(const std::vector<ModalTransition>& transitions, const std
     x = after(transitions[k], x);
     p = after(transitions[k], after(transitions[k], p).transpose());
     p.diagonal().tail(m) += prior.walk.cwiseAbs2();
-    // By information = L L^T: the gain needs no more than I + L^T P L.
+    // The information is L L^T, so the gain needs no more than I + L^T P L.
     const Eigen::LDLT<Eigen::MatrixXd> factor(evidence[k].information);
     Eigen::MatrixXd l = factor.matrixL();
     l = factor.transpositionsP().transpose() * (l * factor.vectorD().cwiseMax(0.0).cwiseSqrt().asDiagonal()).eval();
@@ -105,7 +106,7 @@ SmoothedForce smooth_force(const std::vector<ModalTransition>& transitions, cons
   const Eigen::Index m = prior.level.size();
   SmoothedForce out;
   out.deviance = filtered.deviance;
-  // Without the covariances' inverses: those of forces that never change have none.
+  // This does without the covariances' inverses: those of forces that never change have none.
   Eigen::VectorXd r = Eigen::VectorXd::Zero(3 * m);
   out.displacement.resize(passed.size());
   out.force.resize(passed.size());

@@ -13,12 +13,12 @@ namespace {
 
 constexpr int kModes = 12;
 constexpr double kLikelier = 10.0;   // fall of the deviance that a force must bring
-constexpr std::size_t kNodes = 120;  // of the surface, that the force is told at
-constexpr double kSameSpan = 1e-6;   // relative
+constexpr std::size_t kNodes = 120;  // nodes of the surface at which the force is told
+constexpr double kSameSpan = 1e-6;   // relative difference of spans that count as one
 constexpr double kShortest = 1e-9;   // [s]
-constexpr double kLocal = 0.5;       // of the largest force per mass: near it
+constexpr double kLocal = 0.5;       // share of the largest force per mass: a node with more counts
 
-// Of the facets, without the nodes between them.
+// Returns the corners of the facets, without the nodes between them.
 std::vector<int> surface_corners(const TetMesh& mesh) {
   std::set<int> surface;
   for (Eigen::Index f = 0; f < mesh.facets.cols(); ++f) {
@@ -33,7 +33,7 @@ Eigen::Matrix3Xd at(const std::vector<int>& nodes, const Eigen::VectorXd& field)
   return out;
 }
 
-/// Share of y's square, modes x frames, that is proportional to x, mode by mode.
+/// Returns the share of y's square, modes x frames, that is proportional to x, mode by mode.
 double share_along(const Eigen::MatrixXd& y, const Eigen::MatrixXd& x) {
   double sum = 0.0;
   for (Eigen::Index i = 0; i < y.rows(); ++i) {
@@ -72,7 +72,7 @@ std::string in_words(const MissingForce& force) {
   return text;
 }
 
-/// The body's lowest modes, and how the free run moves them.
+/// These are the body's lowest modes, and how the free run moves them.
 struct Modes {
   Eigen::MatrixXd shapes;                    ///< 3n x modes, mass-normalised [kg^-1/2]
   Eigen::VectorXd square;                    ///< omega^2 [rad^2/s^2]
@@ -80,27 +80,27 @@ struct Modes {
   std::vector<double> spans;                 ///< before each frame [s]
   std::vector<ModalTransition> transitions;  ///< to each frame
   Eigen::MatrixXd displacement;              ///< modes x frames
-  /// Root mean square of the forces that move the modes.
+  /// Returns the root mean square of the forces that move the modes.
   double scale() const {
     return std::sqrt((square.asDiagonal() * displacement).squaredNorm() / static_cast<double>(displacement.size()));
   }
 };
 
-Modes modes_of(const Study& study, const Eigen::VectorXd& w) {
-  const auto reduced = study.reduced();
-  const Eigen::VectorXd theta = study.model().theta(w);
-  double time = study.recording().first_stamp + study.model().settings().time.start;
+Modes modes_of(const RecordingFit& recording_fit, const Eigen::VectorXd& w) {
+  const auto reduced = recording_fit.reduced();
+  const Eigen::VectorXd theta = recording_fit.model().theta(w);
+  double time = recording_fit.recording().first_stamp + recording_fit.model().settings().time.start;
   ReducedTrajectory run(*reduced, theta, time);
   const Eigen::Index all = run.frequencies().size(), count = std::min<Eigen::Index>(kModes, all);
   Modes out;
   out.shapes = run.mode_shapes(static_cast<int>(count));
   out.square = run.frequencies().head(count).cwiseAbs2();
   out.weight = reduced->modes(theta)->weight.topRows(count);
-  const auto frames = static_cast<Eigen::Index>(study.recording().frames.size());
+  const auto frames = static_cast<Eigen::Index>(recording_fit.recording().frames.size());
   out.displacement.resize(count, frames);
   double last = 0.0;
   for (Eigen::Index k = 0; k < frames; ++k) {
-    const double next = study.recording().frames[static_cast<std::size_t>(k)].time;
+    const double next = recording_fit.recording().frames[static_cast<std::size_t>(k)].time;
     run.advance(next);
     const double span = std::max(next - time, kShortest);
     out.spans.push_back(span);
@@ -120,7 +120,7 @@ double squares(const FrameEvidence& e, const Eigen::VectorXd& q) {
   return e.square - 2.0 * e.seen.dot(q) + q.dot(e.information * q);
 }
 
-// `along`: of the rows, per displacement of each mode.
+// `along` holds the rows per displacement of each mode.
 std::vector<FrameEvidence> evidence_of(const Eigen::VectorXd& error, const Eigen::MatrixXd& along,
                                        const std::vector<Eigen::Index>& offsets, double variance) {
   std::vector<FrameEvidence> out;
@@ -135,13 +135,13 @@ std::vector<FrameEvidence> evidence_of(const Eigen::VectorXd& error, const Eigen
 
 }  // namespace
 
-MissingForce missing_force(const Study& study, const Eigen::VectorXd& w) {
-  const Recording& recording = study.recording();
-  const TetMesh& mesh = study.model().mesh();
-  const Modes modes = modes_of(study, w);
-  const Study::Rows rows = study.rows(w);
+MissingForce missing_force(const RecordingFit& recording_fit, const Eigen::VectorXd& w) {
+  const Recording& recording = recording_fit.recording();
+  const TetMesh& mesh = recording_fit.model().mesh();
+  const Modes modes = modes_of(recording_fit, w);
+  const RecordingFit::Rows rows = recording_fit.rows(w);
   const std::vector<FrameEvidence> evidence =
-      evidence_of(rows.error, study.rows_along(w, modes.shapes, rows), rows.offsets, 1.0);
+      evidence_of(rows.error, recording_fit.rows_along(w, modes.shapes, rows), rows.offsets, 1.0);
   const ForcePrior prior = likeliest_force_prior(modes.transitions, evidence, modes.scale());
   const SmoothedForce best = smooth_force(modes.transitions, evidence, prior);
   const double without = rows.error.squaredNorm();
@@ -149,7 +149,7 @@ MissingForce missing_force(const Study& study, const Eigen::VectorXd& w) {
   if (!(best.deviance < without - kLikelier)) return out;
 
   const Eigen::Index count = modes.shapes.cols(), frames = modes.displacement.cols();
-  out.parameters = study.model().values(w);
+  out.parameters = recording_fit.model().values(w);
   out.nodes = farthest_nodes(mesh, surface_corners(mesh), kNodes);
   out.places = at(out.nodes, Eigen::Map<const Eigen::VectorXd>(mesh.nodes.data(), mesh.nodes.size()));
   Eigen::MatrixXd force(count, frames), q(count, frames), v(count, frames);
@@ -172,7 +172,7 @@ MissingForce missing_force(const Study& study, const Eigen::VectorXd& w) {
     }
     before = now;
   }
-  force = modes.square.cwiseSqrt().cwiseInverse().asDiagonal() * force.leftCols(kept).eval();  // its square: static work
+  force = modes.square.cwiseSqrt().cwiseInverse().asDiagonal() * force.leftCols(kept).eval();  // squared: static work
   out.explained = 1.0 - left / without;
   out.follows = {{"constant", share_along(force, Eigen::MatrixXd::Ones(count, kept))},
                  {"displacement", share_along(force, q.leftCols(kept))},
@@ -181,10 +181,10 @@ MissingForce missing_force(const Study& study, const Eigen::VectorXd& w) {
   return out;
 }
 
-RandomForce::RandomForce(const Fitted& model) : offsets(model.rows.offsets) {
-  const Modes modes = modes_of(*model.study, model.fit.w);
+RandomForce::RandomForce(const FittedModel& model) : offsets(model.rows.offsets) {
+  const Modes modes = modes_of(*model.recording_fit, model.fit.w);
   transitions = modes.transitions;
-  along = model.study->rows_along(model.fit.w, modes.shapes, model.rows);
+  along = model.recording_fit->rows_along(model.fit.w, modes.shapes, model.rows);
   scale = modes.scale();
 }
 

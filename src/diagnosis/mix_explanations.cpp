@@ -9,7 +9,7 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kFar = 12.0;  // standard deviations, within which a mixture's quantiles are looked for
+constexpr double kFar = 12.0;  // standard deviations within which a mixture's quantiles are searched
 constexpr int kHalvings = 60;
 
 struct Component {

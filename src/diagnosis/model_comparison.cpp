@@ -18,8 +18,8 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kSteps[] = {1.0, 4.0};  // squared, over their prior's standard deviation, that are tried
-constexpr double kNarrower = 0.25;       // of the priors that are mixed: from one to the next
+constexpr double kSteps[] = {1.0, 4.0};  // squared steps that are tried, over their prior's standard deviation
+constexpr double kNarrower = 0.25;       // ratio of the widths of successive priors in the mixture
 constexpr double kTiny = 1e-12;          // [sigma^2]: a direction that no row sees
 constexpr double kSpread = 0.05;         // prior standard deviations, of the fit that starts where the linearisation leads
 
@@ -27,16 +27,16 @@ double log_determinant(const Eigen::LDLT<Eigen::MatrixXd>& factor) {
   return factor.vectorD().array().max(std::numeric_limits<double>::min()).log().sum();
 }
 
-Eigen::MatrixXd lowest_modes(const Fitted& fitted) {
-  const Study& study = *fitted.study;
-  const auto reduced = study.reduced();
-  const double start = study.recording().first_stamp + study.model().settings().time.start;
-  const ReducedTrajectory at_rest(*reduced, study.model().theta(fitted.fit.w), start);
+Eigen::MatrixXd lowest_modes(const FittedModel& fitted) {
+  const RecordingFit& recording_fit = *fitted.recording_fit;
+  const auto reduced = recording_fit.reduced();
+  const double start = recording_fit.recording().first_stamp + recording_fit.model().settings().time.start;
+  const ReducedTrajectory at_rest(*reduced, recording_fit.model().theta(fitted.fit.w), start);
   const Eigen::Index count = std::min<Eigen::Index>(kComparison.test_modes, at_rest.frequencies().size());
-  return study.rows_along(fitted.fit.w, at_rest.mode_shapes(static_cast<int>(count)), fitted.rows);
+  return recording_fit.rows_along(fitted.fit.w, at_rest.mode_shapes(static_cast<int>(count)), fitted.rows);
 }
 
-// The change of every frame, parted into its shares along the lowest modes and the rest, one column each.
+// Divides the change of every frame into its shares along the lowest modes and the rest, one column each.
 Eigen::MatrixXd parted(const Eigen::VectorXd& change, const Eigen::MatrixXd& along,
                        const std::vector<Eigen::Index>& offsets) {
   const Eigen::Index modes = std::min<Eigen::Index>(kComparison.mesh_modes, along.cols());
@@ -52,12 +52,12 @@ Eigen::MatrixXd parted(const Eigen::VectorXd& change, const Eigen::MatrixXd& alo
   return out;
 }
 
-// Sum of squares of what such parts have along the modes.
+// Returns the sum of squares of what such parts have along the modes.
 double along_modes(const Eigen::MatrixXd& parts) {
   return parts.cols() > 0 ? parts.leftCols(parts.cols() - 1).rowwise().sum().squaredNorm() : 0.0;
 }
 
-// Of a linear model, and the fall of its deviance: all unknowns of the linearisation at the noise as stated.
+// Returns the most probable unknowns of a linear model and its deviance there, with the noise as stated.
 Eigen::VectorXd most_probable(const Linearisation& model, const Eigen::VectorXd& error, Eigen::Index unknowns,
                               double& deviance) {
   const auto j = model.columns.leftCols(unknowns);
@@ -75,7 +75,7 @@ void find_probabilities_of(std::vector<Hypothesis>& hypotheses) {
   for (Hypothesis& h : hypotheses) h.probability /= sum;
 }
 
-// Of the amplitudes' priors, over the stated width.
+// Returns the widths of the amplitudes' priors over the stated width.
 std::vector<double> scales_of(const Linearisation& model) {
   std::vector<double> out;
   double scale = 1.0;
@@ -88,71 +88,72 @@ std::vector<double> scales_of(const Linearisation& model) {
 
 }  // namespace
 
-double log_root_weights(const Study::Rows& rows) {
+double log_root_weights(const RecordingFit::Rows& rows) {
   return (rows.used.array() > 0.0).select(rows.used.array().log(), 0.0).sum();
 }
 
-std::vector<std::string> added_amplitudes(const Study& study, const Study& smaller) {
+std::vector<std::string> added_amplitudes(const RecordingFit& recording_fit, const RecordingFit& smaller) {
   std::vector<std::string> out;
-  for (const FreeParameter& p : study.model().free_parameters()) {
+  for (const FreeParameter& p : recording_fit.model().free_parameters()) {
     if (p.prior.kind == Quantity::Kind::normal && smaller.index(p.name) < 0) out.push_back(p.name);
   }
   return out;
 }
 
-Linearisation linearise(const Fitted& fitted, const std::vector<std::string>& amplitudes) {
-  const Study& study = *fitted.study;
-  const Model& model = study.model();
+Linearisation linearise_model(const FittedModel& fitted, const std::vector<std::string>& amplitudes) {
+  const RecordingFit& recording_fit = *fitted.recording_fit;
+  const Model& model = recording_fit.model();
   const Eigen::VectorXd& w = fitted.fit.w;
   const Eigen::VectorXd prior = model.prior_std();
-  // As wide as each is known while the others are held: along what they can make up for no tangent reaches far.
+  // Each tangent is read as far as its parameter is known while the others are held: no tangent reaches far along what they
+  // can compensate.
   const Eigen::VectorXd known = fitted.fit.covariance.inverse().diagonal().cwiseInverse().cwiseSqrt();
-  const Eigen::MatrixXd own = base_tangents(study, w, known, fitted.rows);
-  const Eigen::MatrixXd steps = tangents_of_time_steps(study, w, fitted.rows);
+  const Eigen::MatrixXd own = base_tangents(recording_fit, w, known, fitted.rows);
+  const Eigen::MatrixXd steps = tangents_of_time_steps(recording_fit, w, fitted.rows);
   Linearisation out;
   out.columns.resize(own.rows(), own.cols() + steps.cols());
   out.columns << own * prior.asDiagonal(), steps;
   out.prior = Eigen::VectorXd::Zero(out.columns.cols());
   out.prior.head(w.size()) = (model.prior_mean() - w).cwiseQuotient(prior);
   out.parameters = w.size();
-  for (const std::string& name : amplitudes) out.amplitudes.push_back(study.index(name));
+  for (const std::string& name : amplitudes) out.amplitudes.push_back(recording_fit.index(name));
   out.log_root_weights = log_root_weights(fitted.rows);
   return out;
 }
 
-Explained explain(const Fitted& fitted, const std::vector<std::string>& amplitudes, bool far) {
-  Explained out{fitted.rows.error, linearise(fitted, amplitudes)};
-  const Study& study = *fitted.study;
+Explained compared_residual(const FittedModel& fitted, const std::vector<std::string>& amplitudes, bool far) {
+  Explained out{fitted.rows.error, linearise_model(fitted, amplitudes)};
+  const RecordingFit& recording_fit = *fitted.recording_fit;
   const Eigen::Index all = out.linearisation.columns.cols(), own = out.linearisation.parameters;
-  if (study.model().nonlinear() || all == own) return out;
+  if (recording_fit.model().nonlinear() || all == own) return out;
   double with = 0.0, without = 0.0;
   most_probable(out.linearisation, out.error, own, without);
   const Eigen::VectorXd u = most_probable(out.linearisation, out.error, all, with);
   const bool linear = without - with > 2.0 * kComparison.worthwhile && u[own] > 0.0;
   if (!linear && !far) return out;
-  Fitted joint;
-  joint.study =
-      std::make_unique<Study>(extend_model(study.model().settings(), entries_of_time_steps(study, fitted.fit.w)), study);
-  const Study& stepped_study = *joint.study;
-  const Eigen::VectorXd at = stepped_study.extend(study, fitted.fit.w), prior = stepped_study.model().prior_std();
+  FittedModel joint;
+  joint.recording_fit = std::make_unique<RecordingFit>(
+      extend_model(recording_fit.model().settings(), entries_of_time_steps(recording_fit, fitted.fit.w)), recording_fit);
+  const RecordingFit& stepped_study = *joint.recording_fit;
+  const Eigen::VectorXd at = stepped_study.extend(recording_fit, fitted.fit.w), prior = stepped_study.model().prior_std();
   const Eigen::VectorXd near = kSpread * prior;
   if (linear) joint.fit = stepped_study.quick_fit(at + prior.cwiseProduct(u), near);
   // Long steps lead a body that rings into another minimum, which no tangent shows.
-  const std::vector<Eigen::Index> tuning = stepped_study.tuning_shared_with(study);
+  const std::vector<Eigen::Index> tuning = stepped_study.tuning_shared_with(recording_fit);
   for (const double length : kSteps) {
     if (!far) break;
     Eigen::VectorXd start = at;
     start.tail(all - own) = length * prior.tail(all - own);
     const BatchFit fit =
-        stepped_study.quick_fit(stepped_study.scan_near(start, tuning).w, stepped_study.spread_beyond(study));
+        stepped_study.quick_fit(stepped_study.scan_near(start, tuning).w, stepped_study.spread_beyond(recording_fit));
     if (joint.fit.w.size() == 0 || fit.cost < joint.fit.cost) joint.fit = fit;
   }
   joint.rows = stepped_study.rows(joint.fit.w);
   if (joint.rows.error.squaredNorm() > out.error.squaredNorm()) return out;
-  return {joint.rows.error, linearise(joint, amplitudes)};
+  return {joint.rows.error, linearise_model(joint, amplitudes)};
 }
 
-ModelComparison::ModelComparison(const Fitted& base, const Eigen::VectorXd& mesh_change)
+ModelComparison::ModelComparison(const FittedModel& base, const Eigen::VectorXd& mesh_change)
     : used_((base.rows.used.array() > 0.0).cast<double>()), offsets_(base.rows.offsets), along_(lowest_modes(base)) {
   allow_for_mesh(mesh_change);
   note(base.rows.error);
@@ -161,7 +162,7 @@ ModelComparison::ModelComparison(const Fitted& base, const Eigen::VectorXd& mesh
 void ModelComparison::allow_for_mesh(const Eigen::VectorXd& change) {
   mesh_ = parted(kComparison.whole_mesh * change, along_, offsets_);
   const Eigen::Index modes = mesh_.cols() - 1, frames = static_cast<Eigen::Index>(offsets_.size()) - 1;
-  // Amplitudes that are independent from frame to frame and have the mean square of that part of D.
+  // The amplitudes are independent from frame to frame and have the mean square of that part of D.
   constexpr double part = kComparison.left_of_mesh / kComparison.whole_mesh;
   const Eigen::VectorXd size = along_.leftCols(modes).colwise().squaredNorm().transpose();
   const Eigen::VectorXd std =
@@ -199,7 +200,7 @@ Eigen::MatrixXd ModelComparison::whitened(const Eigen::MatrixXd& rows) const {
 void ModelComparison::note(const Eigen::VectorXd& error) {
   MisfitTest left = test_of(error, 0.0);
   left.set_noise(MisfitTest::most_noise);
-  const double memory = left.memory(), variance = left.noise_level() * (1.0 + memory) / (1.0 - memory);
+  const double memory = left.lag1_autocorrelation(), variance = left.noise_level() * (1.0 + memory) / (1.0 - memory);
   noise_variance_ = noise_variance_ > 0.0 ? std::min(noise_variance_, variance) : variance;
   noise_level_ = std::min(noise_level_, left.noise_level());
 }
@@ -232,7 +233,7 @@ Assessment ModelComparison::assess(const Explained& explained) const {
     const Eigen::LDLT<Eigen::MatrixXd> factor(precision);
     const Eigen::VectorXd pull = seen + weight.cwiseProduct(mean);
     Eigen::VectorXd at = factor.solve(pull);
-    // Numerics that are not plausible explain nothing: the parameters have to do without them.
+    // Numerics that are not plausible explain nothing, so the parameters have to do without them.
     at.tail(rest) = at.tail(rest).cwiseMax(-kComparison.most_numerics).cwiseMin(kComparison.most_numerics);
     at.head(own) = precision.topLeftCorner(own, own).ldlt().solve(pull.head(own) -
                                                                   precision.topRightCorner(own, rest) * at.tail(rest));

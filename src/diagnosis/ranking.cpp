@@ -12,7 +12,7 @@ constexpr double kImpossible = -1e3;  // log Bayes factor of an amplitude out of
 
 }  // namespace
 
-std::vector<Ranked> rank(const Scorer& scorer, const std::vector<Candidate>& candidates) {
+std::vector<Ranked> rank_effects(const Scorer& scorer, const std::vector<Candidate>& candidates) {
   std::vector<Score> scores(candidates.size());
   tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t c) {
     scores[c] = scorer.score(candidates[c].tangent);

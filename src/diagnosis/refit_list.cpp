@@ -18,12 +18,12 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr double kSpread = 0.05;  // prior standard deviations, of the sigma points of the base's fit from a refit's
-constexpr double kReach = 1.05;   // times the best cost so far: fewer parameters may make up for less than that
+constexpr double kReach = 1.05;   // times the best cost so far: fewer parameters may compensate for less than that
 
 }  // namespace
 
-std::ptrdiff_t parameters_of(const Candidate& way) {
-  const std::vector<Quantity> quantities = read_parameters(to_settings(way.proposal.refine));
+std::ptrdiff_t parameters_of(const Candidate& candidate) {
+  const std::vector<Quantity> quantities = read_parameters(to_settings(candidate.proposal.refine));
   return std::count_if(quantities.begin(), quantities.end(), [](const Quantity& q) { return q.estimated(); });
 }
 
@@ -31,7 +31,7 @@ void RefitList::try_each(std::size_t count, const std::function<std::string(std:
                          const std::function<void(std::size_t)>& work) const {
   std::mutex telling;
   std::size_t over = 0;
-  const auto& checkpoint = look_.base.study->recording().checkpoint;
+  const auto& checkpoint = screening_.base.recording_fit->recording().checkpoint;
   const auto try_one = [&](std::size_t i) {
     checkpoint();
     {
@@ -41,7 +41,7 @@ void RefitList::try_each(std::size_t count, const std::function<std::string(std:
     try {
       work(i);
     } catch (const NumericalError&) {
-      // A study that was ended; otherwise a model that cannot be run explains nothing.
+      // The checkpoint throws if the user ended the diagnosis; otherwise a model that cannot be run explains nothing.
       checkpoint();
     }
     const std::lock_guard<std::mutex> lock(telling);
@@ -50,20 +50,20 @@ void RefitList::try_each(std::size_t count, const std::function<std::string(std:
   for_each_index(count, try_one, tbb::simple_partitioner());
 }
 
-void RefitList::add(std::vector<Addition> list) {
+void RefitList::add(std::vector<RefitTask> list) {
   double rival = no_rival;
   for (const Refit& r : refits_) {
-    if (r.way->linear) rival = std::min(rival, kReach * r.fitted);
+    if (r.candidate->linear) rival = std::min(rival, kReach * r.fitted);
   }
-  // The longest fits first: the last one to end keeps one core busy only.
-  std::vector<std::pair<std::ptrdiff_t, Addition>> trials;
-  for (Addition& addition : list) trials.emplace_back(parameters_of(*addition.way), std::move(addition));
+  // The longest fits go first, because the last one to end keeps only one core busy.
+  std::vector<std::pair<std::ptrdiff_t, RefitTask>> trials;
+  for (RefitTask& task : list) trials.emplace_back(parameters_of(*task.candidate), std::move(task));
   std::stable_sort(trials.begin(), trials.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<std::optional<Refit>> done(trials.size());
   try {
     try_each(
         trials.size(), [&](std::size_t i) { return "refit with " + trials[i].second.effect(); },
-        [&](std::size_t i) { done[i] = refit(look_.base, trials[i].second, rival); });
+        [&](std::size_t i) { done[i] = refit_with(screening_.base, trials[i].second, rival); });
   } catch (const Interrupted&) {
     keep(std::move(done));
     throw;
@@ -82,20 +82,20 @@ void RefitList::keep(std::vector<std::optional<Refit>> done) {
   so_far_(*this);
 }
 
-double RefitList::ways_of(const std::string& effect) const {
+double RefitList::variants_of(const std::string& effect) const {
   const auto same = [&](const Candidate& c) { return c.effect == effect; };
-  return static_cast<double>(std::count_if(look_.candidates.begin(), look_.candidates.end(), same));
+  return static_cast<double>(std::count_if(screening_.candidates.begin(), screening_.candidates.end(), same));
 }
 
 double RefitList::log_bayes_factor(const Refit& refit) const {
-  return refit.assessment.log_evidence - given_.log_evidence - std::log(ways_of(refit.effect));
+  return refit.assessment.log_evidence - given_.log_evidence - std::log(variants_of(refit.effect));
 }
 
-// Beforehand the given model is as probable as all effects together, and those are alike, whatever the ways each has.
+// Beforehand the given model is as probable as all effects together. All effects are alike, however many variants each has.
 // Something that the library does not have is as probable as one of them, and may act beside the best one, too.
 const Comparison& RefitList::compare() {
   if (compared_) return *compared_;
-  const double prior = -std::log(static_cast<double>(std::max<std::size_t>(1, look_.ranked.size())));
+  const double prior = -std::log(static_cast<double>(std::max<std::size_t>(1, screening_.ranked.size())));
   compared_.emplace();
   std::vector<Hypothesis>& hypotheses = compared_->hypotheses;
   const auto add = [&](Hypothesis h, const Assessment& assessment) {
@@ -116,38 +116,40 @@ const Comparison& RefitList::compare() {
   };
   add(alone({}, 0.0, base_), given_);
   for (const Refit& refit : refits_)
-    add(alone({refit.effect}, prior - std::log(ways_of(refit.effect)), refit.explained), refit.assessment);
-  if (!base_force_) base_force_ = std::make_shared<const RandomForce>(look_.base);
+    add(alone({refit.effect}, prior - std::log(variants_of(refit.effect)), refit.explained), refit.assessment);
+  if (!base_force_) base_force_ = std::make_shared<const RandomForce>(screening_.base);
   add(beside(hypotheses[0], base_force_), given_);
   if (!empty() && best().model) {
     add(beside(hypotheses[1], std::make_shared<const RandomForce>(*best().model)), best().assessment);
   }
   compared_->passes_without_mesh =
-      comparison_.test_of(look_.base.rows.error, static_cast<double>(look_.base.fit.w.size())).passes();
+      comparison_.test_of(screening_.base.rows.error, static_cast<double>(screening_.base.fit.w.size())).passes();
   compared_->find_probabilities();
   return *compared_;
 }
 
 bool RefitList::move_to_better_base() {
-  const Study& study = *look_.base.study;
-  if (study.model().nonlinear()) return false;
-  Study::Place start = study.scan_near(look_.base.fit.w, study.tuning_shared_with(study));
+  const RecordingFit& recording_fit = *screening_.base.recording_fit;
+  if (recording_fit.model().nonlinear()) return false;
+  RecordingFit::Place start =
+      recording_fit.scan_near(screening_.base.fit.w, recording_fit.tuning_shared_with(recording_fit));
   for (const Refit& refit : refits_) {
-    Study::Place place = study.scan_near(study.model().coordinates(refit.parameters, look_.base.fit.w), {});
+    RecordingFit::Place place =
+        recording_fit.scan_near(recording_fit.model().coordinates(refit.parameters, screening_.base.fit.w), {});
     if (place.cost < start.cost) start = std::move(place);
   }
-  const BatchFit fit = study.quick_fit(start.w, kSpread * study.model().prior_std());
-  if (!(look_.base.fit.cost - fit.cost > 2.0 * kComparison.worthwhile * comparison_.noise_variance())) return false;
+  const BatchFit fit = recording_fit.quick_fit(start.w, kSpread * recording_fit.model().prior_std());
+  if (!(screening_.base.fit.cost - fit.cost > 2.0 * kComparison.worthwhile * comparison_.noise_variance())) return false;
   base_moved_ = true;
-  look_.move_base(fit);
-  base_ = std::make_shared<const Explained>(look_.explained);
+  screening_.move_base(fit);
+  base_ = std::make_shared<const Explained>(screening_.explained);
   base_force_.reset();
   comparison_.note(base_->error);
   assess();
   return true;
 }
 
-// All models anew, because the noise is that of the model that leaves least.
+// Assesses all models anew, because the noise is that of the model that leaves least.
 void RefitList::assess() {
   compared_.reset();
   given_ = comparison_.assess(*base_);
@@ -159,11 +161,11 @@ void RefitList::assess() {
   std::vector<Refit> sorted;
   for (const auto& [evidence, i] : order) sorted.push_back(std::move(refits_[i]));
   refits_ = std::move(sorted);
-  drop_worse_ways();
+  drop_worse_variants();
 }
 
-// One refit an effect, the best.
-void RefitList::drop_worse_ways() {
+// Keeps one refit for each effect, the best.
+void RefitList::drop_worse_variants() {
   for (auto refit = refits_.begin(); refit != refits_.end();) {
     const bool known = std::any_of(refits_.begin(), refit, [&](const Refit& r) { return r.effect == refit->effect; });
     refit = known ? refits_.erase(refit) : refit + 1;

@@ -4,10 +4,10 @@
 
 namespace tissue_stiffness {
 
-Replay replay_model(Fitted& fitted, const std::vector<double>& picture_stamps) {
-  Study& study = *fitted.study;
-  ReplayRecorder recorder(study.model().mesh(), study.recording().first_stamp, picture_stamps);
-  study.show(fitted.fit.w, [&](const FreeFrame& frame) { recorder.add(frame); });
+Replay replay_model(FittedModel& fitted, const std::vector<double>& picture_stamps) {
+  RecordingFit& recording_fit = *fitted.recording_fit;
+  ReplayRecorder recorder(recording_fit.model().mesh(), recording_fit.recording().first_stamp, picture_stamps);
+  recording_fit.show(fitted.fit.w, [&](const FreeFrame& frame) { recorder.add(frame); });
   return recorder.finish();
 }
 

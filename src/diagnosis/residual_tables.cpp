@@ -10,7 +10,7 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr int kAmplitudeBins = 5, kPhaseBins = 8;
-constexpr Eigen::Index kMostRows = 600;  // of a frame that the spectrum looks at
+constexpr Eigen::Index kMostRows = 600;  // rows of a frame that the spectrum takes
 constexpr int kMostFrequencies = 120;
 constexpr double kPi = 3.14159265358979323846;
 
@@ -18,7 +18,7 @@ struct Frames {
   Eigen::VectorXd time, square, count, motion;  ///< motion: rms since the first frame [m]; NaN where rows differ
 };
 
-Frames by_frame(const Study& study, const Study::Rows& rows) {
+Frames by_frame(const RecordingFit& recording_fit, const RecordingFit::Rows& rows) {
   const auto n = static_cast<Eigen::Index>(rows.offsets.size()) - 1;
   Frames out{Eigen::VectorXd(n), Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n), Eigen::VectorXd(n)};
   const Eigen::Index first = rows.offsets[1];
@@ -26,7 +26,7 @@ Frames by_frame(const Study& study, const Study::Rows& rows) {
   for (Eigen::Index t = 0; t < n; ++t) {
     const auto k = static_cast<std::size_t>(t);
     const Eigen::Index from = rows.offsets[k], size = rows.offsets[k + 1] - from;
-    out.time[t] = study.recording().frames[k].time - study.recording().first_stamp;
+    out.time[t] = recording_fit.recording().frames[k].time - recording_fit.recording().first_stamp;
     out.square[t] = rows.error.segment(from, size).squaredNorm();
     out.count[t] = static_cast<double>((rows.used.segment(from, size).array() > 0.0).count());
     out.motion[t] = size == first && first > 0
@@ -40,7 +40,7 @@ double rms(double square, double count) {
   return count > 0.0 ? std::sqrt(square / count) : std::numeric_limits<double>::quiet_NaN();
 }
 
-void places(const Study::Rows& rows, ResidualViews& out) {
+void places(const RecordingFit::Rows& rows, ResidualViews& out) {
   std::map<int, std::pair<double, double>> sums;
   for (Eigen::Index r = 0; r < rows.error.size(); ++r) {
     if (!(rows.used[r] > 0.0)) continue;
@@ -67,8 +67,8 @@ void amplitudes(const Frames& frames, ResidualViews& out) {
   }
 }
 
-// Sum over rows of |Fourier transform|^2 at each frequency, of rows' deviations from their means.
-Eigen::VectorXd spectrum(const Eigen::VectorXd& values, const Study::Rows& rows, const Eigen::VectorXd& time,
+// Returns the sum over rows of |Fourier transform|^2 at each frequency, of the rows' deviations from their means.
+Eigen::VectorXd spectrum(const Eigen::VectorXd& values, const RecordingFit::Rows& rows, const Eigen::VectorXd& time,
                          const std::vector<double>& frequency) {
   const Eigen::Index n = time.size(), size = rows.offsets[1], stride = std::max<Eigen::Index>(1, size / kMostRows);
   const Eigen::Index kept = (size + stride - 1) / stride;
@@ -86,7 +86,7 @@ Eigen::VectorXd spectrum(const Eigen::VectorXd& values, const Study::Rows& rows,
   return power;
 }
 
-void frequencies(const Study::Rows& rows, const Frames& frames, ResidualViews& out) {
+void frequencies(const RecordingFit::Rows& rows, const Frames& frames, ResidualViews& out) {
   const Eigen::Index n = frames.time.size();
   const double duration = frames.time[n - 1] - frames.time[0];
   const int count = std::min(kMostFrequencies, static_cast<int>(n / 2));
@@ -112,9 +112,9 @@ void frequencies(const Study::Rows& rows, const Frames& frames, ResidualViews& o
 
 }  // namespace
 
-ResidualViews residual_views(const Study& study, const Study::Rows& rows) {
+ResidualViews residual_views(const RecordingFit& recording_fit, const RecordingFit::Rows& rows) {
   ResidualViews out;
-  const Frames frames = by_frame(study, rows);
+  const Frames frames = by_frame(recording_fit, rows);
   for (Eigen::Index t = 0; t < frames.time.size(); ++t) {
     out.time.push_back(frames.time[t]);
     out.frame_rms.push_back(rms(frames.square[t], frames.count[t]));

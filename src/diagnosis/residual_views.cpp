@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kLocal = 2.0;   // times the body's mean excess: a place that stands out
 constexpr double kAbove = 1.2;   // rms in sigmas above which an error is more than noise
-constexpr double kInside = 0.8;  // of the standing-out nodes: they lie in a region
+constexpr double kInside = 0.8;  // of the nodes that stand out: they lie in a region
 constexpr double kGrows = 0.5;   // correlation of error and motion over frames
 
 std::string format(const char* pattern, double a, double b = 0.0, double c = 0.0) {
@@ -21,8 +21,8 @@ std::string format(const char* pattern, double a, double b = 0.0, double c = 0.0
   return text;
 }
 
-// Mean square error in sigmas of each mesh node that was seen.
-std::map<int, double> node_errors(const Study::Rows& rows) {
+// Returns the mean square error in sigmas of each mesh node that was seen.
+std::map<int, double> node_errors(const RecordingFit::Rows& rows) {
   std::map<int, std::pair<double, double>> sums;
   for (Eigen::Index r = 0; r < rows.error.size(); ++r) {
     if (!(rows.used[r] > 0.0)) continue;
@@ -34,8 +34,8 @@ std::map<int, double> node_errors(const Study::Rows& rows) {
   return errors;
 }
 
-std::string region_around(const Study& study, const std::vector<int>& nodes) {
-  for (const auto& [name, region] : study.model().regions()) {
+std::string region_around(const RecordingFit& recording_fit, const std::vector<int>& nodes) {
+  for (const auto& [name, region] : recording_fit.model().regions()) {
     const auto inside = std::count_if(nodes.begin(), nodes.end(), [&](int node) {
       return std::binary_search(region.nodes.begin(), region.nodes.end(), node);
     });
@@ -46,7 +46,7 @@ std::string region_around(const Study& study, const std::vector<int>& nodes) {
 
 }  // namespace
 
-std::string where_it_fails(const Study& study, const Study::Rows& rows) {
+std::string where_it_fails(const RecordingFit& recording_fit, const RecordingFit::Rows& rows) {
   const std::map<int, double> errors = node_errors(rows);
   double mean = 0.0;
   for (const auto& [node, error] : errors) mean += error / static_cast<double>(errors.size());
@@ -57,18 +57,18 @@ std::string where_it_fails(const Study& study, const Study::Rows& rows) {
   for (const auto& [node, error] : errors) {
     if (error - 1.0 < kLocal * (mean - 1.0)) continue;
     worst.push_back(node);
-    centre += (error - 1.0) * study.model().mesh().nodes.col(node);
+    centre += (error - 1.0) * recording_fit.model().mesh().nodes.col(node);
     weight += error - 1.0;
   }
   if (worst.empty()) return format("all over the body, %.1f sigma rms", std::sqrt(mean));
   centre /= weight;
   double square = 0.0;
   for (const int node : worst) square += errors.at(node) / static_cast<double>(worst.size());
-  return format("around (%.3f, %.3f, %.3f) m", centre.x(), centre.y(), centre.z()) + region_around(study, worst) +
+  return format("around (%.3f, %.3f, %.3f) m", centre.x(), centre.y(), centre.z()) + region_around(recording_fit, worst) +
          format(": %.1f sigma rms there, %.1f over the body", std::sqrt(square), std::sqrt(mean));
 }
 
-std::string when_it_fails(const Study& study, const Study::Rows& rows) {
+std::string when_it_fails(const RecordingFit& recording_fit, const RecordingFit::Rows& rows) {
   const auto frames = static_cast<Eigen::Index>(rows.offsets.size()) - 1;
   Eigen::VectorXd error(frames), motion(frames);
   for (Eigen::Index t = 0; t < frames; ++t) {
@@ -78,7 +78,7 @@ std::string when_it_fails(const Study& study, const Study::Rows& rows) {
     error[t] = rows.error.segment(from, count).squaredNorm() / static_cast<double>(std::max<Eigen::Index>(count, 1));
     motion[t] = (rows.predicted.segment(from, first) - rows.predicted.head(first)).norm();
   }
-  const double start = study.recording().first_stamp;
+  const double start = recording_fit.recording().first_stamp;
   Eigen::Index worst = 0;
   error.maxCoeff(&worst);
   const auto third = [&](Eigen::Index k) {
@@ -87,8 +87,8 @@ std::string when_it_fails(const Study& study, const Study::Rows& rows) {
   };
   std::string text = format("%.0f, %.0f and %.0f %% of it in the first, second and last third", 100.0 * third(0),
                             100.0 * third(1), 100.0 * third(2));
-  text += format("; largest at %.2f s (%.1f sigma)", study.recording().frames[static_cast<std::size_t>(worst)].time - start,
-                 std::sqrt(error[worst]));
+  text += format("; largest at %.2f s (%.1f sigma)",
+                 recording_fit.recording().frames[static_cast<std::size_t>(worst)].time - start, std::sqrt(error[worst]));
   const Eigen::ArrayXd e = error.cwiseSqrt().array() - error.cwiseSqrt().mean(), m = motion.array() - motion.mean();
   const double correlation = (e * m).sum() / std::sqrt(e.square().sum() * m.square().sum());
   if (correlation > kGrows) text += "; grows with the displacement";

@@ -11,7 +11,7 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr double kSame = 1e-9;  // sine of the angle below which directions are one
-constexpr double kGone = 1e-6;  // a tangent of which less than this share is left says nothing of its own
+constexpr double kGone = 1e-6;  // share of a tangent: with less left it says nothing of its own
 
 Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& a) {
   if (a.cols() == 0) return a;
@@ -27,8 +27,8 @@ Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& a) {
 
 }  // namespace
 
-Scorer::Scorer(const Eigen::VectorXd& residual, const Eigen::MatrixXd& known, double variance)
-    : basis_(orthonormal(known)), variance_(variance) {
+Scorer::Scorer(const Eigen::VectorXd& residual, const Eigen::MatrixXd& nuisance_tangents, double variance)
+    : basis_(orthonormal(nuisance_tangents)), variance_(variance) {
   residual_ = project(residual);
 }
 

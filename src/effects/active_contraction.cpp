@@ -1,4 +1,4 @@
-// Fibres that pull by themselves, in a rhythm of their own.
+// Fibres pull actively, in a rhythm of their own.
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +10,7 @@ namespace {
 
 enum Index { kAmplitude, kPeriod, kOnset, kDuration, kSharpness, kAngle, kTilt };
 
-// An arch over the active part of each period, nothing before the onset.
+// Returns a sine pulse over the active part of each period, and zero before the onset.
 double twitch(double time, const Parameters& p) {
   const double since = time - p[kOnset];
   if (since <= 0.0) return 0.0;
@@ -50,7 +50,7 @@ class ActiveContraction : public Effect {
 
  private:
   double activation(double time, const Parameters& p) const { return course_ ? course_->value(time, 0) : twitch(time, p); }
-  // Refers to p: a copy would ask the heap for room at every force.
+  // The result refers to p, because a copy would allocate memory at every force.
   FibreDirections directions(const Parameters& p) const {
     return [this, &p](int e, int q) { return fibres_.direction(e, q, p[kAngle], p[kTilt]); };
   }
@@ -73,7 +73,7 @@ std::vector<double> periods(const ProposalContext& context) {
   return list;
 }
 
-// Arches half a period long, at a few rhythms and phases.
+// Proposes pulses half a period long, at a few periods and phases.
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.holds("active_contraction")) return {};
   const double scale = 0.03 * context.young_modulus;
@@ -92,11 +92,11 @@ std::vector<Proposal> propose(const ProposalContext& context) {
     for (const double period : periods(context)) {
       for (const double phase : kPhases) {
         const double onset = phase * period, arch = 0.5 * period;
-        list.push_back(
-            {with(period, onset, arch, normal(0.0, scale)),
-             "amplitude",
-             with(log_normal(period, 1.15), normal(onset, 0.2 * period), log_normal(arch, 1.5), normal(scale, 2.0 * scale)),
-             {"direction"}});
+        list.push_back({with(period, onset, arch, normal_prior(0.0, scale)),
+                        "amplitude",
+                        with(log_normal_prior(period, 1.15), normal_prior(onset, 0.2 * period), log_normal_prior(arch, 1.5),
+                             normal_prior(scale, 2.0 * scale)),
+                        {"direction"}});
       }
     }
   }

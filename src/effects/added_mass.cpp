@@ -1,4 +1,4 @@
-// Extra mass glued to the surface: it slows the motion, and gravity weighs it.
+// Extra mass is attached to the surface. It slows the motion, and gravity acts on it.
 #include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/fem/facet_quadrature.hpp"
 
@@ -11,7 +11,7 @@ class AddedMass : public Effect {
     const Region& region = context.region(arguments.at("region"));
     SparseMatrix mass = region.facets.empty() ? on_nodes(region, context.fem) : facet_mass(context.mesh, region.facets);
     mass *= 3.0 / mass.sum();
-    unit_mass_ = shared(std::move(mass));
+    unit_mass_ = share_matrix(std::move(mass));
   }
 
   void linear_terms(LinearTerms& out) const override {
@@ -30,7 +30,7 @@ class AddedMass : public Effect {
   std::shared_ptr<const SparseMatrix> unit_mass_;
 };
 
-// On every named surface that nothing holds.
+// Proposes a mass on every named surface that is not held.
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.holds("added_mass")) return {};
   const Eigen::Vector3d edges = context.high() - context.low();
@@ -41,7 +41,7 @@ std::vector<Proposal> propose(const ProposalContext& context) {
     const auto with = [&where = name](const Quantity& mass) {
       return EffectEntry{"added_mass", {{"region", where}, {"mass", mass}}};
     };
-    list.push_back({with(normal(0.0, scale)), "mass", with(log_normal(scale, 4.0)), {"region"}});
+    list.push_back({with(normal_prior(0.0, scale)), "mass", with(log_normal_prior(scale, 4.0)), {"region"}});
   }
   return list;
 }

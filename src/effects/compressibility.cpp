@@ -1,4 +1,4 @@
-// Another Poisson's ratio than the model file's.
+// Poisson's ratio differs from that of the model file.
 #include <algorithm>
 
 #include "tissue_stiffness/effects/registry.hpp"
@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kLowest = -0.9, kHighest = 0.4999;
 
-// What the shift adds to the Lame parameters.
+// Returns the change of the Lame parameters due to the shift.
 Lame change(double modulus, double ratio, double shift) {
   const Lame before = lame(modulus, ratio), after = lame(modulus, std::clamp(ratio + shift, kLowest, kHighest));
   return {after.lambda - before.lambda, after.mu - before.mu};
@@ -55,7 +55,7 @@ class Compressibility : public Effect {
 
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.holds("compressibility")) return {};
-  const EffectEntry entry{"compressibility", {{"shift", normal(0.0, 0.05)}}};
+  const EffectEntry entry{"compressibility", {{"shift", normal_prior(0.0, 0.05)}}};
   return {{entry, "shift", entry}};
 }
 

@@ -1,8 +1,9 @@
-// Contact with a rigid plane, by penalty at the surface's quadrature points, and Coulomb's friction there.
+// The surface is in contact with a rigid plane, by penalty at its quadrature points, with Coulomb's friction.
 #include <cmath>
 
 #include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/fem/facet_quadrature.hpp"
+#include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {
@@ -40,12 +41,12 @@ class ContactPlane : public Effect {
   }
 
   bool nonlinear() const override { return true; }
-  bool rubs(const Parameters& p) const override { return p[2] > 0.0; }
+  bool has_velocity_tangent(const Parameters& p) const override { return p[2] > 0.0; }
 
   void add_force(const Motion& motion, const Parameters& p, Eigen::VectorXd& force) const override {
     visit(motion.displacement, p, [&](int f, int q, double gap, double weighted) {
       Eigen::Vector3d push = -weighted * gap * normal_;
-      if (rubs(p)) {
+      if (has_velocity_tangent(p)) {
         const Sliding slides = sliding(motion.velocity, f, q);
         push += p[2] * weighted * gap / slides.speed * slides.velocity;
       }
@@ -55,14 +56,14 @@ class ContactPlane : public Effect {
     });
   }
 
-  /// Without what friction changes with the depth, which is not symmetric.
+  /// Adds the stiffness without the change of friction with depth, which is not symmetric.
   void add_stiffness(const Motion& motion, const Parameters& p, SparseMatrix& stiffness) const override {
     const Eigen::Matrix3d direction = normal_ * normal_.transpose();
     visit(motion.displacement, p,
           [&](int f, int q, double, double weighted) { add_to_pairs(f, q, weighted * direction, stiffness); });
   }
 
-  void add_friction(const Motion& motion, const Parameters& p, SparseMatrix& damping) const override {
+  void add_velocity_tangent(const Motion& motion, const Parameters& p, SparseMatrix& damping) const override {
     const Eigen::Matrix3d along = Eigen::Matrix3d::Identity() - normal_ * normal_.transpose();
     visit(motion.displacement, p, [&](int f, int q, double gap, double weighted) {
       const Sliding slides = sliding(motion.velocity, f, q);
@@ -95,7 +96,7 @@ class ContactPlane : public Effect {
     }
   }
 
-  // N_a N_b block for each pair of the facet's nodes.
+  // Adds N_a N_b block for each pair of the facet's nodes.
   void add_to_pairs(int f, int q, const Eigen::Matrix3d& block, SparseMatrix& matrix) const {
     const auto& local = local_[static_cast<std::size_t>(f)];
     for (std::size_t b = 0; b < local.size(); ++b) {

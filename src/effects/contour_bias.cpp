@@ -1,4 +1,4 @@
-// Outlines and surface points that lie outside the surface, or inside.
+// Outlines and surface points are measured outside the surface, or inside it.
 #include "tissue_stiffness/effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
@@ -10,12 +10,12 @@ class ContourBias : public Effect {
   void observe(const Parameters& p, ObservedMotion& motion) const override { motion.outward += p[0]; }
 };
 
-// Where a surface is seen without identity.
+// Proposes a bias where points of a surface are measured without identity.
 std::vector<Proposal> propose(const ProposalContext& context) {
   const bool surface =
       context.observes(ObservationSettings::Kind::contour) || context.observes(ObservationSettings::Kind::points);
   if (context.holds("contour_bias") || !surface) return {};
-  const EffectEntry entry{"contour_bias", {{"bias", normal(0.0, 0.005 * context.size())}}};
+  const EffectEntry entry{"contour_bias", {{"bias", normal_prior(0.0, 0.005 * context.size())}}};
   return {{entry, "bias", entry}};
 }
 

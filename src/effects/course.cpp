@@ -102,7 +102,7 @@ double Course::measured(double time, int component) const {
   return interpolated(values_, time, component);
 }
 
-// Callers hold the lock.
+// The caller must hold the lock.
 void Course::correct_sample(std::size_t index) {
   const auto measured = [this](double time) {
     Eigen::VectorXd out(acting());

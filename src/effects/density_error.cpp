@@ -1,4 +1,4 @@
-// Another mass than the model file's.
+// Every mass differs from that of the model file.
 #include "tissue_stiffness/effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
@@ -11,10 +11,10 @@ class DensityError : public Effect {
   }
 };
 
-// Not where a density is estimated anyhow.
+// Proposes nothing where a density is estimated already.
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.holds("density_error") || context.estimates("inertia", "density")) return {};
-  const EffectEntry entry{"density_error", {{"relative", normal(0.0, 0.1)}}};
+  const EffectEntry entry{"density_error", {{"relative", normal_prior(0.0, 0.1)}}};
   return {{entry, "relative", entry}};
 }
 

@@ -1,8 +1,9 @@
-// A clamp that gives way: springs per area in place of held nodes.
+// A clamp is compliant: springs per area replace held nodes.
 #include <algorithm>
 
 #include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/fem/facet_quadrature.hpp"
+#include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {
@@ -21,15 +22,15 @@ class ElasticSupport : public Effect {
     if (!is_fixed(context.settings, name.as_text())) {
       throw InputError(name.path(), name.shown(), "the region of a `fixed` effect");
     }
-    unit_ = shared(facet_mass(context.mesh, region.facets));
+    unit_ = share_matrix(facet_mass(context.mesh, region.facets));
     nodes_ = region.nodes;
   }
 
   void linear_terms(LinearTerms& out) const override {
     out.stiffness.push_back({unit_, [](const Parameters& p) { return p[0] > 0.0 ? 1.0 / p[0] : 0.0; }});
   }
-  std::vector<int> released_nodes() const override { return nodes_; }
-  bool releases(const Parameters& p) const override { return p[0] > 0.0; }
+  std::vector<int> compliant_nodes() const override { return nodes_; }
+  bool is_compliant(const Parameters& p) const override { return p[0] > 0.0; }
 
  private:
   std::shared_ptr<const SparseMatrix> unit_;
@@ -46,7 +47,7 @@ std::vector<Proposal> propose(const ProposalContext& context) {
     const auto with = [&name](const Quantity& compliance) {
       return EffectEntry{"elastic_support", {{"region", name}, {"compliance", compliance}}};
     };
-    list.push_back({with(normal(0.0, scale)), "compliance", with(log_normal(scale, 4.0)), {"region"}});
+    list.push_back({with(normal_prior(0.0, scale)), "compliance", with(log_normal_prior(scale, 4.0)), {"region"}});
   }
   return list;
 }

@@ -1,8 +1,9 @@
-// Elastic resistance: small strain (linear) or finite strain (neo_hookean).
+// Elastic resistance, at small strain (linear) or finite strain (neo_hookean).
 #include <numeric>
 
 #include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/fem/neo_hookean.hpp"
+#include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {
@@ -19,7 +20,7 @@ class Elasticity : public Effect {
         part.prune(0.0);
         part.data().squeeze();
       }
-      return shared(std::move(part));
+      return share_matrix(std::move(part));
     };
     SparseMatrix volumetric = context.fem.volumetric_stiffness(inside);
     const Quantity ratio = read_parameters({"elasticity", "elasticity", arguments})[1];

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kStandsOut = 0.1;  // of the mean moment: how much an axis must differ from the others
 
-// e1, and two more across it.
+// Completes e1 to an orthonormal basis.
 Eigen::Matrix3d complete(const Eigen::Vector3d& e1) {
   Eigen::Index across = 0;
   e1.cwiseAbs().minCoeff(&across);

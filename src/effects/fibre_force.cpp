@@ -3,7 +3,7 @@
 namespace tissue_stiffness {
 namespace {
 
-// At one quadrature point: stretched direction F a and the slope of each shape function along a.
+// Values at one quadrature point: the stretched direction F a and the slope of each shape function along a.
 struct Stretched {
   Eigen::Vector3d direction;
   Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 10, 1> slope;

@@ -1,4 +1,4 @@
-// One family of fibres that resists being stretched.
+// One family of fibres resists stretching.
 #include "tissue_stiffness/effects/fibre_field.hpp"
 #include "tissue_stiffness/effects/registry.hpp"
 
@@ -28,7 +28,7 @@ class FibreReinforcement : public Effect {
   }
 
  private:
-  // Refers to p: a copy would ask the heap for room at every force.
+  // The result refers to p, because a copy would allocate memory at every force.
   FibreDirections directions(const Parameters& p) const {
     return [this, &p](int e, int q) { return fibres_.direction(e, q, p[1], p[2]); };
   }
@@ -48,9 +48,9 @@ std::vector<Proposal> propose(const ProposalContext& context) {
     const auto with = [&trial](const Argument& angle, const Quantity& modulus) {
       return EffectEntry{"fibre_reinforcement", {{"direction", trial.direction}, {"angle", angle}, {"modulus", modulus}}};
     };
-    list.push_back({with(trial.angle, normal(0.0, scale)),
+    list.push_back({with(trial.angle, normal_prior(0.0, scale)),
                     "modulus",
-                    with(normal(trial.angle, 0.3), log_normal(scale, 3.0)),
+                    with(normal_prior(trial.angle, 0.3), log_normal_prior(scale, 3.0)),
                     {"direction"}});
   }
   return list;

@@ -1,4 +1,4 @@
-// Nodes of a region held where they are at rest.
+// Nodes of a region are held at rest.
 #include "tissue_stiffness/effects/registry.hpp"
 
 namespace tissue_stiffness::effects {

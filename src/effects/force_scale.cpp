@@ -1,4 +1,4 @@
-// Measured loads that are off by the same share, as from a sensor out of calibration.
+// All measured loads are wrong by the same factor, as from a sensor that is out of calibration.
 #include "tissue_stiffness/effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
@@ -11,11 +11,11 @@ class ForceScale : public Effect {
   }
 };
 
-// Where a load is measured.
+// Proposes a scale where a load is measured and no scale is estimated.
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.holds("force_scale") || !(context.holds("pressure") || context.holds("traction"))) return {};
   if (context.estimates("pressure", "scale") || context.estimates("traction", "scale")) return {};
-  const EffectEntry entry{"force_scale", {{"relative", normal(0.0, 0.1)}}};
+  const EffectEntry entry{"force_scale", {{"relative", normal_prior(0.0, 0.1)}}};
   return {{entry, "relative", entry}};
 }
 

@@ -1,13 +1,14 @@
-// Elastic surroundings that hold a surface.
+// Elastic surroundings hold a surface.
 #include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/fem/facet_quadrature.hpp"
+#include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {
 
 constexpr double kLeastCosine = 0.01;  // between a normal and a direction that its facet faces; that of flat sides is 0
 
-// Every facet outside the regions of `fixed`.
+// Returns every facet outside the regions of `fixed`.
 std::vector<int> loose_surface(const TetMesh& mesh, const ModelSettings& settings,
                                const std::map<std::string, Region>& regions) {
   std::vector<char> held(static_cast<std::size_t>(mesh.facet_count()), 0);
@@ -22,7 +23,8 @@ std::vector<int> loose_surface(const TetMesh& mesh, const ModelSettings& setting
   return loose;
 }
 
-// Those whose normal is near that direction, on that side of the middle of the box around the body.
+// Returns the facets whose normal points in this direction and that lie on this side of the middle of the body's bounding
+// box.
 std::vector<int> facing(const TetMesh& mesh, const std::vector<int>& facets, const Eigen::Vector3d& direction) {
   const Eigen::Vector3d middle = 0.5 * (mesh.nodes.rowwise().minCoeff() + mesh.nodes.rowwise().maxCoeff());
   const FacetQuadrature quadrature(mesh.quadratic() ? 6 : 3);
@@ -50,7 +52,7 @@ std::vector<int> held_facets(const Value& arguments, const EffectContext& contex
 class Foundation : public Effect {
  public:
   Foundation(const Value& arguments, const EffectContext& context)
-      : unit_(shared(facet_mass(context.mesh, held_facets(arguments, context)))) {}
+      : unit_(share_matrix(facet_mass(context.mesh, held_facets(arguments, context)))) {}
 
   void linear_terms(LinearTerms& out) const override {
     out.stiffness.push_back({unit_, [](const Parameters& p) { return p[0]; }});
@@ -60,7 +62,7 @@ class Foundation : public Effect {
   std::shared_ptr<const SparseMatrix> unit_;
 };
 
-// On the whole loose surface, on each side of it, and on every named one that nothing holds.
+// Proposes a foundation on the whole loose surface, on each side of it, and on every named surface that is not held.
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.holds("foundation")) return {};
   const double scale = 0.1 * context.young_modulus / context.size();
@@ -71,7 +73,7 @@ std::vector<Proposal> propose(const ProposalContext& context) {
       entry.arguments.emplace_back("stiffness", stiffness);
       return entry;
     };
-    list.push_back({with(normal(0.0, scale)), "stiffness", with(log_normal(scale, 4.0)), {"region", "facing"}});
+    list.push_back({with(normal_prior(0.0, scale)), "stiffness", with(log_normal_prior(scale, 4.0)), {"region", "facing"}});
   };
   add({});
   const std::vector<int> loose = loose_surface(context.mesh, context.settings, context.regions);

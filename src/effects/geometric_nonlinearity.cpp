@@ -1,4 +1,4 @@
-// Finite strain in place of small strain.
+// Finite strain replaces small strain.
 #include "tissue_stiffness/effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
@@ -17,7 +17,7 @@ std::vector<Proposal> propose(const ProposalContext& context) {
     if (elasticity->arguments.at("law").as_text() != "linear") return {};
   }
   const auto with = [](const Argument& share) { return EffectEntry{"geometric_nonlinearity", {{"share", share}}}; };
-  return {{with(normal(0.0, 0.5)), "share", with(1.0)}};
+  return {{with(normal_prior(0.0, 0.5)), "share", with(1.0)}};
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Uniform gravity on every mass of the model.
+// Uniform gravity acts on every mass of the model.
 #include "tissue_stiffness/effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
@@ -13,10 +13,10 @@ class Gravity : public Effect {
   }
 };
 
-// A declared gravity may be wrong: an entry more is what it is off by.
+// A declared gravity may be wrong, so a second entry may add the difference.
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.estimates("gravity", "acceleration")) return {};
-  const EffectEntry entry{"gravity", {{"acceleration", normal(Eigen::Vector3d::Zero(), 6.0)}}};
+  const EffectEntry entry{"gravity", {{"acceleration", normal_prior(Eigen::Vector3d::Zero(), 6.0)}}};
   return {{entry, "acceleration", entry}};
 }
 

@@ -1,4 +1,4 @@
-// Measured positions that are all too large or too small.
+// All measured positions are too large or too small by one factor.
 #include "tissue_stiffness/effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
@@ -15,7 +15,7 @@ class ImageScale : public Effect {
 
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.holds("image_scale")) return {};
-  const EffectEntry entry{"image_scale", {{"ratio", normal(1.0, 0.05)}}};
+  const EffectEntry entry{"image_scale", {{"ratio", normal_prior(1.0, 0.05)}}};
   return {{entry, "ratio", entry}};
 }
 

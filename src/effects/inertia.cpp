@@ -1,4 +1,4 @@
-// Inertia of the body: force -M a, M_ab = rho int N_a N_b dV.
+// The body's inertia is the force -M a with M_ab = rho int N_a N_b dV.
 #include "tissue_stiffness/effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
@@ -7,7 +7,7 @@ namespace {
 class Inertia : public Effect {
  public:
   Inertia(const Value&, const EffectContext& context)
-      : unit_mass_(shared(context.fem.mass(Eigen::VectorXd::Ones(context.fem.element_count())))) {}
+      : unit_mass_(share_matrix(context.fem.mass(Eigen::VectorXd::Ones(context.fem.element_count())))) {}
 
   bool shareable() const override { return true; }
   void linear_terms(LinearTerms& out) const override {

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "tissue_stiffness/effects/registry.hpp"
+#include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
 

@@ -95,7 +95,7 @@ void LoadErrorBasis::add(const std::string& name, int count, double std, const s
   size_ += count;
 }
 
-// Beyond the last knot the noise is forgotten.
+// The noise decays beyond the last knot.
 Eigen::RowVectorXd LoadErrorBasis::hats(double time) const {
   Eigen::RowVectorXd out = Eigen::RowVectorXd::Zero(knots_.rows());
   const double at = (time - begin_) / spacing_, last = static_cast<double>(knots_.rows() - 1);

@@ -1,4 +1,4 @@
-// The zero of a force sensor: a constant force beside the measured one.
+// A force sensor has a wrong zero: a constant force acts in addition to the measured one.
 #include <algorithm>
 
 #include "tissue_stiffness/effects/registry.hpp"
@@ -26,13 +26,13 @@ class LoadOffset : public Effect {
   Eigen::VectorXd weights_;
 };
 
-// A force that bends the body by a hundredth of its size or less.
+// The prior is a force that bends the body by a hundredth of its size or less.
 std::vector<Proposal> propose(const ProposalContext& context) {
   const Eigen::Vector3d edges = context.high() - context.low();
   const double scale = 1e-3 * context.young_modulus * edges.prod() / edges.maxCoeff();
   std::vector<Proposal> list;
   for (const std::string& name : context.regions_of("traction", "load_offset")) {
-    const EffectEntry entry{"load_offset", {{"region", name}, {"force", normal(Eigen::Vector3d::Zero(), scale)}}};
+    const EffectEntry entry{"load_offset", {{"region", name}, {"force", normal_prior(Eigen::Vector3d::Zero(), scale)}}};
     list.push_back({entry, "force", entry, {"region"}});
   }
   return list;

@@ -1,9 +1,10 @@
-// A force sensor whose axes are not the model's.
+// The axes of a force sensor differ from the model's.
 #include <Eigen/Geometry>
 #include <algorithm>
 
 #include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/fem/facet_quadrature.hpp"
+#include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {
@@ -15,7 +16,7 @@ Eigen::Matrix3d rotation(const Parameters& angles) {
   return Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
 }
 
-// The course of the traction on that region.
+// Returns the course of the traction on this region.
 std::shared_ptr<Course> course_on(const Value& region, const EffectContext& context) {
   for (const EffectSettings& effect : context.settings.effects) {
     if (effect.name != "traction" || effect.arguments.at("region").as_text() != region.as_text()) continue;
@@ -30,7 +31,7 @@ class LoadRotation : public Effect {
       : weights_(facet_mean(context.mesh, find_surface(arguments.at("region"), context.regions).facets)),
         course_(course_on(arguments.at("region"), context)) {}
 
-  // What the turned force has beyond the measured one.
+  // Adds the difference between the rotated force and the measured one.
   void linear_terms(LinearTerms& out) const override {
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) {
@@ -52,7 +53,7 @@ class LoadRotation : public Effect {
 std::vector<Proposal> propose(const ProposalContext& context) {
   std::vector<Proposal> list;
   for (const std::string& name : context.regions_of("traction", "load_rotation")) {
-    const EffectEntry entry{"load_rotation", {{"region", name}, {"angles", normal(Eigen::Vector3d::Zero(), 0.1)}}};
+    const EffectEntry entry{"load_rotation", {{"region", name}, {"angles", normal_prior(Eigen::Vector3d::Zero(), 0.1)}}};
     list.push_back({entry, "angles", entry, {"region"}});
   }
   return list;

@@ -1,4 +1,4 @@
-// Damping proportional to mass: slow motions die first.
+// Damping is proportional to mass, so slow motions decay first.
 #include "tissue_stiffness/effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
@@ -14,7 +14,7 @@ class MassDamping : public Effect {
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.holds("mass_damping")) return {};
   const auto with = [](const Quantity& alpha) { return EffectEntry{"mass_damping", {{"alpha", alpha}}}; };
-  return {{with(normal(0.0, 3.0)), "alpha", with(log_normal(3.0, 4.0))}};
+  return {{with(normal_prior(0.0, 3.0)), "alpha", with(log_normal_prior(3.0, 4.0))}};
 }
 
 }  // namespace

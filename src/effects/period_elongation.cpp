@@ -1,4 +1,4 @@
-// What a finite time step does to a recording that is itself simulated: fast swings take longer.
+// The recording is itself a simulation, whose finite time step makes fast oscillations slower.
 #include "tissue_stiffness/effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
@@ -11,18 +11,18 @@ class PeriodElongation : public Effect {
   }
 };
 
-// Simulators take one to several steps a frame. Every simulation has a trace of it, which nobody need know of.
+// Simulators take one to several steps a frame. Every simulation has such an error, usually a small one.
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.holds("period_elongation")) return {};
   const double step = 0.25 * context.frame_interval, longest = 0.5 * context.frame_interval;
   const auto with = [](const Quantity& square) { return EffectEntry{"period_elongation", {{"step_squared", square}}}; };
-  return {{with(normal(0.0, longest * longest)), "step_squared", with(log_normal(step * step, 4.0))}};
+  return {{with(normal_prior(0.0, longest * longest)), "step_squared", with(log_normal_prior(step * step, 4.0))}};
 }
 
 }  // namespace
 
-// Average acceleration gives a mode of frequency w the frequency w' with tan(w' h / 2) = w h / 2 and leaves statics alone;
-// M + h^2 / 6 K has w'^2 = w^2 / (1 + (w h)^2 / 6): the two differ by (w h)^4 / 480.
+// Average acceleration gives a mode of frequency w the frequency w' with tan(w' h / 2) = w h / 2 and does not change
+// statics. M + h^2 / 6 K has w'^2 = w^2 / (1 + (w h)^2 / 6). The two differ by (w h)^4 / 480.
 EffectSpec period_elongation_spec() {
   EffectSpec spec;
   spec.name = "period_elongation";

@@ -1,4 +1,4 @@
-// Pressure of a fluid on a surface: a dead load for small strain, a follower load for finite strain.
+// A fluid presses on a surface, as a dead load for small strain and a follower load for finite strain.
 #include "tissue_stiffness/effects/pressed_surface.hpp"
 #include "tissue_stiffness/effects/registry.hpp"
 

@@ -1,4 +1,4 @@
-// The zero of a pressure transducer: a constant pressure beside the measured one.
+// A pressure transducer has a wrong zero: a constant pressure acts in addition to the measured one.
 #include "tissue_stiffness/effects/pressed_surface.hpp"
 #include "tissue_stiffness/effects/registry.hpp"
 
@@ -35,7 +35,7 @@ std::vector<Proposal> propose(const ProposalContext& context) {
   std::vector<Proposal> list;
   for (const std::string& region : context.regions_of("pressure", "pressure_offset")) {
     const EffectEntry entry{"pressure_offset",
-                            {{"region", region}, {"pressure", normal(0.0, kScale * context.young_modulus)}}};
+                            {{"region", region}, {"pressure", normal_prior(0.0, kScale * context.young_modulus)}}};
     list.push_back({entry, "pressure", entry, {"region"}});
   }
   return list;

@@ -31,7 +31,7 @@ Quantity default_value(const ParameterSpec& spec) {
   return {Quantity::Kind::known, spec.value, 0.0};
 }
 
-// {mean: [x, y, z], std: s} or {value: [x, y, z], tolerance: s}: the same spread along every axis.
+// Reads {mean: [x, y, z], std: s} or {value: [x, y, z], tolerance: s}, with one spread for all axes.
 void read_vector_with_spread(const Value& value, const ParameterSpec& spec, std::vector<Quantity>& out) {
   const bool known = value.has("value");
   const std::string middle = known ? "value" : "mean", spread = known ? "tolerance" : "std";

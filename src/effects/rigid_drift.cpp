@@ -1,4 +1,4 @@
-// A sensor, or what the body stands on, that slowly moves.
+// The sensor, or the base of the body, moves slowly.
 #include <Eigen/Geometry>
 
 #include "tissue_stiffness/effects/registry.hpp"
@@ -22,13 +22,13 @@ class RigidDrift : public Effect {
   }
 };
 
-// Straight on, and turning; a refit may do both.
+// Proposes a translation and a rotation; a refit may do both.
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.holds("rigid_drift")) return {};
   const double speed = 0.01 * context.size() / context.duration, rate = 0.01 / context.duration;
-  const EffectEntry both{
-      "rigid_drift",
-      {{"velocity", normal(Eigen::Vector3d::Zero(), speed)}, {"rotation", normal(Eigen::Vector3d::Zero(), rate)}}};
+  const EffectEntry both{"rigid_drift",
+                         {{"velocity", normal_prior(Eigen::Vector3d::Zero(), speed)},
+                          {"rotation", normal_prior(Eigen::Vector3d::Zero(), rate)}}};
   return {{both.without("rotation"), "velocity", both}, {both.without("velocity"), "rotation", both}};
 }
 

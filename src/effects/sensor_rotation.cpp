@@ -1,4 +1,4 @@
-// A sensor whose axes are not the model's.
+// The axes of a sensor differ from the model's.
 #include <Eigen/Geometry>
 
 #include "tissue_stiffness/effects/registry.hpp"
@@ -18,12 +18,12 @@ class SensorRotation : public Effect {
   }
 };
 
-// Of points that are known at rest: outlines and clouds would show the turned body itself.
+// Proposes a rotation where points are known at rest. Outlines and clouds would show the rotated body itself.
 std::vector<Proposal> propose(const ProposalContext& context) {
   const bool points =
       context.observes(ObservationSettings::Kind::vertices) || context.observes(ObservationSettings::Kind::markers);
   if (context.holds("sensor_rotation") || !points) return {};
-  const EffectEntry entry{"sensor_rotation", {{"angles", normal(Eigen::Vector3d::Zero(), 0.1)}}};
+  const EffectEntry entry{"sensor_rotation", {{"angles", normal_prior(Eigen::Vector3d::Zero(), 0.1)}}};
   return {{entry, "angles", entry}};
 }
 

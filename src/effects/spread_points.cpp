@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kPasses = 30;
 
-// Centroids (rows 0-2) and volumes (row 3) of the tetrahedra.
+// Returns centroids (rows 0-2) and volumes (row 3) of the tetrahedra.
 Eigen::Matrix4Xd cells(const TetMesh& mesh) {
   Eigen::Matrix4Xd list(4, mesh.tet_count());
   for (int t = 0; t < mesh.tet_count(); ++t) {

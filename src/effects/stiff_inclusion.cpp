@@ -1,4 +1,4 @@
-// A ball of other stiffness in the body.
+// A ball in the body has another stiffness.
 #include <Eigen/Geometry>
 #include <algorithm>
 
@@ -53,13 +53,13 @@ class StiffInclusion : public Effect {
   }
 
  private:
-  // 1 inside, 0 outside, a smooth step between.
+  // Returns 1 inside, 0 outside, and a smooth step in between.
   double inside(int e, int q, const Parameters& p) const {
     const double distance = (fem_.position(e, q) - Eigen::Vector3d(p.segment<3>(kX))).norm();
     const double x = std::clamp(0.5 + 0.5 * (p[kRadius] - distance) / half_width_, 0.0, 1.0);
     return x * x * x * (10.0 - 15.0 * x + 6.0 * x * x);
   }
-  // Refers to p: a copy would ask the heap for room at every force.
+  // The result refers to p, because a copy would allocate memory at every force.
   PointLaw scale(const Parameters& p) const {
     return [this, &p](int e, int q, double) { return StressScale{p[kExcess] * inside(e, q, p), 0.0}; };
   }
@@ -69,7 +69,7 @@ class StiffInclusion : public Effect {
   double half_width_;
 };
 
-// Places spread evenly over the body, two sizes each.
+// Proposes places that are spread evenly over the body, with two sizes each.
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.holds("stiff_inclusion")) return {};
   const SpreadPoints places = spread_points(context.mesh, kPlaces);
@@ -81,8 +81,9 @@ std::vector<Proposal> propose(const ProposalContext& context) {
       const auto with = [](const Argument& center, const Argument& radius, const Quantity& excess) {
         return EffectEntry{"stiff_inclusion", {{"center", center}, {"radius", radius}, {"excess", excess}}};
       };
-      list.push_back({with(center, radius, normal(0.0, 2.0)), "excess",
-                      with(normal(center, 0.5 * places.distance), log_normal(radius, 1.5), normal(1.0, 3.0))});
+      list.push_back(
+          {with(center, radius, normal_prior(0.0, 2.0)), "excess",
+           with(normal_prior(center, 0.5 * places.distance), log_normal_prior(radius, 1.5), normal_prior(1.0, 3.0))});
     }
   }
   return list;

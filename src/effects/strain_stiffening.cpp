@@ -1,16 +1,17 @@
-// Tissue that grows stiffer the more it is strained.
+// The tissue becomes stiffer with strain.
 #include <Eigen/Cholesky>
 #include <functional>
 
 #include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/effects/solids.hpp"
+#include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {
 
 constexpr double kMostExponent = 50.0;  // of the exponential: beyond it a step has diverged
 
-// exp(b Q) - 1 with Q = 2 psi / E, and its derivative with respect to psi.
+// Returns exp(b Q) - 1 with Q = 2 psi / E, and its derivative with respect to psi.
 StressScale excess(double b, double modulus, double psi) {
   const double exponent = 2.0 * b * psi / modulus;
   if (!(exponent < kMostExponent)) throw NumericalError("strain_stiffening: strain beyond every bound");
@@ -25,11 +26,11 @@ class StrainStiffening : public Effect {
   bool nonlinear() const override { return true; }
   bool has_finite_form() const override { return true; }
 
-  // Small strain.
+  // This and add_stiffness are the small-strain form.
   void add_force(const Motion& motion, const Parameters& p, Eigen::VectorXd& force) const override {
     if (p[0] == 0.0 || motion.finite_share == 1.0) return;
     const auto stress = [&](int e, int q) -> Strain {
-      const Point x = look(motion.displacement, e, q, p);
+      const Point x = evaluate(motion.displacement, e, q, p);
       return (1.0 - motion.finite_share) * x.excess.value * x.stress;
     };
     add_stress_force(fem_, std::cref(stress), force);
@@ -37,7 +38,7 @@ class StrainStiffening : public Effect {
   void add_stiffness(const Motion& motion, const Parameters& p, SparseMatrix& stiffness) const override {
     if (p[0] == 0.0 || motion.finite_share == 1.0) return;
     const StrainFactorField factor = [&](int e, int q) -> StrainFactor {
-      const Point x = look(motion.displacement, e, q, p);
+      const Point x = evaluate(motion.displacement, e, q, p);
       if (!(x.excess.value > 0.0)) return StrainFactor(6, 0);
       const StrainFactor elastic = isotropic_factor(x.moduli.lambda, x.moduli.mu);
       const Eigen::Matrix<double, 6, 6> d =
@@ -65,7 +66,7 @@ class StrainStiffening : public Effect {
     Strain stress;
     StressScale excess;
   };
-  Point look(const Eigen::VectorXd& u, int e, int q, const Parameters& p) const {
+  Point evaluate(const Eigen::VectorXd& u, int e, int q, const Parameters& p) const {
     Point x{{0.0, 0.0}, Strain::Zero(), {0.0, 0.0}};
     for (std::size_t s = 0; s < solids_.count(); ++s) {
       if (!solids_.holds(s, e)) continue;
@@ -89,7 +90,7 @@ class StrainStiffening : public Effect {
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.holds("strain_stiffening")) return {};
   const auto with = [](const Quantity& exponent) { return EffectEntry{"strain_stiffening", {{"exponent", exponent}}}; };
-  return {{with(normal(0.0, 10.0)), "exponent", with(log_normal(10.0, 4.0))}};
+  return {{with(normal_prior(0.0, 10.0)), "exponent", with(log_normal_prior(10.0, 4.0))}};
 }
 
 }  // namespace

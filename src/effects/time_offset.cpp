@@ -1,4 +1,4 @@
-// Measurements stamped late or early against the loads.
+// Measurements are stamped late or early relative to the loads.
 #include "tissue_stiffness/effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
@@ -12,7 +12,7 @@ class TimeOffset : public Effect {
 
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.holds("time_offset")) return {};
-  const EffectEntry entry{"time_offset", {{"offset", normal(0.0, context.frame_interval)}}};
+  const EffectEntry entry{"time_offset", {{"offset", normal_prior(0.0, context.frame_interval)}}};
   return {{entry, "offset", entry}};
 }
 

@@ -1,4 +1,4 @@
-// Measured total force, spread evenly over a patch of the surface.
+// A measured total force is spread evenly over a patch of the surface.
 #include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/fem/facet_quadrature.hpp"
 

@@ -1,4 +1,4 @@
-// Standard linear solid: part of the stiffness relaxes.
+// Part of the stiffness relaxes (standard linear solid).
 #include "tissue_stiffness/effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
@@ -11,7 +11,7 @@ class Viscoelasticity : public Effect {
   }
 };
 
-// Time constants from the frame interval to the recording, two a decade and a half apart.
+// Proposes seven time constants from the frame interval to the recording's duration, at equal ratios.
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.holds("viscoelasticity")) return {};
   constexpr int count = 7;
@@ -21,7 +21,8 @@ std::vector<Proposal> propose(const ProposalContext& context) {
   std::vector<Proposal> list;
   for (int i = 0; i < count; ++i) {
     const double tau = context.frame_interval * std::pow(context.duration / context.frame_interval, i / (count - 1.0));
-    list.push_back({with(normal(0.0, 0.3), tau), "gamma", with(log_normal(0.3, 3.0), log_normal(tau, 3.0))});
+    list.push_back(
+        {with(normal_prior(0.0, 0.3), tau), "gamma", with(log_normal_prior(0.3, 3.0), log_normal_prior(tau, 3.0))});
   }
   return list;
 }

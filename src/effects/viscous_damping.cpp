@@ -1,4 +1,4 @@
-// Kelvin-Voigt damping: fast motions die first.
+// Kelvin-Voigt damping acts, so fast motions decay first.
 #include "tissue_stiffness/effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
@@ -11,11 +11,11 @@ class ViscousDamping : public Effect {
   }
 };
 
-// Scaled by a damping ratio of a few per cent at ten hertz.
+// The prior corresponds to a damping ratio of a few per cent at ten hertz.
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.holds("viscous_damping")) return {};
   const auto with = [](const Quantity& beta) { return EffectEntry{"viscous_damping", {{"beta", beta}}}; };
-  return {{with(normal(0.0, 2e-3)), "beta", with(log_normal(2e-3, 4.0))}};
+  return {{with(normal_prior(0.0, 2e-3)), "beta", with(log_normal_prior(2e-3, 4.0))}};
 }
 
 }  // namespace

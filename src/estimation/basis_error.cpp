@@ -4,13 +4,13 @@
 #include <cmath>
 #include <limits>
 
-#include "tissue_stiffness/filter/anchored_filter.hpp"
+#include "tissue_stiffness/filter/posterior_linearization_filter.hpp"
 #include "tissue_stiffness/forward/reduced_trajectory.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
-constexpr std::size_t kLooks = 32;  // frames compared
+constexpr std::size_t kComparedFrames = 32;  // frames compared, about
 
 double least_noise(const Model& model) {
   double least = std::numeric_limits<double>::infinity();
@@ -21,10 +21,10 @@ double least_noise(const Model& model) {
 }
 
 std::size_t stride(const FitProblem& problem) {
-  return (problem.frames.size() + kLooks - 1) / kLooks;
+  return (problem.frames.size() + kComparedFrames - 1) / kComparedFrames;
 }
 
-bool looked_at(std::size_t frame, const FitProblem& problem) {
+bool is_checked(std::size_t frame, const FitProblem& problem) {
   return frame % stride(problem) == 0 || frame + 1 == problem.frames.size();
 }
 
@@ -41,16 +41,16 @@ BasisError basis_error(const ReducedModel& reduced, const FitProblem& problem, c
     const double time = problem.frames[k].time - delay;
     whole.advance(time);
     half.advance(time);
-    if (!looked_at(k, problem)) continue;
+    if (!is_checked(k, problem)) continue;
     square = std::max(square, (basis * (whole.coordinates() - half.coordinates())).squaredNorm());
   }
-  const double rms = kBasisDoubt * std::sqrt(square / static_cast<double>(basis.rows()));
+  const double rms = kBasisSafety * std::sqrt(square / static_cast<double>(basis.rows()));
   return {rms, rms / least_noise(problem.model)};
 }
 
 Eigen::VectorXd basis_shift(const ReducedModel& reduced, const FitProblem& problem, const Eigen::VectorXd& w,
                             const Eigen::VectorXd& spread, const Eigen::VectorXd& prior_std) {
-  AnchoredFilter filter(w, prior_std.cwiseAbs2().asDiagonal());
+  PosteriorLinearizationFilter filter(w, prior_std.cwiseAbs2().asDiagonal());
   filter.move_anchor(w, spread);
   const Eigen::MatrixXd& points = filter.sigma_points();
   const auto count = static_cast<std::size_t>(points.cols());
@@ -64,19 +64,19 @@ Eigen::VectorXd basis_shift(const ReducedModel& reduced, const FitProblem& probl
   }
   for (std::size_t k = 0; k < problem.frames.size(); ++k) {
     const Frame& frame = problem.frames[k];
-    const bool look = looked_at(k, problem);
+    const bool at_this_frame = is_checked(k, problem);
     const auto moved = [&](Trajectory& run, const Eigen::VectorXd& at) {
       run.advance(frame.time - problem.model.delay(at));
-      return look ? predict_frame(problem.model, problem.operators, frame, at, run.displacement()) : Prediction{};
+      return at_this_frame ? predict_frame(problem.model, problem.operators, frame, at, run.displacement()) : Prediction{};
     };
     const Prediction truth = moved(*whole, theta);
     Eigen::MatrixXd rows(truth.predicted.size(), points.cols());
     for (std::size_t i = 0; i < count; ++i) rows.col(static_cast<Eigen::Index>(i)) = moved(*halves[i], thetas[i]).predicted;
-    if (!look) continue;
+    if (!at_this_frame) continue;
     const Eigen::VectorXd variance = truth.sigma.cwiseAbs2() / static_cast<double>(stride(problem));
     filter.update(truth.predicted, rows, variance, Eigen::VectorXd::Ones(variance.size()));
   }
-  return kBasisDoubt * (filter.mean() - w);
+  return kBasisSafety * (filter.mean() - w);
 }
 
 }  // namespace tissue_stiffness

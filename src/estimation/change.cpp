@@ -3,35 +3,35 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tissue_stiffness/estimation/coordinate_scan.hpp"
+#include "tissue_stiffness/fit/coordinate_scan.hpp"
 #include "tissue_stiffness/forward/for_each_index.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
-constexpr std::size_t kBack[] = {3, 4, 6, 8, 12, 16, 24, 32, 48};  // frames from the newest: instants looked at first
-constexpr std::size_t kNear = 3;                                   // frames around an instant that is roughly known
-constexpr int kPoints = 6;                                         // on either side, of the first look along a coordinate
-constexpr double kReach = 1.5;                                     // of the prior's standard deviation: how far it looks
-constexpr double kWidth = 0.01;                                    // of the prior's standard deviation: the last look
-constexpr double kAsLikely = 4.0;                                  // more in cost: instants that may be the right one
-constexpr int kCuts = 3;                                           // of the time between two instants
-constexpr int kPieces = 6;                                         // each into
-constexpr double kShortest = 1.0;                                  // [s] that a change may have built up for, at least
-constexpr double kEvidence = 20.0;                                 // fall of the cost that a change must bring
-constexpr double kExplains = 0.8;                                  // of the excess
+constexpr std::size_t kBack[] = {3, 4, 6, 8, 12, 16, 24, 32, 48};  // frames before the newest: instants tried first
+constexpr std::size_t kNear = 3;    // frames to either side of an instant that is roughly known
+constexpr int kPoints = 6;          // on either side, in the first scan of a coordinate
+constexpr double kReach = 1.5;      // prior standard deviations: reach of that scan
+constexpr double kWidth = 0.01;     // of the prior's standard deviation: last step of the search
+constexpr double kAsLikely = 4.0;   // excess in cost up to which an instant may be the right one
+constexpr int kCuts = 3;            // refinements of the time between two instants
+constexpr int kPieces = 6;          // pieces that each refinement divides it into
+constexpr double kShortest = 1.0;   // [s] that a change may have built up for, at least
+constexpr double kEvidence = 20.0;  // fall of the cost that a change must bring
+constexpr double kExplains = 0.8;   // share of the misfit's excess that it must explain
 
-/// A free run's motion at some instants, to go on from.
+/// An instant holds a free run's motion, to go on from.
 struct Instant {
   RunStart from;
-  std::size_t first = 0;  ///< frame after it
+  std::size_t first = 0;  ///< first frame after it
 };
 
-/// What a change at an instant would come to.
+/// A guess is what a change at an instant would lead to.
 struct Guess {
   Instant at;
   Eigen::VectorXd w;
-  double cost = 0.0;  ///< of the frames after the first instant looked at, and of the change itself
+  double cost = 0.0;  ///< of the frames after the first instant tried, and of the change itself
 };
 
 class Search {
@@ -43,7 +43,7 @@ class Search {
         theta_(problem.model.theta(question.w)) {}
 
   std::optional<Change> operator()() {
-    std::vector<Instant> instants = first_look();
+    std::vector<Instant> instants = spread_instants();
     if (instants.empty()) return std::nullopt;
     run_before(instants.front());
     Guess best = best_of(instants, question_.w, true);
@@ -55,13 +55,13 @@ class Search {
     const double scale = std::max(1.0, question_.misfit);
     const double gain = (total_ - best.cost) / scale, excess = total_ / scale - rows_;
     if (gain < kEvidence || gain < kExplains * excess) return std::nullopt;
-    return Change{best.at.from, best.w, doubt(best, scale), best.at.first};
+    return Change{best.at.from, best.w, discrepancy(best, scale), best.at.first};
   }
 
  private:
   double arrival(std::size_t frame) const { return problem_.frames[frame].time - problem_.model.delay(theta_); }
 
-  std::vector<Instant> first_look() const {
+  std::vector<Instant> spread_instants() const {
     std::vector<Instant> out;
     const auto run = problem_.forward.begin(theta_, problem_.start);
     for (const std::size_t frame : first_frames()) {
@@ -72,7 +72,7 @@ class Search {
     return out;
   }
 
-  // Frames after which a change may have come, to begin with.
+  // Returns the frames after which a change is searched first.
   std::vector<std::size_t> first_frames() const {
     const std::size_t count = problem_.frames.size();
     std::vector<std::size_t> out;
@@ -89,7 +89,7 @@ class Search {
     return out;
   }
 
-  // Without a change, from the first instant on: what a later change leaves before it, and altogether.
+  // Runs without a change, from the first instant on. It sums up what a later change leaves before it, and altogether.
   void run_before(const Instant& at) {
     first_ = at.first;
     before_.assign(1, 0.0);
@@ -120,7 +120,7 @@ class Search {
     return cost;
   }
 
-  // Where the cost is least along the drifting coordinates from `w` on; looks far first if asked to.
+  // Returns where the cost is least along the drifting coordinates from `w` on; `far` scans them widely first.
   Guess guess(const Instant& at, const Eigen::VectorXd& w, bool far) const {
     const auto cost_of = [&](const Eigen::VectorXd& x) { return cost_after(at, x); };
     Guess best{at, w, 0.0};
@@ -159,8 +159,9 @@ class Search {
                              [](const Guess& a, const Guess& b) { return a.cost < b.cost; });
   }
 
-  // What is not known of the instant and of the parameters before it moves those after it: about 1 sigma.
-  Eigen::VectorXd doubt(const Guess& best, double scale) const {
+  // Returns the uncertainty of the parameters after the change, about 1 sigma: its instant and the parameters before it are
+  // not exactly known.
+  Eigen::VectorXd discrepancy(const Guess& best, double scale) const {
     Eigen::VectorXd square = Eigen::VectorXd::Zero(best.w.size());
     for (const Guess& other : seen_) {
       const double worse = (other.cost - best.cost) / scale;
@@ -178,7 +179,7 @@ class Search {
     return square.cwiseSqrt();
   }
 
-  // Between the neighbours of the best one; a change falls between frames.
+  // Returns instants between the neighbours of the best one, because a change falls between frames.
   std::vector<Instant> closer(const std::vector<Instant>& instants, const Guess& best) const {
     const auto later =
         std::find_if(instants.begin(), instants.end(), [&](const Instant& i) { return i.from.time > best.at.from.time; });
@@ -192,7 +193,7 @@ class Search {
       double time = low.from.time + (high - low.from.time) * k / kPieces;
       std::size_t first = low.first;
       while (first < problem_.frames.size() && arrival(first) <= time) ++first;
-      if (problem_.model.nonlinear()) time = arrival(first - 1);  // its steps are parts of a frame
+      if (problem_.model.nonlinear()) time = arrival(first - 1);  // its steps divide a frame
       if (first + 2 >= problem_.frames.size() || time <= out.back().from.time) continue;
       run->advance(time);
       out.push_back({{time, problem_.forward.resume(theta_, *run)}, first});

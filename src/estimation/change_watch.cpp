@@ -7,11 +7,11 @@ namespace {
 
 constexpr int kFewest = 8;                        // frames before which nothing is suspected
 constexpr double kRecent = 4.0, kAverage = 15.0;  // frames that the averages remember
-constexpr double kRise = 1.5;                     // of the misfit that is suspicious
+constexpr double kRise = 1.5;                     // of the best misfit: a suspicious level
 
 }  // namespace
 
-void ChangeWatch::add(double square, const AnchoredFilter& filter) {
+void ChangeWatch::add(double square, const PosteriorLinearizationFilter& filter) {
   if (!drifts_) return;
   ++frames_;
   recent_ += (square - recent_) / std::min<double>(frames_, kRecent);

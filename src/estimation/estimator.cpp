@@ -11,7 +11,7 @@ class Estimator::Implementation {
   std::unique_ptr<Scheme> scheme;
 };
 
-Estimator::Estimator(const ModelSettings& settings, const TetMesh& mesh, const Relatives& relatives)
+Estimator::Estimator(const ModelSettings& settings, const TetMesh& mesh, const ReuseSources& relatives)
     : implementation_(std::make_unique<Implementation>(settings.estimator == EstimatorKind::paper
                                                            ? make_paper_scheme(settings, mesh)
                                                            : make_unscented_scheme(settings, mesh, relatives))) {}
@@ -40,8 +40,8 @@ StepResult Estimator::replay(const std::vector<Frame>& frames, const Estimate* n
 std::optional<StepResult> Estimator::catch_up() {
   return implementation_->scheme->catch_up();
 }
-bool Estimator::looks_back() const {
-  return implementation_->scheme->looks_back();
+bool Estimator::reprocesses() const {
+  return implementation_->scheme->reprocesses();
 }
 void Estimator::reset() {
   implementation_->scheme->reset();

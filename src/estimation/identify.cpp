@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "tissue_stiffness/effects/registry.hpp"
+
 namespace tissue_stiffness {
 namespace {
 
@@ -11,7 +13,7 @@ bool ends_with(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-// Parameters that carry the unit of force: the whole model scales with them.
+// Returns whether a parameter carries the unit of force: the whole model scales with such parameters.
 bool is_scale(const std::string& name) {
   for (const char* end : {".young_modulus", ".density", ".mass", ".scale", ".stiffness"}) {
     if (ends_with(name, end)) return true;
@@ -19,7 +21,7 @@ bool is_scale(const std::string& name) {
   return false;
 }
 
-// Names of the scales whose numbers the model file gives.
+// Returns the names of the scales whose numbers the model file gives.
 std::vector<std::string> known_scales(const Model& model) {
   std::vector<std::string> known;
   for (const EffectSettings& effect : model.settings().effects) {
@@ -33,8 +35,8 @@ std::vector<std::string> known_scales(const Model& model) {
   return known;
 }
 
-// Standard deviation over the prior's of each parameter, with the other scales held when no scale is known: what the data
-// then say about ratios.
+// Returns each parameter's standard deviation over the prior's. When no scale is known the other scales are held, which
+// tells what the data say about ratios.
 Eigen::VectorXd narrowing(const Model& model, const Eigen::MatrixXd& covariance, bool ratios_only) {
   Eigen::VectorXd variance = covariance.diagonal();
   std::vector<Eigen::Index> scales;

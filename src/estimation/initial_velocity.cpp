@@ -7,9 +7,9 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kRelativeDoubt = 0.05;  // of the speed: the body already decelerates or turns within the frames
+constexpr double kRelativeUncertainty = 0.05;  // of the speed: the body already decelerates or turns within the frames
 
-// Area centroid of a closed outline [pixel].
+// Returns the area centroid of a closed outline [pixel].
 Eigen::Vector2d centroid(const Eigen::Matrix2Xd& points) {
   const Eigen::Vector2d origin = points.col(0);
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
@@ -51,7 +51,7 @@ VelocityEstimate velocity_from_frames(const Model& model, const std::vector<Fram
   estimate.mean = centres * centred / centred.squaredNorm();
   const double noise =
       model.settings().observations[static_cast<std::size_t>(frames.front().observations.front().source)].noise;
-  estimate.std = std::hypot(noise / centred.norm(), kRelativeDoubt * estimate.mean.norm());
+  estimate.std = std::hypot(noise / centred.norm(), kRelativeUncertainty * estimate.mean.norm());
   return estimate;
 }
 

@@ -5,20 +5,21 @@
 #include <cmath>
 #include <utility>
 
-#include "tissue_stiffness/estimation/compare.hpp"
-#include "tissue_stiffness/estimation/ensemble.hpp"
+#include "tissue_stiffness/effects/registry.hpp"
+#include "tissue_stiffness/fit/ensemble.hpp"
 #include "tissue_stiffness/forward/load_error_response.hpp"
 #include "tissue_stiffness/forward/reduced_trajectory.hpp"
+#include "tissue_stiffness/observation/frame_misfit.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
-constexpr std::size_t kMostFrames = 150;   // of a long recording, evenly spread
+constexpr std::size_t kMostFrames = 150;   // used of a long recording, evenly spread
 constexpr double kConstantStep = 0.5;      // of a tolerance, for its central difference
-constexpr Eigen::Index kLowestModes = 6;   // along each of which the mesh's error is an unknown of its own
+constexpr Eigen::Index kLowestModes = 6;   // modes along each of which the mesh's error is an unknown of its own
 constexpr double kWholeError = 4.0 / 3.0;  // of what a mesh refined once changes, at second order
 
-// Poisson's ratio is folded into one matrix while it is known; a model in which it is free keeps it apart.
+// A known Poisson's ratio is folded into one matrix; a model in which it is free keeps it apart.
 ModelSettings with_free_ratio(ModelSettings settings) {
   for (EffectSettings& effect : settings.effects) {
     if (effect.name != "elasticity") continue;
@@ -37,7 +38,7 @@ ModelSettings with_free_ratio(ModelSettings settings) {
   return settings;
 }
 
-// Rigid translation along and rotation about each axis through the body's middle, 3n x 6.
+// Returns the rigid translations along, and rotations about, each axis through the body's middle, 3n x 6.
 Eigen::MatrixXd rigid_motions(const TetMesh& mesh) {
   const Eigen::Vector3d middle = mesh.nodes.rowwise().mean();
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(mesh.nodes.size(), 6);
@@ -50,7 +51,7 @@ Eigen::MatrixXd rigid_motions(const TetMesh& mesh) {
   return out;
 }
 
-// Takes out what the sensor or the model has no number for.
+// Zeroes the rows for which the sensor or the model has no number.
 void clean(InputLinearisation::Row& row) {
   for (Eigen::Index r = 0; r < row.error.size(); ++r) {
     const bool good = std::isfinite(row.error[r]) && std::isfinite(row.precision[r]) && row.parameters.row(r).allFinite() &&
@@ -65,7 +66,7 @@ Eigen::MatrixXd finite(const Eigen::MatrixXd& m) {
   return m.array().isFinite().select(m, 0.0);
 }
 
-// Amplitudes of the modes that come closest to a change of the rows.
+// Returns the amplitudes of the modes that come closest to a change of the rows.
 Eigen::VectorXd along_modes(const Eigen::MatrixXd& modes, const Eigen::VectorXd& precision, const Eigen::VectorXd& change) {
   const Eigen::VectorXd weight = finite(precision).cwiseSqrt();
   return (weight.asDiagonal() * finite(modes)).colPivHouseholderQr().solve(weight.cwiseProduct(finite(change).col(0)));
@@ -127,7 +128,7 @@ void InputLinearisation::add_load(const std::string& topic, const std::shared_pt
   };
   LoadTolerance tolerance = course->tolerance();
   for (const FreeParameter& free : models_.base.free_parameters()) {
-    if (free.name.find("force_scale") == 0) tolerance.gain = 0.0;  // the same number
+    if (free.name.find("force_scale") == 0) tolerance.gain = 0.0;  // a free force_scale is the gain itself
   }
   const LoadErrorBasis basis(tolerance, measured, components, q_.start, q_.frames.back().time);
   if (basis.size() == 0) return;
@@ -146,7 +147,7 @@ void InputLinearisation::correct_loads(const Eigen::VectorXd& z) {
   for (const Load& load : loads_) load.course->correct(load.basis, z.segment(load.first, load.basis.size()));
 }
 
-// Parameters of the centre, of the sigma points around it, and of each constant to either side.
+// Returns theta at the centre, at the sigma points around it, and with each constant to either side.
 std::vector<Eigen::VectorXd> InputLinearisation::points(const Eigen::VectorXd& w) const {
   const Eigen::VectorXd centre = models_.base.theta(w);
   std::vector<Eigen::VectorXd> out{centre};
@@ -205,7 +206,7 @@ InputLinearisation::Row InputLinearisation::row(std::size_t index, const std::ve
   return out;
 }
 
-// Displacements of named nodes are linear in the motion, and the same nodes are seen again and again.
+// Displacements of named nodes are linear in the motion, and most frames see these nodes again.
 const Eigen::MatrixXd& InputLinearisation::motions_seen(const Frame& frame, const Eigen::VectorXd& theta,
                                                         const Eigen::VectorXd& u, const Prediction& there) {
   const auto seen = [&] { return predict_along(models_.base, models_.operators, frame, theta, u, there, motions_); };
@@ -238,8 +239,8 @@ Eigen::MatrixXd InputLinearisation::pose_columns(const Frame& frame, const Eigen
   return out;
 }
 
-// What the mesh changes, parted into what it changes along each of the lowest modes and the rest: the errors of a mesh
-// differ from mode to mode, and those that are left after a refinement are not its whole change times one number.
+// The mesh's change is divided into its share along each of the lowest modes and the rest. The errors of a mesh differ from
+// mode to mode, so what a refinement leaves is not its whole change times one number.
 Eigen::MatrixXd InputLinearisation::mesh_columns(std::size_t frame, const Eigen::MatrixXd& modes,
                                                  const Eigen::VectorXd& precision) const {
   const Eigen::Index rows = modes.rows(), count = std::min({kLowestModes, modes.cols(), rows});
@@ -254,7 +255,7 @@ Eigen::MatrixXd InputLinearisation::mesh_columns(std::size_t frame, const Eigen:
   return out;
 }
 
-// Shows every frame, linearised at z, with the modal amplitudes of the loads' errors.
+// Visits every used frame, linearised at z, with the modal amplitudes of the loads' errors.
 void InputLinearisation::each_row(const Eigen::VectorXd& z, const Visitor& visit) {
   correct_loads(z);
   const std::vector<Eigen::VectorXd> thetas = points(z.head(p_));
@@ -272,7 +273,7 @@ void InputLinearisation::each_row(const Eigen::VectorXd& z, const Visitor& visit
     all->displacements(u);
     for (std::size_t i = 0; i < loads_.size(); ++i) {
       responses[i].advance(times[0]);
-      // The measured load is too large by B eta: the motion under the true one is smaller.
+      // The measured load is too large by B eta, so the motion under the true one is smaller.
       amplitudes.middleCols(loads_[i].first - p_, loads_[i].basis.size()) = -responses[i].amplitudes();
     }
     visit(row(index, thetas, u, mode_shapes, z), amplitudes);

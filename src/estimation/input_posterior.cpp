@@ -12,15 +12,15 @@ namespace {
 constexpr int kMostIterations = 6;
 constexpr int kMostCuts = 3;
 constexpr double kSettled = 0.1;      // posterior standard deviations
-constexpr int kMostSteps = 4;         // of Gauss-Newton beside a held place on the line
+constexpr int kMostSteps = 4;         // of Gauss-Newton, with the place on the line held
 constexpr int kMostMarched = 14;      // points of the line to either side
-constexpr double kGrowth = 1.3;       // from one of their distances to the next
-constexpr double kImprobable = 16.0;  // -2 log posterior beyond the least
-constexpr int kMostImprobable = 3;    // such points in a row: a wall of a comb is not its end
-constexpr double kNegligible = 9.0;   // the same, beyond which the grid is left as it is
+constexpr double kGrowth = 1.3;       // ratio of successive distances on the line
+constexpr double kImprobable = 16.0;  // -2 log posterior above the least
+constexpr int kMostImprobable = 3;    // such points in a row end the line: one may be a wall of a comb
+constexpr double kNegligible = 9.0;   // -2 log posterior above the least, where the grid is not refined
 constexpr double kResolved = 2.0;     // local standard deviations between two points
 constexpr std::size_t kMostPoints = 60;
-constexpr double kLinear = 3.0;    // fall of -2 log posterior by a step that the linear form foretells well
+constexpr double kLinear = 3.0;    // fall of -2 log posterior that the linear form predicts well
 constexpr double kFurthest = 3.0;  // prior standard deviations
 
 }  // namespace
@@ -89,7 +89,7 @@ InputPosterior::Fit InputPosterior::mode(const Eigen::VectorXd& w) {
   return fit;
 }
 
-// One Gauss-Newton step, shortened while the cost does not fall; false at the end.
+// Makes one Gauss-Newton step, shortened while the cost does not fall. Returns false at the end.
 bool InputPosterior::improve(Fit& fit) {
   const double s = scale(fit.normal);
   const Eigen::MatrixXd inverse_covariance = information(fit.normal);
@@ -120,7 +120,7 @@ InputPosterior::Line InputPosterior::line(const Fit& mode) const {
   return out;
 }
 
-// Gauss-Newton on all of z with its place on the line held.
+// Runs Gauss-Newton on all of z with its place on the line held.
 InputPosterior::Point InputPosterior::most_probable(const Line& line, double along, Eigen::VectorXd z) {
   Point out{along, 0.0, 0.0, {}};
   for (int k = 0; k < kMostSteps; ++k) {
@@ -128,7 +128,7 @@ InputPosterior::Point InputPosterior::most_probable(const Line& line, double alo
     Eigen::MatrixXd inverse_covariance = fit.normal.information / line.scale;
     inverse_covariance.diagonal() += prior_information();
     const Eigen::VectorXd pull = fit.normal.gradient / line.scale + prior_information().cwiseProduct(from_prior(z));
-    // The minimum over the plane dual . step = 0.
+    // The step minimises over the plane dual . step = 0.
     Eigen::MatrixXd sides(z.size(), 2);
     sides.col(0) = pull;
     sides.col(1).setZero();
@@ -146,7 +146,7 @@ InputPosterior::Point InputPosterior::most_probable(const Line& line, double alo
   return out;
 }
 
-// From the mode outwards, in steps that grow. Each point starts where the last two lead.
+// Marches outwards from the mode, in steps that grow. Each point starts where the last two lead.
 void InputPosterior::march(const Line& line, double side, Points& points) {
   Point last = points.front(), before = last;
   double step = 1.0, least = last.cost;
@@ -178,7 +178,7 @@ void InputPosterior::refine(const Line& line, Points& points) {
     for (std::size_t k = 0; k + 1 < points.size(); ++k) {
       const Point &a = points[k], &b = points[k + 1];
       const double gap = (b.along - a.along) / finest;
-      const double bowl = std::min(a.cost, b.cost) - 0.25 * gap * gap;  // the least cost that the curvature allows between
+      const double bowl = std::min(a.cost, b.cost) - 0.25 * gap * gap;  // least cost that the curvature allows between
       if (bowl > least + kNegligible) continue;
       if (gap > most) widest = k, most = gap;
     }
@@ -212,7 +212,7 @@ InputPosterior::Moments InputPosterior::integrate(const Fit& mode) {
     const Eigen::VectorXd apart = points[k].z - mean;
     spread += weights[static_cast<Eigen::Index>(k)] * apart * apart.transpose();
   }
-  // Law of total covariance: beside a held place on the line the linear form holds; the place itself has the spread.
+  // By the law of total covariance the linear form holds at a held place on the line, and the place itself has the spread.
   Moments out{{mean, rows_(mean)}, Eigen::MatrixXd::Zero(size_, size_)};
   const Eigen::VectorXd drift = covariance(out.mean.normal).leftCols(p_) * along.dual;
   const double linear = along.dual.dot(drift.head(p_));

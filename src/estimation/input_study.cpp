@@ -6,15 +6,15 @@
 #include <cstdio>
 #include <utility>
 
-#include "tissue_stiffness/estimation/ensemble.hpp"
 #include "tissue_stiffness/estimation/input_linearisation.hpp"
 #include "tissue_stiffness/estimation/input_posterior.hpp"
+#include "tissue_stiffness/fit/ensemble.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kNoise = 2.0;       // mean square over the noise's that no other start can better by much
-constexpr Eigen::Index kModes = 12;  // along which missing physics is looked for
+constexpr double kNoise = 2.0;       // mean square over the noise's below which no other start is tried
+constexpr Eigen::Index kModes = 12;  // modes along which missing physics is searched
 constexpr double kPlausible = 3.0;   // standard deviations
 constexpr double kTails = 2.0;       // variance of Student's distribution with 4 degrees of freedom and scale 1
 
@@ -22,14 +22,14 @@ Eigen::MatrixXd inverse(const Eigen::MatrixXd& m) {
   return m.ldlt().solve(Eigen::MatrixXd::Identity(m.rows(), m.cols()));
 }
 
-// Of each nuisance, in units of its tolerance.
+// Returns each nuisance's standard deviation, in units of its tolerance.
 Eigen::VectorXd nuisance_stds(const InputLinearisation& rows, Eigen::Index parameters) {
   Eigen::VectorXd out = Eigen::VectorXd::Constant(rows.size() - parameters, std::sqrt(kTails));
   out.tail(rows.size() - rows.first_of_mesh()).setOnes();
   return out;
 }
 
-// Gauss-Newton on the parameters and the inputs' errors, and what it says.
+// Fits the parameters and the inputs' errors by Gauss-Newton, and answers the question.
 class InputFit {
  public:
   InputFit(const InputStudy::Question& question, InputModels& models)
@@ -44,12 +44,12 @@ class InputFit {
     InputStudy::Answer answer;
     answer.asked = q_.w;
     answer.fitted = !models_.base.nonlinear();
-    const bool uncertain = answer.fitted && rows_.size() > p_;  // else the question's parameters are the fit
+    const bool uncertain = answer.fitted && rows_.size() > p_;  // else the fit is at the question's parameters
     Fit best = uncertain ? best_mode() : posterior_.at(q_.w);
     if (answer.fitted) answer.test = test(best);
     if (uncertain) {
       best = tempered_fit(answer.test);
-      answer.test = test(best);  // errors of the inputs that the tempered data do not ask for explain nothing
+      answer.test = test(best);  // input errors that the tempered data do not ask for explain nothing
     }
     tell_inputs(best, answer);
     InputPosterior::Moments moments{best, Eigen::MatrixXd::Zero(rows_.size(), rows_.size())};
@@ -69,16 +69,16 @@ class InputFit {
     return posterior_.cost(other, s) < posterior_.cost(best, s) ? other : best;
   }
 
-  // Where a load's course is uncertain, inertia alone tells the modulus, by a small part of the motion, which structure
-  // that the residual may hide imitates. So that structure is taken for one error that all rows share, and the data tell as
-  // much as a tempered likelihood has it (Miller & Dunson 2019).
+  // Where a load's course is uncertain, only inertia tells the modulus, by a small part of the motion. Structure that the
+  // residual may hide imitates that part. So the structure counts as one error that all rows share, and the likelihood is
+  // tempered by as much (Miller & Dunson 2019).
   Fit tempered_fit(const MisfitTest& test) {
     const double hidden = std::max(0.0, test.excess()) + test.deviation();
     posterior_.set_temperature(1.0 + hidden * test.structured_dof() * rows_.repeated());
     return posterior_.mode(q_.w);
   }
 
-  // The mean of a bent valley lies beside its floor: the runs are corrected by the mode.
+  // The mean of a bent valley lies off its floor, so the runs are corrected by the mode.
   void finish(const Fit& mode, const InputPosterior::Moments& moments, InputStudy::Answer& answer) {
     const NormalEquations& normal = moments.mean.normal;
     const double tempered = posterior_.scale(normal);
@@ -114,7 +114,8 @@ class InputFit {
     return out;
   }
 
-  // Lengths that are all too large by a share: K grows by it, a mass by its cube, the force of a pressure by its square.
+  // Lengths may all be too large by one share. Then K grows by it, a mass by its cube, the force of a pressure by its
+  // square.
   Eigen::MatrixXd scale_shift(const Eigen::MatrixXd& constant_shifts, const Eigen::MatrixXd& posterior,
                               const Eigen::MatrixXd& information) const {  // of the data alone
     const double tolerance = models_.base.settings().exact_inputs ? 0.0 : models_.base.settings().mesh.scale_tolerance;
@@ -143,7 +144,7 @@ class InputFit {
         tell(load.topic, group.name, group.unit.empty() ? unit : group.unit, group.std, load.first + group.first,
              group.count, z, posterior, answer);
       }
-      // One sensor: what makes one of its errors implausible is believed of all.
+      // All these errors are of one sensor: what makes one of them implausible is believed of all.
       const double widest = posterior_.widest_nuisance_std(load.first, load.basis.size());
       posterior_.set_nuisance_std(load.first, load.basis.size(), widest);
     }
@@ -155,8 +156,8 @@ class InputFit {
     for (const UncertainConstant& c : models_.constants) answer.inputs.push_back({c.name, "value", "", c.std, 0.0, c.std});
   }
 
-  // A group whose estimate is further from zero than its tolerance allows is implausible, and counts as wide as it would
-  // have to be.
+  // A group whose estimate is further from zero than its tolerance allows is implausible. It then counts as wide as it
+  // would have to be.
   void tell(const std::string& input, const std::string& error, const std::string& unit, double std, Eigen::Index first,
             Eigen::Index count, const Eigen::VectorXd& z, const Eigen::MatrixXd& posterior, InputStudy::Answer& answer) {
     const double n = static_cast<double>(count);
@@ -195,7 +196,7 @@ InputStudy::Answer InputStudy::study(const Question& question) {
   for (const auto& [topic, course] : question.courses) *parts_->uncertain.courses().at(topic) = course;
   parts_->uncertain.set_first_stamp(question.first_stamp);
   parts_->base.set_first_stamp(question.first_stamp);
-  parts_->runs->focus(observed_nodes(parts_->operators, question.frames));
+  parts_->runs->restrict_output_to(observed_nodes(parts_->operators, question.frames));
   return InputFit(question, *parts_).run();
 }
 

@@ -6,23 +6,23 @@
 #include <utility>
 
 #include "tissue_stiffness/estimation/basis_error.hpp"
-#include "tissue_stiffness/estimation/batch_fit.hpp"
 #include "tissue_stiffness/estimation/identify.hpp"
 #include "tissue_stiffness/filter/interval.hpp"
+#include "tissue_stiffness/fit/batch_fit.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
-constexpr int kVectorsAPatch = 4;  // of the reduced basis
-constexpr int kMostGrowths = 3;    // of the basis, by half each
+constexpr int kVectorsAPatch = 4;  // vectors of the reduced basis
+constexpr int kMostGrowths = 3;    // growths of the basis, by half each
 constexpr double kSpread = 0.05;   // prior standard deviations that the first slopes are read over
 
 double log_determinant(const Eigen::MatrixXd& covariance) {
   return covariance.ldlt().vectorD().array().abs().log().sum();
 }
 
-// Parameters of the base model with the mapped modulus replaced by the patches'.
+// Replaces the mapped modulus among the base model's parameters by the patches' moduli.
 Eigen::VectorXd spread_out(const Eigen::VectorXd& base, Eigen::Index at, const Eigen::VectorXd& log_modulus) {
   Eigen::VectorXd out(base.size() - 1 + log_modulus.size());
   out << base.head(at), log_modulus, base.tail(base.size() - at - 1);
@@ -51,16 +51,16 @@ MapLevel::MapLevel(const MapQuestion& question, const Model& base, std::vector<P
   fit(spread_out(start, patch_model_.first, log_modulus));
 }
 
-// In a basis that grows until it leaves out a small part of the noise.
+// Fits in a basis that grows until it leaves out a small part of the noise.
 void MapLevel::fit(const Eigen::VectorXd& start) {
   Eigen::VectorXd at = start;
   const RunStart rest{question_.first_stamp + model_.settings().time.start};
   for (int growth = 0;; ++growth) {
     ReducedModel runs(model_, basis_);
     const std::vector<int> nodes = observed_nodes(operators_, question_.frames);
-    runs.focus(nodes);
+    runs.restrict_output_to(nodes);
     const FitProblem problem{model_, runs, operators_, question_.frames, rest, question_.checkpoint};
-    const AnchoredFilter prior(prior_mean_, prior_covariance_);
+    const PosteriorLinearizationFilter prior(prior_mean_, prior_covariance_);
     filter_ = fit_filter(problem, prior, at, kSpread * prior.spread());
     at = filter_->anchor();
     if (growth == kMostGrowths || basis_error(runs, problem, at, nodes).sigmas <= kBasisShare) return;
@@ -86,7 +86,7 @@ double MapLevel::prior_cost() const {
   return step.dot(prior_covariance_.ldlt().solve(step));
 }
 
-// Of the posterior over the prior's.
+// Returns the log of the posterior's volume over the prior's.
 double MapLevel::log_volume() const {
   return 0.5 * (log_determinant(filter_->covariance()) - log_determinant(prior_covariance_));
 }
@@ -127,7 +127,7 @@ double MapLevel::told() const {
 
 std::vector<StiffnessPatch> MapLevel::describe(const Eigen::VectorXd& shift) const {
   const Eigen::VectorXd w = filter_->anchor() - shift;
-  const Eigen::MatrixXd covariance = filter_->robust_covariance() + mesh_doubt(model_, shift);
+  const Eigen::MatrixXd covariance = filter_->robust_covariance() + mesh_discrepancy(model_, shift);
   std::vector<StiffnessPatch> out;
   for (Eigen::Index r = 0; r < centers_.cols(); ++r) {
     const Eigen::Index i = patch_model_.first + r;

@@ -12,10 +12,10 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr std::size_t kMostFrames = 300;  // of the recording; more are thinned
-constexpr double kEvidence = 5.0;         // log of how much likelier a division must be
+constexpr std::size_t kMostFrames = 300;  // of a recording; longer ones are thinned
+constexpr double kEvidence = 5.0;         // log evidence that a division must gain
 constexpr double kSmall = 0.0025;         // of the noise's mean square: smaller gains are no sign of anything
-constexpr double kUnassessed = 0.01;      // the same where the mesh's error is not known
+constexpr double kUnassessed = 0.01;      // of the noise's mean square, where the mesh's error is not known
 
 std::vector<Frame> usable(const std::vector<Frame>& frames, double rest) {
   std::vector<Frame> after, kept;
@@ -27,14 +27,14 @@ std::vector<Frame> usable(const std::vector<Frame>& frames, double rest) {
   return kept;
 }
 
-// Filter coordinates of what an estimator found; its prior for what it does not tell.
+// Returns filter coordinates of what an estimator found, and of the prior for the rest.
 Eigen::VectorXd coordinates(const Model& model, const Estimate& estimate) {
   std::map<std::string, double> values;
   for (const ParameterEstimate& p : estimate.parameters) values[p.name] = p.mean;
   return model.coordinates(values, model.prior_mean());
 }
 
-// By more than what the mesh alone may leave of a misfit, which patches would take up, too.
+// Returns whether the fit gains more than the mesh may leave of a misfit, which patches would take up too.
 bool better(const MapLevel& finer, MapLevel& kept) {
   const double gain = kept.mean_square() - finer.mean_square();
   if (gain <= kSmall) return false;
@@ -74,8 +74,8 @@ std::shared_ptr<MapLevel> next_level(const MapQuestion& question, const Model& b
   return std::make_shared<MapLevel>(question, base, finer.patches, last.base_parameters(), log_modulus);
 }
 
-// The finest patches, each with the modulus of the kept one that it lies in; what the data do not tell of, with what the
-// smooth prior makes of its neighbours.
+// Returns the finest patches, each with the modulus of the kept one that it lies in. Where the data do not determine it,
+// the patch has what the smooth prior makes of its neighbours.
 std::vector<StiffnessPatch> combined(MapLevel& kept, const MapLevel& finest, const std::vector<int>& kept_patch) {
   std::vector<StiffnessPatch> out = finest.describe(Eigen::VectorXd::Zero(finest.size()));
   const std::vector<StiffnessPatch> coarse = kept.describe(kept.mesh_shift());
@@ -100,11 +100,11 @@ StiffnessMap map_stiffness(const MapQuestion& asked) {
   const Model base(question.settings, question.mesh);
   StiffnessMap map;
   std::shared_ptr<MapLevel> last = first_level(question, base), kept = last;
-  std::vector<int> kept_patch{0};  // that each patch of the last level lies in
+  std::vector<int> kept_patch{0};  // kept patch that each patch of the last level lies in
   map.levels.push_back({1, last->mean_square(), 0.0, true});
   for (;;) {
     const auto count = static_cast<int>(last->patches().size());
-    Division finer = split(base.mesh(), last->patches(), std::min(2 * count, question.settings.map->cells));
+    Division finer = divide_patches(base.mesh(), last->patches(), std::min(2 * count, question.settings.map->cells));
     if (static_cast<int>(finer.patches.size()) == count) break;
     last = next_level(question, base, *last, finer);
     for (int& parent : finer.parent) parent = kept_patch[static_cast<std::size_t>(parent)];

@@ -7,9 +7,9 @@
 #include <limits>
 #include <utility>
 
-#include "tissue_stiffness/estimation/coordinate_scan.hpp"
-#include "tissue_stiffness/estimation/ensemble.hpp"
-#include "tissue_stiffness/filter/anchored_filter.hpp"
+#include "tissue_stiffness/filter/posterior_linearization_filter.hpp"
+#include "tissue_stiffness/fit/coordinate_scan.hpp"
+#include "tissue_stiffness/fit/ensemble.hpp"
 #include "tissue_stiffness/forward/reduced_model.hpp"
 #include "tissue_stiffness/meshing/bend_boundary.hpp"
 #include "tissue_stiffness/meshing/build_mesh.hpp"
@@ -20,19 +20,19 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr int kVectors = 24;  // of the finer mesh's basis: with 16 and with 48 E moves by less than 1e-4
+constexpr int kVectors = 24;  // vectors of the finer mesh's basis: with 16 and with 48 E moves by less than 1e-4
 constexpr int kMostIterations = 12;
 constexpr int kMostCuts = 4;
 constexpr double kSettled = 0.1;           // of the shift
 constexpr double kNegligible = 1e-5;       // prior standard deviations
 constexpr double kLongestStep = 0.1;       // prior standard deviations at once
 constexpr double kTelling = 0.1;           // mean square of a mesh's misfit in sigmas that a recording would show
-constexpr double kLeftByCorrection = 0.5;  // of the mesh's effect
-constexpr int kMostNodes = 17000;          // refined eightfold: what still factorises within half a minute
-constexpr double kMemory = 0.4e-3;         // GB for each of them
-constexpr double kMostMemory = 0.5;        // of what is available
+constexpr double kLeftByCorrection = 0.5;  // of the mesh's effect, 1 sigma
+constexpr int kMostNodes = 17000;          // nodes: refined eightfold, they still factorise within half a minute
+constexpr double kMemory = 0.4e-3;         // GB for each node
+constexpr double kMostMemory = 0.5;        // of the available memory
 
-// What the system could give [GB]; without bound where it does not say.
+// Returns the memory that is available [GB]; infinity where the system does not say.
 double available_memory() {
   std::ifstream file("/proc/meminfo");
   std::string name, unit;
@@ -52,7 +52,7 @@ void drive(const MeshError::Question& question, Model& model) {
   model.set_first_stamp(question.first_stamp);
 }
 
-// Of each free parameter: 1 for a Young's modulus, else 0.
+// Returns 1 for each free parameter that is a Young's modulus, else 0.
 Eigen::VectorXd young_moduli(const Model& model) {
   const std::vector<FreeParameter>& free = model.free_parameters();
   Eigen::VectorXd out(static_cast<Eigen::Index>(free.size()));
@@ -61,13 +61,14 @@ Eigen::VectorXd young_moduli(const Model& model) {
   return out;
 }
 
-// Gauss-Newton from `start` on, with steps that are cut while they do not lower the cost; where none does, that is the end.
+// Runs Gauss-Newton from `start`, with steps that are cut while they do not lower the cost. It ends where none does.
 template <typename Run>
-MeshError::Answer fit(const Run& run, AnchoredFilter filter, const MeshError::Question& q, const Eigen::VectorXd& start) {
+MeshError::Answer fit(const Run& run, PosteriorLinearizationFilter filter, const MeshError::Question& q,
+                      const Eigen::VectorXd& start) {
   run(filter, start);
   const Eigen::VectorXd limit = kLongestStep * q.prior_std;
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
-    const AnchoredFilter before = filter;
+    const PosteriorLinearizationFilter before = filter;
     Eigen::VectorXd step = (before.mean() - before.anchor()).cwiseMax(-limit).cwiseMin(limit);
     const auto settled = [&](const Eigen::VectorXd& at) {
       return (step.array().abs() < kSettled * (at - q.w).array().abs() + kNegligible * q.prior_std.array()).all();
@@ -85,11 +86,11 @@ MeshError::Answer fit(const Run& run, AnchoredFilter filter, const MeshError::Qu
 
 }  // namespace
 
-TetMesh finer(const TetMesh& mesh, const MeshSettings& settings) {
-  if (settings.faceted) return refine(mesh);
+TetMesh refined_mesh(const TetMesh& mesh, const MeshSettings& settings) {
+  if (settings.faceted) return refine_mesh(mesh);
   TetMesh smooth = mesh;
   smooth_boundary(smooth);
-  return refine(smooth);
+  return refine_mesh(smooth);
 }
 
 BasisOptions basis_beside(const TetMesh& mesh, const TetMesh& finer) {
@@ -99,13 +100,13 @@ BasisOptions basis_beside(const TetMesh& mesh, const TetMesh& finer) {
   return basis;
 }
 
-Eigen::MatrixXd mesh_doubt(const Model& model, const Eigen::VectorXd& shift) {
+Eigen::MatrixXd mesh_discrepancy(const Model& model, const Eigen::VectorXd& shift) {
   const double left = model.nonlinear() ? 1.0 : kLeftByCorrection;
   const Eigen::VectorXd modulus = young_moduli(model);
   const double mean_square = modulus.dot(shift.cwiseAbs2()) / std::max(1.0, modulus.sum());
-  Eigen::MatrixXd doubt = shift * shift.transpose();
-  doubt.diagonal().array() += modulus.array() * (mean_square - shift.array().square()).max(0.0);
-  return left * left * doubt;
+  Eigen::MatrixXd discrepancy = shift * shift.transpose();
+  discrepancy.diagonal().array() += modulus.array() * (mean_square - shift.array().square()).max(0.0);
+  return left * left * discrepancy;
 }
 
 struct MeshError::Studies {
@@ -114,15 +115,15 @@ struct MeshError::Studies {
   std::unique_ptr<ReducedModel> coarse_runs, fine_runs;
   std::vector<std::unique_ptr<ObservationOperator>> operators;
 
-  // The finer model knows theta, if there is one.
-  Studies(const Model& model, const BasisOptions& basis, const Eigen::VectorXd* theta, const Relatives& known)
+  // The finer model has theta fixed, if one is given.
+  Studies(const Model& model, const BasisOptions& basis, const Eigen::VectorXd* theta, const ReuseSources& known)
       : coarse(model.settings(), model), operators(make_observation_operators(coarse)) {
     coarse_runs = std::make_unique<ReducedModel>(coarse, of_linear_part(basis), known.own);
     if (known.finer != nullptr) {
       fine = std::make_unique<Model>(coarse.settings(), known.finer->model());
     } else {
-      const TetMesh refined = finer(coarse.mesh(), coarse.settings().mesh);
-      fine = std::make_unique<Model>(coarse.settings(), refined, refine(coarse.regions(), coarse.mesh(), refined));
+      const TetMesh refined = refined_mesh(coarse.mesh(), coarse.settings().mesh);
+      fine = std::make_unique<Model>(coarse.settings(), refined, refine_regions(coarse.regions(), coarse.mesh(), refined));
     }
     if (theta != nullptr) fine->know(*theta);
     fine_runs =
@@ -133,11 +134,11 @@ struct MeshError::Studies {
     drive(q, coarse);
     drive(q, *fine);
     const std::vector<int> nodes = observed_nodes(operators, q.frames);
-    coarse_runs->focus(nodes);
-    fine_runs->focus(nodes);
+    coarse_runs->restrict_output_to(nodes);
+    fine_runs->restrict_output_to(nodes);
   }
 
-  // Nodes of the coarse mesh keep their numbers in the finer one, whose run is seen through them.
+  // Nodes of the coarse mesh keep their numbers in the finer one, so its run is seen through them.
   std::vector<Prediction> predictions(const ReducedModel& runs, const Question& q, const Eigen::VectorXd& w) const {
     const Eigen::VectorXd theta = coarse.theta(w);
     const auto run = runs.start(theta, q.start);
@@ -150,8 +151,8 @@ struct MeshError::Studies {
     return out;
   }
 
-  // A coarse mesh makes the whole body too stiff, and a body that rings soon has other minima: the best common factor of
-  // all moduli not far from w.
+  // Returns w with the best common factor of all moduli, not far from w. A coarse mesh makes the whole body too stiff, and
+  // a body that rings soon has other minima.
   Eigen::VectorXd best_near(const Question& q, const std::vector<Prediction>& truth) const {
     const Eigen::VectorXd stiffer = young_moduli(coarse).cwiseProduct(q.prior_std);
     const auto cost = [&](const Eigen::VectorXd& x) {
@@ -196,8 +197,8 @@ std::string MeshError::why_not(const Model& model) {
 }
 
 MeshError::MeshError(const Model& model)
-    : studies_(std::make_unique<Studies>(model, BasisOptions(), nullptr, Relatives())) {}
-MeshError::MeshError(const Model& model, const Eigen::VectorXd& theta, const BasisOptions& basis, const Relatives& known)
+    : studies_(std::make_unique<Studies>(model, BasisOptions(), nullptr, ReuseSources())) {}
+MeshError::MeshError(const Model& model, const Eigen::VectorXd& theta, const BasisOptions& basis, const ReuseSources& known)
     : studies_(std::make_unique<Studies>(model, basis, &theta, known)) {}
 MeshError::~MeshError() = default;
 
@@ -222,7 +223,7 @@ MeshError::Answer MeshError::study(const Question& q) {
   Studies& s = *studies_;
   s.prepare(q);
   const std::vector<Prediction> truth = s.predictions(*s.fine_runs, q, q.w);
-  const auto run_coarse = [&](AnchoredFilter& filter, const Eigen::VectorXd& anchor) {
+  const auto run_coarse = [&](PosteriorLinearizationFilter& filter, const Eigen::VectorXd& anchor) {
     filter.move_anchor(anchor, q.spread);
     Ensemble ensemble(s.coarse, *s.coarse_runs, s.operators);
     ensemble.restart(filter.sigma_points(), {q.start});
@@ -233,7 +234,7 @@ MeshError::Answer MeshError::study(const Question& q) {
       filter.update(truth[k].predicted, rows, sigma.cwiseAbs2(), Eigen::VectorXd::Ones(sigma.size()));
     }
   };
-  return fit(run_coarse, AnchoredFilter(q.w, q.prior_std.cwiseAbs2().asDiagonal()), q, s.best_near(q, truth));
+  return fit(run_coarse, PosteriorLinearizationFilter(q.w, q.prior_std.cwiseAbs2().asDiagonal()), q, s.best_near(q, truth));
 }
 
 }  // namespace tissue_stiffness

@@ -8,7 +8,7 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kMostMemory = 0.95;
+constexpr double kMostAutocorrelation = 0.95;
 constexpr double kBeyondChance = 2.0;  // standard deviations from which on an excess is believed
 
 }  // namespace
@@ -46,8 +46,8 @@ double MisfitTest::excess() const {
   return along_ / dof - noise_level() - numerics_ * rows_ / std::max(1.0, along_dof_);
 }
 
-double MisfitTest::memory() const {
-  return square_ > 0.0 ? std::clamp(product_ / square_, 0.0, kMostMemory) : 0.0;
+double MisfitTest::lag1_autocorrelation() const {
+  return square_ > 0.0 ? std::clamp(product_ / square_, 0.0, kMostAutocorrelation) : 0.0;
 }
 
 double MisfitTest::deviation() const {
@@ -58,7 +58,7 @@ double MisfitTest::z() const {
   return frames_ > 0 ? std::max((excess() - tolerated * noise_level()) / deviation(), z_across()) : 0.0;
 }
 
-// What is far above the known noise only: of the mesh's error less is known there.
+// Only what is far above the known noise counts, because less is known of the mesh's error there.
 double MisfitTest::z_across() const {
   if (known_noise_ >= most_noise || !(rest_dof_ > 0.0)) return -std::numeric_limits<double>::infinity();
   return (excess_across() / noise_level() - tolerated) / std::sqrt(2.0 * repeated() / rest_dof_);
@@ -69,7 +69,7 @@ double MisfitTest::excess_across() const {
 }
 
 double MisfitTest::repeated() const {
-  const double square = memory() * memory();
+  const double square = lag1_autocorrelation() * lag1_autocorrelation();
   return (1.0 + square) / (1.0 - square);
 }
 

@@ -1,16 +1,17 @@
-// Yang & Lin (2016) as printed: parameter-only unscented filter (eq. 9-23); the state of each key frame by finite
-// differences (eq. 24, 25); Algorithm 1, once through the frames as they come.
+// This is Yang & Lin (2016) as printed: a parameter-only unscented filter (eq. 9-23), with the state of each key frame by
+// finite differences (eq. 24, 25). Algorithm 1 goes once through the frames as they come.
 #include <cmath>
 #include <deque>
 
-#include "tissue_stiffness/estimation/compare.hpp"
-#include "tissue_stiffness/estimation/ensemble.hpp"
 #include "tissue_stiffness/estimation/posterior.hpp"
 #include "tissue_stiffness/estimation/scheme.hpp"
 #include "tissue_stiffness/estimation/stopwatch.hpp"
 #include "tissue_stiffness/fem/sparse_solver.hpp"
 #include "tissue_stiffness/filter/unscented_filter.hpp"
+#include "tissue_stiffness/fit/ensemble.hpp"
 #include "tissue_stiffness/forward/full_model.hpp"
+#include "tissue_stiffness/observation/frame_misfit.hpp"
+#include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -33,7 +34,7 @@ class PaperScheme : public Scheme {
 
   std::vector<std::string> description() const override {
     return {"paper: parameter-only unscented filter, state by finite differences, " + std::to_string(kStepsPerFrame) +
-            " Newmark steps a frame"};
+            " GeneralizedAlpha steps a frame"};
   }
   std::vector<Misfit> free_run(const FreeFrameVisitor& visit) override {
     return compare_free_run(frames_, {start()}, model_->theta(filter_.mean()), visit);
@@ -65,7 +66,7 @@ class PaperScheme : public Scheme {
   }
 
  private:
-  // Displacement of every node that agrees with the observed vertices and stores the least elastic energy.
+  // Returns the displacement of every node that agrees with the observed vertices and stores the least elastic energy.
   Eigen::VectorXd interpolate(const Frame& frame) {
     const Prediction rest = at_rest(frame);
     if (!holder_.ready() || held_.size() != rest.nodes.size() || held_ != rest.nodes) hold(rest.nodes);
@@ -86,13 +87,13 @@ class PaperScheme : public Scheme {
     held_ = nodes;
   }
 
-  // d = f(x; w): from the middle one of the last three frames to the newest.
+  // Computes d = f(x; w), from the middle one of the last three frames to the newest.
   DynamicState run(const Eigen::VectorXd& w) const {
     const std::size_t n = frames_.size();
     const double t0 = frames_[n - 3].time, t1 = frames_[n - 2].time, t2 = frames_[n - 1].time;
     const double step = 0.5 * (t2 - t0);
     const ModelSystem system(*model_, model_->theta(w));
-    Newmark newmark(system, 1.0, kTolerance);
+    GeneralizedAlpha newmark(system, 1.0, kTolerance);
     DynamicState x;
     x.time = t1;
     x.displacement = fields_[1];
@@ -120,10 +121,10 @@ class PaperScheme : public Scheme {
     prediction_ = predict_frame(*model_, operators_, frame, model_->theta(filter_.mean()), u);
     displacement_ = Eigen::Map<const Eigen::Matrix3Xd>(u.data(), 3, u.size() / 3);
     result.used = true;
-    result.misfit = compare(frame.time, prediction_, rest.predicted, model_->mesh().node_count());
+    result.misfit = frame_misfit(frame.time, prediction_, rest.predicted, model_->mesh().node_count());
     result.misfit.nis = innovation.nis;
     result.misfit.dof = innovation.dof;
-    estimate_ = summarise(model_->free_parameters(), filter_.mean(), filter_.covariance());
+    estimate_ = summarise_posterior(model_->free_parameters(), filter_.mean(), filter_.covariance());
     estimate_.time = frame.time;
     estimate_.state = EstimateState::converging;
     estimate_.state_reason = "the paper's estimator does not test its misfit";

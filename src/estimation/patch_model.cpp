@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
@@ -19,7 +20,7 @@ Eigen::Index index_of(const Model& model, const std::string& parameter) {
   return at == free.end() ? -1 : at - free.begin();
 }
 
-// The elasticity whose modulus is estimated, by its place among the effects.
+// Returns the place among the effects of the elasticity whose modulus is estimated.
 std::size_t mapped_effect(const Model& model) {
   const std::vector<EffectSettings>& effects = model.settings().effects;
   const std::string allowed = "one elasticity with `young_modulus: {prior, factor}`";

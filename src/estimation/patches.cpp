@@ -11,7 +11,7 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kAlmost = 0.8;  // of the largest spread, squared: an axis with as much is preferred
+constexpr double kAlmost = 0.8;  // of the largest spread, squared: an axis with that much is preferred
 
 Eigen::Vector3d centroid(const TetMesh& mesh, int tet) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -47,7 +47,7 @@ Eigen::Vector3d longest_direction(const TetMesh& mesh, const Patch& patch) {
   return eigen.eigenvectors().col(2);
 }
 
-// Two parts of equal volume, as far as whole tetrahedra allow; both hold one at least.
+// Returns two parts of equal volume, as far as whole tetrahedra allow; each holds at least one.
 std::pair<Patch, Patch> halves(const TetMesh& mesh, const Patch& patch) {
   const Eigen::Vector3d along = longest_direction(mesh, patch);
   std::vector<std::pair<double, int>> order;
@@ -69,7 +69,7 @@ std::pair<Patch, Patch> halves(const TetMesh& mesh, const Patch& patch) {
 
 }  // namespace
 
-Division split(const TetMesh& mesh, const std::vector<Patch>& patches, int count) {
+Division divide_patches(const TetMesh& mesh, const std::vector<Patch>& patches, int count) {
   Division out{patches, std::vector<int>(patches.size())};
   std::iota(out.parent.begin(), out.parent.end(), 0);
   std::vector<double> size;

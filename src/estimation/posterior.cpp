@@ -12,8 +12,8 @@ constexpr double kWidest = 3.0;  // log-normal standard deviation beyond which m
 
 }  // namespace
 
-Estimate summarise(const std::vector<FreeParameter>& parameters, const Eigen::VectorXd& mean,
-                   const Eigen::MatrixXd& covariance) {
+Estimate summarise_posterior(const std::vector<FreeParameter>& parameters, const Eigen::VectorXd& mean,
+                             const Eigen::MatrixXd& covariance) {
   Estimate estimate;
   const auto p = static_cast<Eigen::Index>(parameters.size());
   Eigen::VectorXd scale(p);  // d value / d coordinate

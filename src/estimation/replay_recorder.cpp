@@ -13,7 +13,7 @@ constexpr std::size_t kSurfaceNumbers = 90000;  // vertices x frames of the surf
 constexpr std::size_t kTrackNumbers = 32000;    // tracks x frames
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// Drops every second entry: what was kept of every frame is then kept of every second one.
+/// Drops every second entry: what held every frame then holds every second one.
 template <typename List>
 void halve(List& list) {
   std::size_t to = 1;
@@ -27,7 +27,7 @@ Eigen::Index row_count(const Observation& observation) {
   return named ? 3 * observation.ids.size() : observation.points.cols();
 }
 
-/// Left, right, upper and lower edge [pixel]; NaN without points.
+/// Returns the left, right, upper and lower edge [pixel]; NaN without points.
 Eigen::Vector4d edges(const Eigen::Matrix2Xd& points) {
   Eigen::Vector4d out = Eigen::Vector4d::Constant(kNaN);
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
@@ -40,7 +40,7 @@ Eigen::Vector4d edges(const Eigen::Matrix2Xd& points) {
   return out;
 }
 
-/// The points of an outline that the model has a counterpart for, and these counterparts [pixel].
+/// These are the points of an outline that the model has a counterpart for, and the counterparts [pixel].
 struct FacingPoints {
   Eigen::Matrix2Xd measured, predicted;
 };
@@ -51,7 +51,7 @@ FacingPoints facing_points(const Contour& contour, const Prediction& p, Eigen::I
   Eigen::Index far = 0;
   (contour.points.colwise() - contour.points.col(0)).colwise().squaredNorm().maxCoeff(&far);
   const double pixels = (contour.points.col(far) - contour.points.col(0)).norm();
-  const double scale = (p.places.col(from + far) - p.places.col(from)).norm() / pixels;  // metres a pixel
+  const double scale = (p.places.col(from + far) - p.places.col(from)).norm() / pixels;  // metres per pixel
   for (Eigen::Index i = 0; i < n; ++i) {
     out.predicted.col(i) = contour.points.col(i) + contour.normals.col(i) * p.predicted[from + i] / scale;
     if (!out.predicted.col(i).allFinite()) out.measured.col(i).setConstant(kNaN);

@@ -5,18 +5,19 @@
 #include <iomanip>
 #include <sstream>
 
-#include "tissue_stiffness/estimation/compare.hpp"
-#include "tissue_stiffness/estimation/ensemble.hpp"
 #include "tissue_stiffness/estimation/posterior.hpp"
+#include "tissue_stiffness/fit/ensemble.hpp"
 #include "tissue_stiffness/forward/reduced_model.hpp"
+#include "tissue_stiffness/observation/frame_misfit.hpp"
+#include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
-constexpr int kManyNodes = 10000;  // beyond which every vector of the basis delays the first estimate noticeably
-constexpr int kFewVectors = 24;    // to start with there; the basis grows when that is not enough
+constexpr int kManyNodes = 10000;  // nodes beyond which every vector of the basis delays the first estimate noticeably
+constexpr int kFewVectors = 24;    // vectors to start with there; the basis grows when that is not enough
 
-// True when some point or some piece of the outline has a number.
+// Returns true when some point or some piece of the outline has a number.
 bool saw_something(const Observation& observation) {
   if (observation.kind == ObservationKind::contour) {
     return (observation.contour->sigma.array() < INFINITY).any() && observation.contour->points.array().isFinite().any();
@@ -29,7 +30,7 @@ bool saw_something(const Observation& observation) {
 
 }  // namespace
 
-Scheme::Scheme(const ModelSettings& settings, const TetMesh& mesh, const Relatives& relatives)
+Scheme::Scheme(const ModelSettings& settings, const TetMesh& mesh, const ReuseSources& relatives)
     : model_(relatives.own != nullptr ? std::make_unique<Model>(settings, relatives.own->model())
                                       : std::make_unique<Model>(settings, mesh)),
       operators_(make_observation_operators(*model_)) {
@@ -43,7 +44,7 @@ Scheme::Scheme(const ModelSettings& settings, const TetMesh& mesh, const Relativ
   forward_ = make_forward_model(*model_, basis, relatives.own);
   displacement_ = Eigen::Matrix3Xd::Zero(3, mesh.node_count());
   const Eigen::VectorXd std = model_->prior_std();
-  estimate_ = summarise(model_->free_parameters(), model_->prior_mean(), std.cwiseAbs2().asDiagonal());
+  estimate_ = summarise_posterior(model_->free_parameters(), model_->prior_mean(), std.cwiseAbs2().asDiagonal());
 }
 
 const Eigen::Matrix3Xd& Scheme::displacement() const {
@@ -54,7 +55,7 @@ const Eigen::Matrix3Xd& Scheme::displacement() const {
   return displacement_;
 }
 
-void Scheme::focus_on(const Frame& frame) {
+void Scheme::extend_output_to(const Frame& frame) {
   const int count = model_->mesh().node_count();
   bool more = false;
   if (seen_nodes_.empty()) seen_nodes_.assign(static_cast<std::size_t>(count), 0);
@@ -71,7 +72,7 @@ void Scheme::focus_on(const Frame& frame) {
     if (seen_nodes_[static_cast<std::size_t>(node)] != 0) nodes.push_back(node);
   }
   stop();
-  forward_->focus(nodes);
+  forward_->restrict_output_to(nodes);
 }
 
 void Scheme::set_first_stamp(double time) {
@@ -113,9 +114,9 @@ StepResult Scheme::step(const Frame& frame) {
 
 std::optional<StepResult> Scheme::catch_up() {
   try {
-    return take_look();
+    return take_reprocessed();
   } catch (const std::exception&) {
-    return std::nullopt;  // a look that cannot follow; what is known stays
+    return std::nullopt;  // a reprocessing that cannot follow; what is known stays
   }
 }
 
@@ -158,7 +159,7 @@ void Scheme::reset() {
   model_->forget_velocity_prior();
   for (auto& course : model_->courses()) course.second->clear();
   const Eigen::VectorXd std = model_->prior_std();
-  estimate_ = summarise(model_->free_parameters(), model_->prior_mean(), std.cwiseAbs2().asDiagonal());
+  estimate_ = summarise_posterior(model_->free_parameters(), model_->prior_mean(), std.cwiseAbs2().asDiagonal());
   recover_ = nullptr;
   displacement_.setZero();
   prediction_ = {};
@@ -184,10 +185,10 @@ Prediction Scheme::at_rest(const Frame& frame) const {
 
 std::vector<Misfit> Scheme::compare_free_run(const std::vector<Frame>& frames, const RunStart& start,
                                              const Eigen::VectorXd& theta, const FreeFrameVisitor& visit,
-                                             const std::vector<Turn>& turns) {
-  forward_->focus({});
-  auto misfits = tissue_stiffness::free_run({*model_, *forward_, operators_, frames, start}, theta, visit, turns);
-  seen_nodes_.clear();  // the next frame sets the focus again
+                                             const std::vector<ParameterChange>& changes) {
+  forward_->restrict_output_to({});
+  auto misfits = tissue_stiffness::free_run({*model_, *forward_, operators_, frames, start}, theta, visit, changes);
+  seen_nodes_.clear();  // the next frame restricts the output again
   return misfits;
 }
 

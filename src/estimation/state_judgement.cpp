@@ -16,7 +16,7 @@ std::string percent(double share) {
   return std::to_string(static_cast<int>(std::lround(100.0 * share))) + " %";
 }
 
-// Indices of the parameters that a state speaks of: the moduli, or all where none is free.
+// Returns the indices of the parameters that a state speaks of: the moduli, or all where none is free.
 std::vector<Eigen::Index> judged(const Model& model) {
   std::vector<Eigen::Index> moduli, all;
   for (std::size_t i = 0; i < model.free_parameters().size(); ++i) {
@@ -26,7 +26,7 @@ std::vector<Eigen::Index> judged(const Model& model) {
   return moduli.empty() ? all : moduli;
 }
 
-// Why the estimate is not precise enough to be used; empty: it is.
+// Returns why the estimate is not precise enough to be used; empty: it is.
 std::string unlearnt(const Model& model, const Eigen::MatrixXd& covariance) {
   const Eigen::VectorXd std = covariance.diagonal().cwiseSqrt(), prior = model.prior_std();
   for (const Eigen::Index i : judged(model)) {

@@ -5,18 +5,18 @@
 #include <exception>
 #include <utility>
 
-#include "tissue_stiffness/estimation/aside.hpp"
+#include "tissue_stiffness/estimation/low_priority.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
 constexpr std::size_t kFirstMesh = 4, kFirstInputs = 4;  // frames before the first study
-constexpr std::size_t kMeshGrowth = 2;                   // of the recording from one study to the next
+constexpr std::size_t kMeshGrowth = 2;                   // growth of the recording from one study to the next
 constexpr double kInputGrowth = 1.5;
 
 }  // namespace
 
-Studies::Studies(const Model& model, const Relatives& relatives)
+Studies::Studies(const Model& model, const ReuseSources& relatives)
     : model_(model), relatives_(relatives), why_not_(MeshError::why_not(model)) {}
 
 Studies::Subjects Studies::due(std::size_t frames, bool anew, bool replaying, bool background) {
@@ -42,7 +42,7 @@ void Studies::begin(Question question, Subjects subjects, bool replaying, bool b
     if (subjects.mesh || job_.mesh_error) study_mesh(*asked, subjects, replaying);
     if (subjects.inputs) study_inputs(*asked);
   };
-  work_ = beside ? aside(work) : std::async(std::launch::deferred, work);
+  work_ = beside ? at_low_priority(work) : std::async(std::launch::deferred, work);
 }
 
 bool Studies::finished() const {

@@ -17,7 +17,7 @@ SystematicError::SystematicError(const Model& model) : model_(model) {
 
 SystematicError::Corrected SystematicError::correct(const Filtered& filtered) const {
   Corrected out{filtered.mean, {}, {}};
-  // Of a nonlinear model the mesh's shift is that of its linear form, which corrects nothing.
+  // A nonlinear model has the mesh shift of its linear form, which corrects nothing.
   if (!model_.nonlinear()) out.mean -= mesh_shift();
   if (input_shift_.size() > 0 && inputs_believed()) out.mean += input_shift_;
   out.covariance = filtered.covariance + parts_.all;
@@ -36,7 +36,7 @@ SystematicError::Corrected SystematicError::correct(const Filtered& filtered) co
 
 void SystematicError::refresh() {
   const Eigen::VectorXd prior_std = model_.prior_std();
-  parts_.mesh = mesh_doubt(model_, mesh_shift());
+  parts_.mesh = mesh_discrepancy(model_, mesh_shift());
   parts_.loads = parts_.constants = Eigen::MatrixXd::Zero(prior_std.size(), prior_std.size());
   if (!inputs_) {  // nothing is known yet of what the inputs' errors do
     if (!model_.settings().exact_inputs) parts_.loads = prior_std.cwiseAbs2().asDiagonal();
@@ -51,9 +51,9 @@ void SystematicError::refresh() {
   parts_.all = parts_.mesh + parts_.loads + parts_.constants;
 }
 
-// Beside a misfit that does not pass, or has risen since it was tested, no interval is tighter than that misfit allows,
-// whatever the state: mean square of all frames' misfit under the present parameters beyond noise and mesh, in noise
-// variances.
+// Returns the mean square of all frames' misfit beyond noise and mesh, at the present parameters, in noise variances. It
+// counts where the misfit does not pass, or has risen since it was tested: then no interval is tighter than the misfit
+// allows, whatever the state.
 double SystematicError::unexplained(double misfit_scale) const {
   const double tested = inputs_->fitted ? studied_misfit_scale_ : 1.0;
   const bool passes = inputs_->implausible.empty() && (!inputs_->fitted || test_.passes());
@@ -61,7 +61,7 @@ double SystematicError::unexplained(double misfit_scale) const {
   return std::max(0.0, misfit_scale - test_.noise_level() - of_mesh());
 }
 
-/// (C^-1 + P^-1)^-1: whatever is left open, the prior P still holds.
+/// Returns (C^-1 + P^-1)^-1: whatever is left open, the prior P still holds.
 Eigen::MatrixXd SystematicError::within_prior(const Eigen::MatrixXd& c) const {
   const Eigen::MatrixXd prior = model_.prior_std().cwiseAbs2().asDiagonal();
   return prior * (prior + c).ldlt().solve(c);

@@ -4,14 +4,14 @@
 #include <map>
 
 #include "tissue_stiffness/estimation/replay_recorder.hpp"
-#include "tissue_stiffness/forward/closest_point.hpp"
+#include "tissue_stiffness/observation/closest_point.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
 using Cell = std::array<int, 3>;
 
-/// Vertex of each node that the triangles use, -1 elsewhere; nodes of one cell of this size share a vertex.
+/// Returns the vertex of each node that the triangles use, -1 elsewhere. Nodes of one cell of this size share a vertex.
 std::vector<int> cluster(const TetMesh& mesh, const Eigen::Matrix3Xi& triangles, double size, std::size_t& vertices) {
   std::vector<int> vertex(static_cast<std::size_t>(mesh.node_count()), -1);
   std::map<Cell, int> cells;

@@ -1,12 +1,11 @@
-// The default scheme: free-running sigma points, iterated. `step` reads: predict, observe, update, revisit.
+// The default scheme iterates free-running sigma points. `step` reads: predict, observe, update, revisit.
 #include <algorithm>
 
+#include "tissue_stiffness/estimation/background_reprocessing.hpp"
+#include "tissue_stiffness/estimation/change_history.hpp"
 #include "tissue_stiffness/estimation/change_watch.hpp"
-#include "tissue_stiffness/estimation/compare.hpp"
 #include "tissue_stiffness/estimation/initial_velocity.hpp"
-#include "tissue_stiffness/estimation/past.hpp"
 #include "tissue_stiffness/estimation/posterior.hpp"
-#include "tissue_stiffness/estimation/revisit.hpp"
 #include "tissue_stiffness/estimation/scheme.hpp"
 #include "tissue_stiffness/estimation/settling.hpp"
 #include "tissue_stiffness/estimation/state_judgement.hpp"
@@ -14,19 +13,20 @@
 #include "tissue_stiffness/estimation/studies.hpp"
 #include "tissue_stiffness/estimation/systematic_error.hpp"
 #include "tissue_stiffness/estimation/validity.hpp"
+#include "tissue_stiffness/observation/frame_misfit.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
 constexpr int kVelocityFrames = 4;     // frames that the initial velocity is read from
-constexpr double kReplayGrowth = 1.5;  // of a replay between looks back: nobody reads its estimates on the way
-constexpr double kMoved = 0.2;         // standard deviations: what a corrected load has to move the estimate by
+constexpr double kReplayGrowth = 1.5;  // growth of a replay between reprocessings: nobody reads its estimates on the way
+constexpr double kMoved = 0.2;         // standard deviations that a corrected load has to move the estimate by
 
 class UnscentedScheme : public Scheme {
  public:
-  UnscentedScheme(const ModelSettings& settings, const TetMesh& mesh, const Relatives& relatives)
-      : Scheme(settings, mesh, relatives), track_(new_track()), systematic_(*model_), studies_(*model_, relatives) {}
+  UnscentedScheme(const ModelSettings& settings, const TetMesh& mesh, const ReuseSources& relatives)
+      : Scheme(settings, mesh, relatives), filter_run_(new_track()), systematic_(*model_), studies_(*model_, relatives) {}
 
   std::vector<std::string> description() const override {
     const std::string why = studies_.mesh_unknown();
@@ -39,57 +39,58 @@ class UnscentedScheme : public Scheme {
   std::vector<Misfit> free_run(const FreeFrameVisitor& visit) override {
     stop();
     if (frames_.empty()) return {};
-    const Eigen::VectorXd theta = model_->theta(track_->filter().mean());
-    if (past_.empty()) return compare_free_run(frames_, track_->start(), theta, visit);
-    return compare_free_run(past_.all_frames(frames_), {start()}, past_.theta(), visit, past_.turns(theta));
+    const Eigen::VectorXd theta = model_->theta(filter_run_->filter().mean());
+    if (change_history_.empty()) return compare_free_run(frames_, filter_run_->start(), theta, visit);
+    return compare_free_run(change_history_.all_frames(frames_), {start()}, change_history_.theta(), visit,
+                            change_history_.changes(theta));
   }
-  std::optional<double> basis_error() const override { return track_->basis_error(); }
+  std::optional<double> basis_error() const override { return filter_run_->basis_error(); }
   Eigen::MatrixXd parameter_covariance() const override { return systematic_.correct(filtered()).covariance; }
 
  protected:
   StepResult process(const Frame& frame) override {
-    if (model_->settings().initial.kind == InitialSettings::Kind::from_frames && !track_->begun()) {
+    if (model_->settings().initial.kind == InitialSettings::Kind::from_frames && !filter_run_->begun()) {
       return wait_for_velocity(frame);
     }
     return assimilate(frame);
   }
 
-  void stop() override { revisit_ = nullptr; }
+  void stop() override { reprocessing_ = nullptr; }
 
-  bool looks_back() const override { return revisit_ != nullptr || studies_.under_way(); }
+  bool reprocesses() const override { return reprocessing_ != nullptr || studies_.under_way(); }
 
-  std::optional<StepResult> take_look() override {
-    const bool looked = revisit_ && revisit_->finished(), studied = studies_.finished();
-    if (frames_.empty() || !(looked || studied)) return std::nullopt;
-    if (looked) adopt(std::exchange(revisit_, nullptr)->take());
+  std::optional<StepResult> take_reprocessed() override {
+    const bool reprocessed = reprocessing_ && reprocessing_->finished(), studied = studies_.finished();
+    if (frames_.empty() || !(reprocessed || studied)) return std::nullopt;
+    if (reprocessed) adopt(std::exchange(reprocessing_, nullptr)->take());
     const Frame frame = frames_.back();
-    revisit();
+    reprocess();
     study();
     StepResult result;
-    publish(frame, track_->predict(frame), {}, result);
+    publish(frame, filter_run_->predict(frame), {}, result);
     return result;
   }
 
   void forget() override {
     frames_.clear();
     waiting_.clear();
-    track_ = new_track();
+    filter_run_ = new_track();
     studies_.reset();
     systematic_.reset();
     restudying_ = corrected_ = false;
     settling_ = {};
-    looked_back_ = 0;
+    frames_at_reprocessing_ = 0;
     complete_ = true;
-    past_ = {};
+    change_history_ = {};
     validity_.reset();
     watch_.restart();
   }
 
  private:
-  std::shared_ptr<Track> new_track() const {
+  std::shared_ptr<IteratedFilter> new_track() const {
     const Eigen::VectorXd std = model_->prior_std();
-    const AnchoredFilter prior(model_->prior_mean(), std.cwiseAbs2().asDiagonal());
-    return std::make_shared<Track>(*model_, operators_, forward_, prior, RunStart{start()});
+    const PosteriorLinearizationFilter prior(model_->prior_mean(), std.cwiseAbs2().asDiagonal());
+    return std::make_shared<IteratedFilter>(*model_, operators_, forward_, prior, RunStart{start()});
   }
 
   StepResult wait_for_velocity(const Frame& frame) {
@@ -111,20 +112,20 @@ class UnscentedScheme : public Scheme {
   StepResult assimilate(const Frame& frame) {
     StepResult result;
     Stopwatch watch(result.seconds);
-    if (revisit_ && revisit_->finished()) adopt(std::exchange(revisit_, nullptr)->take());
+    if (reprocessing_ && reprocessing_->finished()) adopt(std::exchange(reprocessing_, nullptr)->take());
     watch.lap("revisit");
-    focus_on(frame);
+    extend_output_to(frame);
     begin_if_needed();
-    track_->advance(frame.time);
+    filter_run_->advance(frame.time);
     watch.lap("predict");
-    Ensemble::Predicted predicted = track_->predict(frame);
+    Ensemble::Predicted predicted = filter_run_->predict(frame);
     watch.lap("observe");
-    const AnchoredFilter::Innovation innovation = track_->absorb(predicted);
+    const PosteriorLinearizationFilter::Innovation innovation = filter_run_->absorb(predicted);
     keep(frame);
     watch.lap("update");
-    if (revisit()) predicted = track_->predict(frame);
+    if (reprocess()) predicted = filter_run_->predict(frame);
     watch.lap("revisit");
-    if (study()) predicted = track_->predict(frame);
+    if (study()) predicted = filter_run_->predict(frame);
     watch.lap("studies");
     publish(frame, predicted, innovation, result);
     watch.lap("report");
@@ -132,83 +133,85 @@ class UnscentedScheme : public Scheme {
   }
 
   void begin_if_needed() {
-    if (track_->begun()) return;
-    track_ = new_track();  // the start, and the prior of a velocity that was read, are known now
-    if (near() != nullptr) track_->expect(*near());
-    track_->begin();
+    if (filter_run_->begun()) return;
+    filter_run_ = new_track();  // the start, and the prior of a velocity read from frames, are known now
+    if (near() != nullptr) filter_run_->expect(*near());
+    filter_run_->begin();
   }
 
   void keep(const Frame& frame) {
     if (complete_) frames_.push_back(frame);
-    if (revisit_) revisit_->add(frame);
-    if (complete_ && frames_.size() + past_.frame_count() > window_) past_ = {};
+    if (reprocessing_) reprocessing_->add(frame);
+    if (complete_ && frames_.size() + change_history_.frame_count() > window_) change_history_ = {};
   }
 
   bool overfull() const { return frames_.size() > window_; }
 
-  // Looks at the recording again, where that is due, or for a change; in the background when a node runs. True if the runs
-  // changed.
-  bool revisit() {
-    if (revisit_ || !complete_) return false;
-    if (overfull()) return look_back(*track_, frames_, {std::nullopt, frames_.size() / 2});
+  // Reprocesses the recording where that is due, or to search for a change; in the background when a node runs. Returns
+  // true if the runs changed.
+  bool reprocess() {
+    if (reprocessing_ || !complete_) return false;
+    if (overfull()) return reprocess(*filter_run_, frames_, {std::nullopt, frames_.size() / 2});
     if (near() != nullptr && more_follow()) return false;
-    if (std::optional<ChangeQuestion> again = past_.closer(frames_.size())) {
-      return look_back(past_.track(), past_.frames_since_its_start(frames_), {std::move(again)});
+    if (std::optional<ChangeQuestion> again = change_history_.closer(frames_.size())) {
+      return reprocess(change_history_.track(), change_history_.frames_since_its_start(frames_), {std::move(again)});
     }
     std::optional<ChangeQuestion> question = watch_.due();
     const bool calm = !watch_.suspicious() || watch_.searched();
-    const bool too_soon = replaying() && more_follow() &&
-                          static_cast<double>(frames_.size()) < kReplayGrowth * static_cast<double>(looked_back_);
-    if (!question && !(calm && !too_soon && track_->wants_look(frames_.size()))) return false;
-    looked_back_ = frames_.size();
-    return look_back(*track_, frames_, {std::move(question)});
+    const bool too_soon =
+        replaying() && more_follow() &&
+        static_cast<double>(frames_.size()) < kReplayGrowth * static_cast<double>(frames_at_reprocessing_);
+    if (!question && !(calm && !too_soon && filter_run_->wants_relinearization(frames_.size()))) return false;
+    frames_at_reprocessing_ = frames_.size();
+    return reprocess(*filter_run_, frames_, {std::move(question)});
   }
 
-  bool look_back(const Track& track, const std::vector<Frame>& frames, Revisit::Task task) {
-    if (!hurried()) return adopt(Revisit::look(track.twin(), frames, std::move(task), [] {}));
-    revisit_ = std::make_unique<Revisit>(track, frames, std::move(task));
+  bool reprocess(const IteratedFilter& track, const std::vector<Frame>& frames, BackgroundReprocessing::Task task) {
+    if (!hurried())
+      return adopt(BackgroundReprocessing::reprocess(track.clone_unstarted(), frames, std::move(task), [] {}));
+    reprocessing_ = std::make_unique<BackgroundReprocessing>(track, frames, std::move(task));
     return false;
   }
 
-  bool adopt(Revisit::Outcome outcome) {
-    const Revisit::Task& task = outcome.task;
+  bool adopt(BackgroundReprocessing::Outcome outcome) {
+    const BackgroundReprocessing::Task& task = outcome.task;
     if (!outcome.moved) {
       if (task.roll > 0) stop_keeping();
-      if (task.roll == 0 && !task.change) track_->take_notes(*outcome.track);
+      if (task.roll == 0 && !task.change) filter_run_->take_notes(*outcome.track);
       return false;
     }
     if (task.roll > 0) {
       frames_.erase(frames_.begin(), frames_.begin() + static_cast<std::ptrdiff_t>(outcome.first));
-      past_ = {};
+      change_history_ = {};
     } else if (task.change) {
-      past_.turn(*track_, *outcome.track, outcome.first, *task.change, frames_);
-      systematic_.drop_fit();  // which was one without a change
+      change_history_.record_change(*filter_run_, *outcome.track, outcome.first, *task.change, frames_);
+      systematic_.drop_fit();  // because that fit assumed no change
       if (!task.change->near) watch_.go_on();
     }
-    track_ = std::move(outcome.track);
-    forward_ = track_->forward();
+    filter_run_ = std::move(outcome.track);
+    forward_ = filter_run_->forward();
     return true;
   }
 
-  // The track then only adds information.
+  // From then on the filter only adds information.
   void stop_keeping() {
     complete_ = false;
     frames_.clear();
-    past_ = {};
+    change_history_ = {};
   }
 
-  void publish(const Frame& frame, const Ensemble::Predicted& predicted, const AnchoredFilter::Innovation& innovation,
-               StepResult& result) {
-    const AnchoredFilter& filter = track_->filter();
+  void publish(const Frame& frame, const Ensemble::Predicted& predicted,
+               const PosteriorLinearizationFilter::Innovation& innovation, StepResult& result) {
+    const PosteriorLinearizationFilter& filter = filter_run_->filter();
     const Eigen::VectorXd w = filter.mean();
     prediction_ = predicted.central;
     prediction_.predicted = filter.predict(predicted.rows, w);
     const Eigen::Index points = predicted.rows.cols();
-    recover_ = [track = track_, weights = filter.predict(Eigen::MatrixXd::Identity(points, points), w)](
+    recover_ = [track = filter_run_, weights = filter.predict(Eigen::MatrixXd::Identity(points, points), w)](
                    Eigen::Ref<Eigen::VectorXd> u) { track->combine(weights, u); };
-    if (model_->nonlinear()) displacement();  // before a step that fails half-way
+    if (model_->nonlinear()) displacement();  // now, because a later step may fail half-way
     result.used = true;
-    result.misfit = compare(frame.time, prediction_, at_rest(frame).predicted, model_->mesh().node_count());
+    result.misfit = frame_misfit(frame.time, prediction_, at_rest(frame).predicted, model_->mesh().node_count());
     result.misfit.nis = innovation.nis;
     result.misfit.dof = innovation.dof;
     validity_.add(result.misfit);
@@ -217,7 +220,7 @@ class UnscentedScheme : public Scheme {
     const SystematicError::Corrected corrected = systematic_.correct(now);
     settling_.add(corrected.mean, corrected.covariance.diagonal().cwiseSqrt());
     StateJudgement judged = judge(result.misfit, now, corrected.covariance);
-    estimate_ = summarise(model_->free_parameters(), corrected.mean, corrected.covariance);
+    estimate_ = summarise_posterior(model_->free_parameters(), corrected.mean, corrected.covariance);
     estimate_.time = frame.time;
     estimate_.state = judged.state;
     estimate_.state_reason = std::move(judged.reason);
@@ -227,28 +230,28 @@ class UnscentedScheme : public Scheme {
   }
 
   SystematicError::Filtered filtered() const {
-    const AnchoredFilter& filter = track_->filter();
-    return {filter.mean(), track_->covariance(), filter.misfit_scale()};
+    const PosteriorLinearizationFilter& filter = filter_run_->filter();
+    return {filter.mean(), filter_run_->covariance(), filter.misfit_scale()};
   }
 
   StateJudgement judge(const Misfit& misfit, const SystematicError::Filtered& now,
                        const Eigen::MatrixXd& covariance) const {
     const bool mesh_pending = !systematic_.mesh_known() && studies_.mesh_unknown().empty() && !more_follow();
     return judge_state({*model_, misfit, now.misfit_scale, watch_.suspicious() && !watch_.searched(), validity_.invalid(),
-                        stale_load(misfit.time), track_->start().motion != nullptr,
+                        stale_load(misfit.time), filter_run_->start().motion != nullptr,
                         restudying_ || systematic_.left_study(now), settling_.settled(), mesh_pending, systematic_,
                         covariance});
   }
 
-  // What the mesh and errors of the inputs do to the estimate, asked anew whenever the recording has grown; in the
-  // background when a node runs. True if the runs changed.
+  // Studies what the mesh and errors of the inputs do to the estimate, whenever the recording has grown; in the background
+  // when a node runs. Returns true if the runs changed.
   bool study() {
     const bool moved = studies_.finished() && take_studies();
-    if (studies_.under_way() || more_follow() || track_->start().motion || !complete_) return moved;
+    if (studies_.under_way() || more_follow() || filter_run_->start().motion || !complete_) return moved;
     restudying_ = systematic_.left_study(filtered());
     const Studies::Subjects subjects = studies_.due(frames_.size(), restudying_, replaying(), background());
     if (!subjects.any()) return moved;
-    const AnchoredFilter& filter = track_->filter();
+    const PosteriorLinearizationFilter& filter = filter_run_->filter();
     if (subjects.inputs) misfit_scale_asked_ = filter.misfit_scale();
     studies_.begin({*model_, frames_, filter.mean(), filter.spread(), model_->prior_std()}, subjects, replaying(),
                    hurried());
@@ -257,18 +260,18 @@ class UnscentedScheme : public Scheme {
 
   bool take_studies() {
     Studies::Answers answers = studies_.take();
-    if (answers.mesh) systematic_.take_mesh(*answers.mesh, track_->filter().misfit_scale());
+    if (answers.mesh) systematic_.take_mesh(*answers.mesh, filter_run_->filter().misfit_scale());
     return answers.inputs && take_inputs(std::move(*answers.inputs));
   }
 
-  // A load's estimated error is taken off where it is plausible, leaves a misfit that passes, and moves the estimate; what
+  // A load's estimated error is taken off where it is plausible, leaves a misfit that passes, and moves the estimate. What
   // the runs then still leave to the fit's parameters is a shift. An error that is not believed must not hide the misfit.
   bool take_inputs(InputStudy::Answer answer) {
     systematic_.take_inputs(std::move(answer), misfit_scale_asked_);
     const InputStudy::Answer& inputs = *systematic_.inputs();
     restudying_ = false;
     if (!inputs.fitted) return false;
-    const Eigen::VectorXd std = track_->covariance().diagonal().cwiseSqrt();
+    const Eigen::VectorXd std = filter_run_->covariance().diagonal().cwiseSqrt();
     const Eigen::VectorXd move = inputs.mode - inputs.asked;
     const bool moves = !inputs.corrections.empty() && (move.array().abs() > kMoved * std.array()).any();
     const bool believed = systematic_.inputs_believed();
@@ -279,35 +282,35 @@ class UnscentedScheme : public Scheme {
         model_->courses().at(topic)->correct(correction.basis, believed ? correction.coefficients : Eigen::VectorXd());
       }
       corrected_ = believed;
-      track_->rerun(frames_, inputs.mode);
+      filter_run_->rerun(frames_, inputs.mode);
       validity_.reset();
     }
-    systematic_.set_runs_at(change ? track_->filter().mean() : inputs.asked);
+    systematic_.set_runs_at(change ? filter_run_->filter().mean() : inputs.asked);
     return change;
   }
 
-  std::shared_ptr<Track> track_;
+  std::shared_ptr<IteratedFilter> filter_run_;
   Validity validity_;
   std::vector<Frame> frames_, waiting_;
-  Past past_;
+  ChangeHistory change_history_;
   ChangeWatch watch_{(model_->drift().array() > 0.0).any()};
   std::size_t window_ = static_cast<std::size_t>(model_->settings().window);
-  bool complete_ = true;              ///< every frame since the track's start is in frames_
-  std::unique_ptr<Revisit> revisit_;  ///< under way
+  bool complete_ = true;                                  ///< every frame since the filter's start is in frames_
+  std::unique_ptr<BackgroundReprocessing> reprocessing_;  ///< reprocessing under way
 
-  std::size_t looked_back_ = 0;  ///< frames that there were then
+  std::size_t frames_at_reprocessing_ = 0;  ///< number of frames at the last reprocessing
   SystematicError systematic_;
-  double misfit_scale_asked_ = 1.0;  ///< the misfit's when the inputs' study was asked for
+  double misfit_scale_asked_ = 1.0;  ///< misfit scale when the inputs' study was asked for
   bool corrected_ = false;           ///< the loads' estimated errors are taken off
-  bool restudying_ = false;          ///< the last study is of a place that the runs have left
+  bool restudying_ = false;          ///< the runs have left the place of the last study
   Settling settling_;
-  Studies studies_;  ///< last: its thread reads the model
+  Studies studies_;  ///< declared last, because its thread reads the model
 };
 
 }  // namespace
 
 std::unique_ptr<Scheme> make_unscented_scheme(const ModelSettings& settings, const TetMesh& mesh,
-                                              const Relatives& relatives) {
+                                              const ReuseSources& relatives) {
   return std::make_unique<UnscentedScheme>(settings, mesh, relatives);
 }
 

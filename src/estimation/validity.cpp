@@ -6,8 +6,8 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr int kMemory = 30;            // frames
-constexpr int kFewest = 8;             // before which nothing is said
+constexpr int kMemory = 30;            // frames that the means remember
+constexpr int kFewest = 8;             // frames before which nothing is said
 constexpr double kNoise = 4.0;         // mean square of error over sigma: a model that fits has 1
 constexpr double kUnexplained = 0.04;  // of the motion's mean square: 20 % of its amplitude
 

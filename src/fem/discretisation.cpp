@@ -24,7 +24,7 @@ std::vector<QuadraturePoint> stiffness_rule(int nodes) {
   return {{{a, a, a}, w}, {{b, a, a}, w}, {{a, b, a}, w}, {{a, a, b}, w}};
 }
 
-// Walkington (2000), 14 points, degree 5.
+// This is the rule of Walkington (2000) with 14 points of degree 5.
 std::vector<QuadraturePoint> mass_rule() {
   std::vector<QuadraturePoint> rule;
   const auto vertex_orbit = [&rule](double a, double w) {
@@ -44,7 +44,7 @@ std::vector<QuadraturePoint> mass_rule() {
   return rule;
 }
 
-// The shape functions at the points of a rule, once for all elements.
+// Shape functions at the points of a rule, computed once for all elements.
 struct ShapeTable {
   ShapeTable(int nodes, const std::vector<QuadraturePoint>& rule) {
     for (const QuadraturePoint& point : rule) {
@@ -58,7 +58,7 @@ struct ShapeTable {
   std::vector<Eigen::Matrix3Xd> derivatives;
 };
 
-// Rows: d/dr, d/ds, d/dt.
+// The rows are d/dr, d/ds, d/dt.
 Eigen::Matrix3d jacobian(const Eigen::Matrix3Xd& derivative, const Eigen::Matrix3Xd& nodes, const Eigen::MatrixXi& elements,
                          int e) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
@@ -146,7 +146,7 @@ void Discretisation::compute_pattern() {
   });
 }
 
-// Every node sums its own columns, so that threads share nothing and the order of a sum does not depend on them.
+// Every node sums its own columns. So threads share no data, and the order of a sum does not depend on them.
 template <typename Block>
 SparseMatrix Discretisation::assemble(const Eigen::VectorXd& element_weight, const Block& block) const {
   SparseMatrix result = pattern_;
@@ -189,7 +189,8 @@ SparseMatrix Discretisation::volumetric_stiffness(const Eigen::VectorXd& element
   });
 }
 
-// Of nodes a and b with shape gradients g the shear modulus' is w g_b g_a^T + w (g_a . g_b) I, where this has w g_a g_b^T.
+// For nodes a and b with shape gradients g, the shear modulus' part is w g_b g_a^T + w (g_a . g_b) I, and this matrix has w
+// g_a g_b^T.
 void Discretisation::make_elastic(double lambda, double mu, SparseMatrix& volumetric) const {
   const int* outer = pattern_.outerIndexPtr();
   tbb::parallel_for(0, node_count_, [&](int node) {
@@ -222,7 +223,7 @@ void add_scaled(SparseMatrix& to, double scale, const SparseMatrix& part) {
   }
 }
 
-bool same(const SparseMatrix& a, const SparseMatrix& b) {
+bool same_matrix(const SparseMatrix& a, const SparseMatrix& b) {
   if (&a == &b) return true;
   const auto count = static_cast<std::size_t>(a.nonZeros());
   return a.rows() == b.rows() && a.cols() == b.cols() && a.nonZeros() == b.nonZeros() &&

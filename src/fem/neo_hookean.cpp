@@ -47,7 +47,7 @@ double energy_density(const Lame& c, const Deformation& d) {
   return 0.5 * c.mu * (d.gradient.squaredNorm() - 3.0 - 2.0 * d.log_volume) + 0.5 * c.lambda * d.log_volume * d.log_volume;
 }
 
-// First Piola-Kirchhoff stress.
+// Returns the first Piola-Kirchhoff stress.
 Eigen::Matrix3d stress(const Lame& c, const Deformation& d) {
   return c.mu * d.gradient + (c.lambda * d.log_volume - c.mu) * d.inverse.transpose();
 }
@@ -107,7 +107,7 @@ NeoHookean::NeoHookean(const Discretisation& fem, std::vector<int> elements)
       corners_(fem.elements(), elements_, fem.node_count()),
       scratch_(std::make_unique<VectorPool>()) {}
 
-// Elements in parallel, then nodes, each of which sums its shares in the same order whatever the threads do.
+// Processes elements in parallel, and then nodes. Each node sums its parts in a fixed order, whatever the threads do.
 template <int N, typename Law>
 void NeoHookean::force(const Lame& c, const Eigen::VectorXd& u, const Law& law, Eigen::VectorXd& f) const {
   VectorPool::Loan shares(*scratch_, 3 * static_cast<Eigen::Index>(corners_.corners.size()));

@@ -14,7 +14,7 @@ constexpr int kMostIterations = 20;
 constexpr double kPrecision = 1e-6;
 constexpr double kFlat = 0.05;  // determinant below which a rotation says nothing
 
-// Newton's iteration for the polar decomposition (Higham 1986).
+// Uses Newton's iteration for the polar decomposition (Higham 1986).
 Eigen::Matrix3d rotation(const Eigen::Matrix3d& f) {
   if (!(f.determinant() > kFlat)) return Eigen::Matrix3d::Identity();
   Eigen::Matrix3d r = f;

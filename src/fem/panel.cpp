@@ -1,5 +1,5 @@
-// The inner loops of SingleFactor and of products of tall matrices, compiled for several instruction sets; the machine
-// picks one at load time.
+// These are the inner loops of SingleFactor and of products of tall matrices, compiled for several instruction sets. The
+// machine selects one at load time.
 #include "tissue_stiffness/fem/panel.hpp"
 
 #include <cstring>
@@ -12,7 +12,8 @@ constexpr int kBytes = 16, kRegisters = 16;
 #include "panel_kernels.inc"
 }  // namespace any_machine
 
-// Clones by attribute will not do: their vectors have been split into the narrowest registers before they are cloned.
+// The clone attribute is no alternative: the compiler splits vectors into the narrowest registers before it clones a
+// function.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 #pragma GCC push_options
 #pragma GCC target("avx2,fma")

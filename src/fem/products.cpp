@@ -20,7 +20,7 @@ Eigen::Index panels(Eigen::Index columns, int width) {
   return (columns + width - 1) / width;
 }
 
-// Panels of `width` columns, row by row in each; columns that are missing are zero.
+// Packs panels of `width` columns, each row by row. Missing columns are zero.
 template <typename Matrix>
 void pack(const Matrix& a, int width, std::vector<double>& out) {
   const Eigen::Index rows = a.rows(), count = panels(a.cols(), width);
@@ -31,7 +31,7 @@ void pack(const Matrix& a, int width, std::vector<double>& out) {
   }
 }
 
-// Row j of a symmetric matrix times x.
+// Returns row j of a symmetric matrix times x.
 template <typename Vector>
 double row_product(const SparseMatrix& s, Eigen::Index j, const Vector& x) {
   double sum = 0.0;
@@ -43,8 +43,8 @@ struct Packed {
   std::vector<double> left, right;
 };
 
-// Products of one panel, `depth` x kTileHeight, with the columns before `end` of what is packed in `right`:
-// take(row, column, value) for its first `height` rows.
+// Multiplies one panel, `depth` x kTileHeight, by the columns before `end` that are packed in `right`. It calls take(row,
+// column, value) for the panel's first `height` rows.
 template <typename Take>
 void multiply_panel(const double* panel, const std::vector<double>& right, Eigen::Index depth, Eigen::Index height,
                     Eigen::Index end, const Take& take) {
@@ -58,7 +58,7 @@ void multiply_panel(const double* panel, const std::vector<double>& right, Eigen
   }
 }
 
-// sum += left^T right; `lower`: of the panels' rows only the columns up to their diagonal.
+// Computes sum += left^T right. With `lower` only the columns up to the diagonal of each panel's rows are computed.
 void add_tiles(const Packed& packed, Eigen::Index rows, bool lower, Eigen::MatrixXd& sum) {
   for (Eigen::Index top = 0; top < sum.rows(); top += kTileHeight) {
     const Eigen::Index height = std::min<Eigen::Index>(kTileHeight, sum.rows() - top);

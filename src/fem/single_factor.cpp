@@ -68,7 +68,7 @@ void SingleFactor::plan() {
   }
 }
 
-// Rows behind the subtree become indices into the task's list: the rows of its root.
+// Rows beyond the subtree become indices into the task's list, which holds the rows of its root.
 void SingleFactor::add_task(int root, int begin) {
   const auto r = static_cast<std::size_t>(root);
   const auto own = l_.row_start[r] + static_cast<std::size_t>(l_.first[r + 1] - l_.first[r]);
@@ -88,7 +88,7 @@ void SingleFactor::add_task(int root, int begin) {
   tasks_.push_back(std::move(task));
 }
 
-// Substitution for up to kPanelColumns right-hand sides, n floats each.
+// Substitution for up to kPanelColumns right-hand sides of n floats each.
 struct SingleFactor::Sweep {
   const SingleFactor& f;
   int columns;
@@ -112,7 +112,8 @@ struct SingleFactor::Sweep {
             l.first[s]};
   }
 
-  // t: the supernode's rows, `height` apart. Solves with its triangle and takes its share off the rows below.
+  // Solves with the supernode's triangle and subtracts its contribution from the rows below. t: the supernode's rows,
+  // `height` apart.
   void down(const Supernode& s, float* t) const {
     float c[kPanelWidth * kPanelColumns];
     for (int j = 0; j < s.width; j += kPanelWidth) {
@@ -141,7 +142,7 @@ struct SingleFactor::Sweep {
     }
   }
 
-  // The transpose.
+  // Solves with the transposed triangle.
   void up(const Supernode& s, float* t) const {
     float sums[kPanelWidth * kPanelColumns];
     const int ragged = s.width % kPanelWidth;
@@ -175,7 +176,7 @@ struct SingleFactor::Sweep {
     }
   }
 
-  // `beyond`: what the subtree takes off the rows behind it, `stride` apart; null for supernodes of no task.
+  // `beyond`: the subtree's contribution to the rows beyond it, `stride` apart; null for supernodes of no task.
   void forward(int index, std::vector<float>& local, float* beyond, long stride) const {
     const Supernode s = supernode(index);
     local.assign(static_cast<std::size_t>(s.height) * static_cast<std::size_t>(columns), 0.0F);

@@ -1,4 +1,4 @@
-// The only file that uses CHOLMOD. Its supernodal part is GPL: TISSUE_STIFFNESS_CHOLMOD_SUPERNODAL=OFF avoids it.
+// This is the only file that uses CHOLMOD. Its supernodal part is GPL; TISSUE_STIFFNESS_CHOLMOD_SUPERNODAL=OFF avoids it.
 #include "tissue_stiffness/fem/sparse_solver.hpp"
 
 #include <cholmod.h>
@@ -12,8 +12,8 @@
 #include "tissue_stiffness/fem/single_factor.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
-// Trajectories run in parallel, one solver each: threads inside BLAS or CHOLMOD would only get in their way. All else waits
-// for a large factor, which takes all cores.
+// Trajectories run in parallel with one solver each, so threads inside BLAS or CHOLMOD would only disturb them. Everything
+// else waits for a large factor, which uses all cores.
 extern "C" void openblas_set_num_threads(int) __attribute__((weak));
 extern "C" void omp_set_max_active_levels(int) __attribute__((weak));
 
@@ -51,7 +51,8 @@ struct SparseSolver::Data {
     common.final_ll = 1;
     common.print = 0;
   }
-  // Nested dissection of the graph of nodes, a ninth of the matrix; small ones are left to CHOLMOD's own choice.
+  // Orders the graph of nodes, a ninth of the matrix, by nested dissection. Small matrices are left to CHOLMOD's own
+  // choice.
   cholmod_factor* analyse(cholmod_sparse& a) {
     static std::mutex one_at_a_time;  // METIS draws from the C library's random numbers, which it seeds at each call
     const std::lock_guard<std::mutex> lock(one_at_a_time);
@@ -94,7 +95,7 @@ cholmod_sparse view(const SparseMatrix& matrix) {
   return v;
 }
 
-// The supernodal factor's arrays, its values in single precision.
+// Copies the supernodal factor's arrays, with its values in single precision.
 SingleFactor::Layout layout(const cholmod_factor& factor) {
   const auto count = factor.nsuper;
   const int* rows = static_cast<const int*>(factor.s);
@@ -120,7 +121,7 @@ SingleFactor::Layout layout(const cholmod_factor& factor) {
 
 }  // namespace
 
-// Empty when METIS does not order it.
+// Returns an empty order when METIS fails.
 std::vector<int> SparseSolver::Data::node_order(const cholmod_sparse& a) {
   const auto nodes = static_cast<int>(a.nrow / 3);
   const int *starts = static_cast<const int*>(a.p), *rows = static_cast<const int*>(a.i);

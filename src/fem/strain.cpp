@@ -12,7 +12,7 @@ namespace {
 
 const double kRoot = std::sqrt(2.0);
 
-// Times a node's shape gradient it is B^T s: the force that the stress s exerts there.
+// Returns the tensor whose product with a node's shape gradient is B^T s, the force of the stress s at the node.
 Eigen::Matrix3d tensor(const Strain& s) {
   const double xy = s[3] / kRoot, yz = s[4] / kRoot, xz = s[5] / kRoot;
   Eigen::Matrix3d t;
@@ -40,7 +40,7 @@ Strain strain_of(const Eigen::Vector3d& d) {
 }
 
 StrainFactor isotropic_factor(double lambda, double mu) {
-  // On the span of m: 3 lambda + 2 mu; elsewhere 2 mu.
+  // The eigenvalue is 3 lambda + 2 mu on the span of m, and 2 mu elsewhere.
   const double bulk = std::sqrt(3.0 * lambda + 2.0 * mu), shear = std::sqrt(2.0 * mu);
   StrainFactor r = shear * StrainFactor::Identity(6, 6);
   r.topLeftCorner<3, 3>().array() += (bulk - shear) / 3.0;

@@ -38,7 +38,7 @@ void each_row(Eigen::Index rows, const Work& work) {
   });
 }
 
-// Of each column, the same whatever the number of cores.
+// Returns the product of each column, independent of the number of cores.
 Sums dot(const Rows& a, const Rows& b) {
   const Eigen::Index shares = (a.rows() + kShare - 1) / kShare;
   Eigen::MatrixXd sums(a.cols(), shares);
@@ -50,12 +50,12 @@ Sums dot(const Rows& a, const Rows& b) {
   return sums.rowwise().sum().transpose();
 }
 
-// Of all wavelengths.
+// Returns a value that contains all wavelengths.
 double wave(Eigen::Index i) {
   return std::cos(2.4 * static_cast<double>(i));
 }
 
-// to = by * from.
+// Computes to = by * from.
 void interpolate(const Prolongation& by, const Rows& from, Rows& to) {
   each_row(by.rows(), [&](Eigen::Index j) {
     to.row(j).setZero();
@@ -67,7 +67,8 @@ void interpolate(const Prolongation& by, const Rows& from, Rows& to) {
 
 enum class Coarse { all, free };
 
-// Of what is free on the fine mesh; on the coarse one, too, or of all that there is.
+// Limits the prolongation to free degrees of freedom of the fine mesh. On the coarse mesh it takes all of them, or the free
+// ones.
 Prolongation of_degrees_of_freedom(const Prolongation& nodes, const std::vector<char>& fixed, Coarse coarse) {
   const auto held = [&fixed](Eigen::Index dof) { return fixed[static_cast<std::size_t>(dof)] != 0; };
   std::vector<Eigen::Triplet<double>> list;
@@ -85,7 +86,7 @@ Prolongation of_degrees_of_freedom(const Prolongation& nodes, const std::vector<
   return out;
 }
 
-// What nothing depends on has no entry, and stays where it is.
+// Degrees of freedom without entries get a diagonal, so that they stay where they are.
 void hold_idle(SparseMatrix& matrix) {
   const Eigen::VectorXd diagonal = matrix.diagonal(), none = Eigen::VectorXd::Zero(diagonal.size());
   const Eigen::VectorXd idle = (diagonal.array() == 0.0).select(diagonal.mean(), none);
@@ -94,7 +95,7 @@ void hold_idle(SparseMatrix& matrix) {
 
 }  // namespace
 
-// Some right-hand sides side by side, a row a degree of freedom.
+// Several right-hand sides at once, with a row for each degree of freedom.
 class TwoGrid::Iteration {
  public:
   Iteration(const TwoGrid& system, Eigen::Index columns)
@@ -103,7 +104,8 @@ class TwoGrid::Iteration {
     coarse_.setZero(a_.prolongation_.cols(), width_);
   }
 
-  // Of the energy norm of an error that some V-cycles have worked on, what one more leaves.
+  // Returns the factor by which one more V-cycle reduces an error's energy norm, after some V-cycles have acted on the
+  // error.
   double slowest() {
     for (Eigen::Index i = 0; i < x_.rows(); ++i) x_(i, 0) = static_cast<float>(wave(i));
     double before = 0.0, energy = 0.0;
@@ -148,10 +150,10 @@ class TwoGrid::Iteration {
   }
 
  private:
-  // Columns of zeros, which are solved, stay.
+  // Columns of zeros are already solved and stay zero.
   static Sums ratio(const Sums& a, const Sums& b) { return (b.array() == 0.0).select(0.0, a.array() / b.array()); }
 
-  // then(j, row j of A of).
+  // Calls then(j, row j of the product of A and `of`).
   template <typename Then>
   void multiply(const Rows& of, const Then& then) const {
     each_row(a_.single_.nodes(), [&](Eigen::Index node) {
@@ -161,7 +163,7 @@ class TwoGrid::Iteration {
     });
   }
 
-  // z = about A^-1 r.
+  // Computes z, an approximation of A^-1 r.
   void v_cycle() {
     rest_ = r_;
     z_.setZero();
@@ -177,8 +179,8 @@ class TwoGrid::Iteration {
     smooth();
   }
 
-  // Chebyshev iteration from z on (Saad, Iterative Methods for Sparse Linear Systems, 2003, algorithm 12.1). `rest_`: what
-  // z leaves of r before its last change, `d_`.
+  // Runs a Chebyshev iteration from z on (Saad, Iterative Methods for Sparse Linear Systems, 2003, algorithm 12.1). `rest_`
+  // is the residual of z before its last change, which is `d_`.
   void smooth() {
     const auto upper = static_cast<float>(a_.largest_), lower = upper / kSmoothed;
     const float middle = 0.5F * (upper + lower), half = 0.5F * (upper - lower), sigma = middle / half;
@@ -205,12 +207,12 @@ class TwoGrid::Iteration {
 };
 
 TwoGrid::TwoGrid(SparseMatrix&& matrix, const std::vector<char>& fixed, const Prolongation& nodes) {
-  take(matrix_, std::move(matrix));
+  move_matrix(matrix_, std::move(matrix));
   tbb::parallel_invoke([&] { single_ = SingleMatrix(matrix_); }, [&] { find_spectrum(); }, [&] { couple(fixed, nodes); });
   slow_ = !(Iteration(*this, 1).slowest() < kSlow);
 }
 
-// Functions of held nodes help beside a face; where few free nodes share many of them they depend on one another.
+// Coarse functions of held nodes help near a face. Where few free nodes share many of them, they are linearly dependent.
 void TwoGrid::couple(const std::vector<char>& fixed, const Prolongation& nodes) {
   const auto to = [&](Coarse coarse) {
     prolongation_ = of_degrees_of_freedom(nodes, fixed, coarse);
@@ -226,7 +228,7 @@ void TwoGrid::couple(const std::vector<char>& fixed, const Prolongation& nodes) 
   }
 }
 
-// By power iteration.
+// Finds the largest eigenvalue by power iteration.
 void TwoGrid::find_spectrum() {
   const Eigen::VectorXd diagonal = matrix_.diagonal();
   inverse_diagonal_ = diagonal.cwiseInverse().cast<float>();

@@ -14,12 +14,12 @@ namespace {
 constexpr double precision = std::numeric_limits<double>::epsilon();
 constexpr int most_terms = 10000000;
 
-/// x^a e^-x / Gamma(a + 1), the common factor of both expansions, without overflow.
+/// Returns x^a e^-x / Gamma(a + 1), the common factor of both expansions, without overflow.
 double gamma_density(double a, double x) {
   return std::exp(a * std::log(x) - x - std::lgamma(a + 1.0));
 }
 
-/// Sum x^n / ((a+1)...(a+n)), fast for x < a + 1 (Abramowitz, Stegun 6.5.29).
+/// Returns the sum of x^n / ((a+1)...(a+n)). It converges fast for x < a + 1 (Abramowitz, Stegun 6.5.29).
 double lower_series(double a, double x) {
   double term = 1.0, sum = 1.0;
   for (int n = 1; n < most_terms && term > precision * sum; ++n) {
@@ -29,7 +29,8 @@ double lower_series(double a, double x) {
   return gamma_density(a, x) * sum;
 }
 
-/// Continued fraction of the upper function by Lentz' method, fast for x >= a + 1 (Abramowitz, Stegun 6.5.31).
+/// Returns the continued fraction of the upper function by Lentz' method. It converges fast for x >= a + 1 (Abramowitz,
+/// Stegun 6.5.31).
 double upper_fraction(double a, double x) {
   constexpr double tiny = 1e-300;
   double b = x + 1.0 - a, c = 1.0 / tiny, d = 1.0 / b, fraction = d;

@@ -10,7 +10,8 @@
 namespace tissue_stiffness {
 namespace {
 
-// Of the root mean square of `group` standard normal numbers. Rows on their own are asked for in each frame.
+// Returns the median of the root mean square of `group` standard normal numbers. The value for single rows is stored,
+// because every frame needs it.
 double normal_median(int group) {
   const auto find = [](int count) { return std::sqrt(chi_squared_quantile(0.5, count) / count); };
   static const double of_one = find(1);

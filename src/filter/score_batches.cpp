@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kMostBatches = 32;
 constexpr std::size_t kFewestBatches = 16;
 constexpr double kBeyondChance = 1.2;  // times the largest eigenvalue that white noise would show
-constexpr double kFully = 1.5;         // times that, from which on a direction is taken for as wide as it looks
+constexpr double kFully = 1.5;         // times that, from which on a direction gets its full apparent width
 
 }  // namespace
 

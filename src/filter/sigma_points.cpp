@@ -12,9 +12,9 @@ void require_dimension(int dimension) {
 }
 
 /// With D_i+- = Y_i+- - Y_0, o_i = (D_i+ - D_i-) / 2 and e_i = (D_i+ + D_i-) / 2, eq. 19's sum is
-///   2w (sum o_i o_i^T + sum e_i e_i^T) + (beta - alpha^2) (2w)^2 (sum e_i)(sum e_i)^T,  2w = 1 / gamma^2,
-/// although the centre weight of eq. 15 may be negative. The e part is E (I + c 11^T) E^T with c = (beta - alpha^2) 2w, and
-/// I + c 11^T = (I + d 11^T)^2 for 1 + d L = sqrt(1 + c L), real for beta, kappa >= 0.
+///   2w (sum o_i o_i^T + sum e_i e_i^T) + (beta - alpha^2) (2w)^2 (sum e_i)(sum e_i)^T,  2w = 1 / gamma^2.
+/// This holds although the centre weight of eq. 15 may be negative. The e part is E (I + c 11^T) E^T with c = (beta -
+/// alpha^2) 2w. Moreover I + c 11^T = (I + d 11^T)^2 for 1 + d L = sqrt(1 + c L), which is real for beta, kappa >= 0.
 UnscentedMoments symmetric_moments(const Eigen::MatrixXd& output, double gamma, const UnscentedTuning& tuning) {
   const Eigen::Index l = (output.cols() - 1) / 2;
   const double size = static_cast<double>(l), pair_weight = 1.0 / (gamma * gamma);

@@ -10,7 +10,7 @@
 namespace tissue_stiffness {
 namespace {
 
-/// Square root of a positive semi-definite matrix; eigenvalues below zero by round-off count as zero.
+/// Returns the square root of a positive semi-definite matrix. Eigenvalues that round-off makes negative count as zero.
 Eigen::MatrixXd semidefinite_square_root(const Eigen::MatrixXd& covariance) {
   if (!covariance.allFinite()) throw NumericalError("the state's covariance is not finite");
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
@@ -53,8 +53,8 @@ void SquareRootUnscentedFilter::predict(const SigmaModel& process, const Eigen::
 }
 
 /// With O = R^-1/2 linear, E = R^-1/2 remainder and z the whitened innovation, the update is the least-squares problem
-///   min_{a,b} |z - E b - O a|^2 + |a|^2 + |b|^2,   mean += S a,
-/// whose triangular factor, with a's columns last, also holds S's reduction and the NIS (its residual).
+///   min_{a,b} |z - E b - O a|^2 + |a|^2 + |b|^2,   mean += S a.
+/// Its triangular factor, with a's columns last, also holds S's reduction and the NIS (its residual).
 FilterUpdate SquareRootUnscentedFilter::update(const Eigen::VectorXd& measurement, const Eigen::MatrixXd& outputs,
                                                const Noise& noise) {
   const UsableRows rows = usable_rows(measurement, outputs, noise, set_.unit().cols());

@@ -48,8 +48,8 @@ FilterUpdate UnscentedFilter::update(const Eigen::VectorXd& measurement, const E
   rows.report(innovation, variance, measurement.size(), update);
   if (update.dof == 0) return update;
 
-  // With Z = R^-1/2 deviations and W = diag(w), P_d = R^1/2 (I + Z W Z^T) R^1/2 (eq. 19), so that
-  // K = parameters W (I + Z^T Z W)^-1 Z^T R^-1/2 (eq. 20, 21): a system of 2L + 1 rows instead of m.
+  // With Z = R^-1/2 deviations and W = diag(w), P_d = R^1/2 (I + Z W Z^T) R^1/2 (eq. 19). So K = parameters W (I + Z^T Z
+  // W)^-1 Z^T R^-1/2 (eq. 20, 21), which is a system of 2L + 1 rows instead of m.
   const Eigen::MatrixXd whitened = rows.noise.whiten(deviations);
   const Eigen::VectorXd whitened_innovation = rows.noise.whiten(innovation);
   const Eigen::MatrixXd gram = whitened.transpose() * whitened;

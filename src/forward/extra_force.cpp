@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "tissue_stiffness/forward/motive_terms.hpp"
+#include "tissue_stiffness/forward/basis_seed_vectors.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -15,7 +15,7 @@ double finite_share(const Model::Point& at) {
 
 Eigen::VectorXd without_extra_force(const Model& model, Eigen::VectorXd theta) {
   for (std::size_t p = 0; p < model.parts().size(); ++p) {
-    if (adds_extra_force(model.parts()[p])) theta = without(model, p, theta);
+    if (adds_extra_force(model.parts()[p])) theta = theta_without_part(model, p, theta);
   }
   return theta;
 }

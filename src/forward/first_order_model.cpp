@@ -10,7 +10,7 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kForceStep = 0.010;  // [s] at most between two looks at the force
+constexpr double kForceStep = 0.010;  // [s] at most between two evaluations of the force
 constexpr double kLeastShare = 0.5;   // of the span that advance() is asked for, likewise
 
 class FirstOrderTrajectory : public Trajectory {

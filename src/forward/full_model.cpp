@@ -54,7 +54,7 @@ class FullTrajectories : public Trajectories {
   }
   void combine(const Eigen::VectorXd& weights, Eigen::Ref<Eigen::VectorXd> sum) const override {
     const auto displacement = [this](std::size_t i) -> const Eigen::VectorXd& { return states_[i].displacement; };
-    weigh(weights, displacement, sum);
+    add_weighted(weights, displacement, sum);
   }
   const DynamicState& state(std::size_t i) const { return states_[i]; }
 
@@ -74,8 +74,9 @@ class FullTrajectories : public Trajectories {
   // Impacts are filmed so fast that a few explicit steps reach the next frame.
   void choose(const std::vector<double>& spans) {
     chosen_ = true;
-    const bool can_leap = std::all_of(systems_.begin(), systems_.end(), [](const auto& s) { return s->can_leap(); });
-    if (options_.step <= 0.0 && can_leap) {
+    const bool supports_explicit_steps =
+        std::all_of(systems_.begin(), systems_.end(), [](const auto& s) { return s->supports_explicit_steps(); });
+    if (options_.step <= 0.0 && supports_explicit_steps) {
       central_.emplace_back(*systems_.front(), states_.front().time);
       explicit_steps_ = spans.front() < kExplicitSteps * central_.front().largest_step();
     }
@@ -97,7 +98,7 @@ class FullTrajectories : public Trajectories {
 
   FullModel::Options options_;
   Systems systems_;
-  Newmark newmark_;
+  GeneralizedAlpha newmark_;
   std::vector<CentralDifference> central_;
   std::vector<DynamicState> states_;
   bool chosen_ = false, explicit_steps_ = false;
@@ -174,8 +175,8 @@ ModelSystem::ModelSystem(const Model& model, const Eigen::VectorXd& theta)
   }
   gravity_ = mass_ * model.body_acceleration(theta).replicate(mass_.rows() / 3, 1);
   if (inertia > 0.0) mass_ += inertia * reference_;
-  rubs_ = model.rubs(point_);
-  leaps_ = !(inertia > 0.0) && !rubs_;
+  rubs_ = model.has_velocity_tangent(point_);
+  explicit_steps_ = !(inertia > 0.0) && !rubs_;
   if (!linear_part_) rotations_.emplace(model.fem());
 }
 
@@ -194,7 +195,7 @@ SparseMatrix ModelSystem::stiffness(double time, const Eigen::VectorXd& u, const
 
 SparseMatrix ModelSystem::friction(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const {
   SparseMatrix c = model_.fem().pattern();
-  model_.add_friction(point_, {time, u, v}, c);
+  model_.add_velocity_tangent(point_, {time, u, v}, c);
   return c;
 }
 

@@ -23,16 +23,17 @@ Small exponential_of(const Small& a) {
   return Small(fixed.exp());
 }
 
-// Several times faster where the size is known: without a branch, and with one.
+// With a known size the exponential is several times faster. Sizes 4 and 5 are those without a branch and with one.
 Small exponential(const Small& a) {
   if (a.rows() == 4) return exponential_of<4>(a);
   return a.rows() == 5 ? exponential_of<5>(a) : Small(a.exp());
 }
 
-// Augmented exponential of a step h of q'' + d q' + w q = f without branches: rows q, q'; columns q, q', f, its increment.
+// Augmented exponential of a step h of q'' + d q' + w q = f without branches. The rows are q, q', the columns q, q', f and
+// its increment.
 using Oscillation = Eigen::Matrix<double, 2, 4>;
 
-// Clough & Penzien 1993, eq. (2-49) and its integrals over the step.
+// The closed form is Clough & Penzien 1993, eq. (2-49), and its integrals over the step.
 bool oscillates(double w, double d, double h) {
   return w * h * h > kLeastAngle2 && d * d < 4.0 * kMostDamping * w;
 }

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/meshing/build_mesh.hpp"
+#include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -50,7 +52,7 @@ Model::Model(const ModelSettings& settings, std::shared_ptr<const Body> body, co
     : settings_(settings), body_(std::move(body)), rest_(Eigen::VectorXd::Zero(fem().dof_count())) {
   require_effect(settings_, "inertia");
   const EffectContext shared = context();
-  holders_.assign(static_cast<std::size_t>(fem().node_count()), 0);
+  constraint_count_.assign(static_cast<std::size_t>(fem().node_count()), 0);
   for (const EffectSettings& effect : settings_.effects) add_part(effect, shared, relative);
   link_elasticities();
   for (Part& part : parts_) {
@@ -62,8 +64,8 @@ Model::Model(const ModelSettings& settings, std::shared_ptr<const Body> body, co
   nonlinear_ = nonlinear_ || finite_law_;
   check_laws();
   fixed_.assign(static_cast<std::size_t>(fem().dof_count()), 0);
-  for (std::size_t node = 0; node < holders_.size(); ++node) {
-    if (holders_[node] > 0) std::fill_n(fixed_.begin() + static_cast<std::ptrdiff_t>(3 * node), 3, char{1});
+  for (std::size_t node = 0; node < constraint_count_.size(); ++node) {
+    if (constraint_count_[node] > 0) std::fill_n(fixed_.begin() + static_cast<std::ptrdiff_t>(3 * node), 3, char{1});
   }
   add_initial_velocity();
 }
@@ -85,11 +87,11 @@ void Model::add_part(const EffectSettings& settings, const EffectContext& contex
   add_parameters(settings, part);
   if (relative != nullptr) part.effect = relative->shared_effect(settings);
   if (!part.effect) part.effect = make_effect(settings, context);
-  for (const int node : part.effect->fixed_nodes()) ++holders_[static_cast<std::size_t>(node)];
+  for (const int node : part.effect->fixed_nodes()) ++constraint_count_[static_cast<std::size_t>(node)];
   parts_.push_back(std::move(part));
 }
 
-// Null where there is none.
+// Returns null where there is none.
 std::shared_ptr<const Effect> Model::shared_effect(const EffectSettings& settings) const {
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const EffectSettings& own = settings_.effects[i];
@@ -121,7 +123,7 @@ void Model::add_parameters(const EffectSettings& settings, Part& part) {
   }
 }
 
-// Effects that alter the elastic law read its parameters behind their own.
+// Effects that alter the elastic law read its parameters after their own.
 void Model::link_elasticities() {
   std::vector<int> elastic;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
@@ -133,7 +135,7 @@ void Model::link_elasticities() {
   }
 }
 
-// Finite strain is the whole model's: a mixture of laws would have no meaning for the effects between them.
+// Finite strain applies to the whole model, because a mixture of laws would have no meaning for the effects between them.
 void Model::check_laws() const {
   bool linear = false, blended = false;
   for (std::size_t i = 0; i < parts_.size(); ++i) {

@@ -1,4 +1,4 @@
-// The model's sums at theta.
+// This file computes the model's sums at theta.
 #include <algorithm>
 
 #include "tissue_stiffness/forward/model.hpp"
@@ -37,10 +37,10 @@ Eigen::VectorXd Model::Part::parameters(const Eigen::VectorXd& theta) const {
 }
 
 std::vector<char> Model::fixed(const Eigen::VectorXd& theta) const {
-  std::vector<int> holders = holders_;
+  std::vector<int> holders = constraint_count_;
   for (const Part& part : parts_) {
-    const std::vector<int> nodes = part.effect->released_nodes();
-    if (nodes.empty() || !part.effect->releases(part.parameters(theta))) continue;
+    const std::vector<int> nodes = part.effect->compliant_nodes();
+    if (nodes.empty() || !part.effect->is_compliant(part.parameters(theta))) continue;
     for (const int node : nodes) --holders[static_cast<std::size_t>(node)];
   }
   std::vector<char> flags(fixed_.size());
@@ -119,7 +119,7 @@ bool Model::same_answer(const Eigen::VectorXd& theta, const Eigen::VectorXd& oth
   for (const Part& part : parts_) {
     const Eigen::VectorXd p = part.parameters(theta), q = part.parameters(other);
     if (part.effect->nonlinear() && p != q) return false;
-    if (part.effect->releases(p) != part.effect->releases(q)) return false;
+    if (part.effect->is_compliant(p) != part.effect->is_compliant(q)) return false;
     for (const auto* terms : {&part.terms.mass, &part.terms.stiffness}) {
       for (const MatrixTerm& term : *terms) {
         if (term.coefficient(p) != term.coefficient(q)) return false;
@@ -224,17 +224,17 @@ void Model::add_nonlinear_stiffness(const Point& at, Motion motion, SparseMatrix
   }
 }
 
-bool Model::rubs(const Point& at) const {
+bool Model::has_velocity_tangent(const Point& at) const {
   for (std::size_t i = 0; i < parts_.size(); ++i) {
-    if (parts_[i].effect->rubs(at.parts[i].parameters)) return true;
+    if (parts_[i].effect->has_velocity_tangent(at.parts[i].parameters)) return true;
   }
   return false;
 }
 
-void Model::add_friction(const Point& at, const Motion& motion, SparseMatrix& damping) const {
+void Model::add_velocity_tangent(const Point& at, const Motion& motion, SparseMatrix& damping) const {
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const Eigen::VectorXd& p = at.parts[i].parameters;
-    if (parts_[i].effect->rubs(p)) parts_[i].effect->add_friction(motion, p, damping);
+    if (parts_[i].effect->has_velocity_tangent(p)) parts_[i].effect->add_velocity_tangent(motion, p, damping);
   }
 }
 

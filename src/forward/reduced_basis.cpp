@@ -6,9 +6,10 @@
 #include <numeric>
 #include <utility>
 
-#include "tissue_stiffness/forward/motive_terms.hpp"
+#include "tissue_stiffness/forward/basis_seed_vectors.hpp"
 #include "tissue_stiffness/forward/orthonormal_basis.hpp"
 #include "tissue_stiffness/forward/static_response.hpp"
+#include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -20,7 +21,7 @@ constexpr double kFaint = 1e-12;        // of the strongest response, squared: w
 constexpr double kFree = 1e-9;          // of the highest eigenvalue: below it a body moves freely
 constexpr double kRounding = 1e-14;     // of a coefficient
 
-// (P^T K P)^-1 on the coarser mesh.
+// Computes (P^T K P)^-1 on the coarser mesh.
 struct CoarseResponse {
   const TwoGrid& grids;
   Eigen::MatrixXd operator()(const Eigen::MatrixXd& loads) const { return grids.solve_coarse(loads); }
@@ -31,7 +32,7 @@ bool equal(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return a.rows() == b.rows() && a.cols() == b.cols() && a == b;
 }
 
-// What a body's mass and stiffness are sums of.
+// Terms whose sums are a body's mass and stiffness.
 struct BodyTerms {
   using List = std::vector<std::pair<std::shared_ptr<const SparseMatrix>, double>>;
   List mass, stiffness;
@@ -48,7 +49,8 @@ struct BodyTerms {
     }
   }
 
-  // The same mass, and a stiffness in proportion: responses differ by a factor, which a basis has not.
+  // Returns whether the mass is equal and the stiffness proportional. The responses then differ by a factor, which does not
+  // matter in a basis.
   bool same_body(const BodyTerms& other) const {
     if (!complete || !other.complete || stiffness.empty() || other.stiffness.empty()) return false;
     const double ratio = other.stiffness.front().second / stiffness.front().second;
@@ -59,10 +61,10 @@ struct BodyTerms {
   static void add(List& list, const std::shared_ptr<const SparseMatrix>& matrix, double coefficient) {
     if (coefficient != 0.0) list.emplace_back(matrix, coefficient);
   }
-  // As 1 to `ratio`.
+  // Returns whether the coefficients have the ratio 1 to `ratio`.
   static bool in_proportion(const List& a, const List& b, double ratio) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(), [ratio](const auto& one, const auto& another) {
-      return same(*one.first, *another.first) &&
+      return same_matrix(*one.first, *another.first) &&
              std::abs(ratio * one.second - another.second) <= kRounding * std::abs(another.second);
     });
   }
@@ -72,12 +74,12 @@ struct BodyTerms {
 
 class BasisRoot {
  public:
-  // The body.
+  // These members describe the body.
   BodyTerms terms;
   std::shared_ptr<const SparseMatrix> stiffness, mass;
   std::vector<char> fixed;
   std::shared_ptr<const StaticResponse> held;
-  // What moves it.
+  // These members describe what moves it.
   Eigen::MatrixXd loads;
   std::vector<SparseMatrix> groups;
   Eigen::Index size = 0;
@@ -92,7 +94,7 @@ class BasisRoot {
   bool same_motion(const BasisRoot& other) const {
     return size == other.size && equal(loads, other.loads) &&
            std::equal(groups.begin(), groups.end(), other.groups.begin(), other.groups.end(),
-                      [](const SparseMatrix& a, const SparseMatrix& b) { return same(a, b); });
+                      [](const SparseMatrix& a, const SparseMatrix& b) { return same_matrix(a, b); });
   }
 };
 
@@ -129,11 +131,11 @@ class Builder {
     const bool same_hold = known && known->fixed == root->fixed;
     bool same_body = same_hold && known->terms.same_body(root->terms);
     if (!same_body) {
-      root->stiffness = shared(model_.reference_stiffness(prior_.theta));
+      root->stiffness = share_matrix(model_.reference_stiffness(prior_.theta));
       SparseMatrix mass = model_.mass(prior_.theta);
       mass.prune(0.0);  // of each pair of nodes' 3 x 3 block, a third
-      root->mass = shared(std::move(mass));
-      same_body = same_hold && same(*known->stiffness, *root->stiffness) && same(*known->mass, *root->mass);
+      root->mass = share_matrix(std::move(mass));
+      same_body = same_hold && same_matrix(*known->stiffness, *root->stiffness) && same_matrix(*known->mass, *root->mass);
     }
     if (same_body) root->take_body(*known);
     root->loads = acting_loads(model_, prior_, *root->mass);
@@ -160,7 +162,8 @@ class Builder {
     basis.late.insert(basis.late.end(), static_cast<std::size_t>(count) - early, 1);
   }
 
-  // Static responses to the loads, then to the inertia (and, with several moduli, the stiffnesses) of what was added last.
+  // Adds static responses to the loads, and then to the inertia (with several moduli also to the stiffnesses) of the last
+  // added vectors.
   template <typename Response>
   static void extend(OrthonormalBasis& basis, const Response& respond, const Eigen::MatrixXd& loads,
                      const std::vector<SparseMatrix>& groups, Eigen::Index size) {
@@ -183,7 +186,7 @@ class Builder {
     }
   }
 
-  // Some columns of [M block, K block...].
+  // Returns some columns of [M block, K block...].
   static Eigen::MatrixXd forces(const Eigen::MatrixXd& block, const Eigen::MatrixXd& inertia,
                                 const std::vector<SparseMatrix>& groups, Eigen::Index first, Eigen::Index count) {
     const Eigen::Index width = block.cols();
@@ -202,7 +205,8 @@ class Builder {
     return out;
   }
 
-  // The same from the vectors of the coarser mesh: static responses to the loads and to the inertia of each, all at once.
+  // Builds the vectors from those of the coarser mesh. All static responses, to the loads and to the inertia of each
+  // vector, are computed together.
   static void refine(OrthonormalBasis& basis, const BasisRoot& root) {
     const TwoGrid& grids = *root.held->grids();
     const SparseMatrix mass = grids.to_coarse(*root.mass);
@@ -216,7 +220,7 @@ class Builder {
     basis.add(root.held->roughly(loads.leftCols(first + rest)), root.size);
   }
 
-  // The modes of the basis that the loads move most.
+  // Returns the modes of the basis that the loads excite most.
   Eigen::MatrixXd leading_motion(const OrthonormalBasis& basis, const Eigen::MatrixXd& loads) const {
     const Eigen::MatrixXd b = basis.vectors();
     if (b.cols() == 0) return b;
@@ -242,7 +246,8 @@ class Builder {
     return modes;
   }
 
-  // Static responses to the terms that are absent at the prior, each part's scaled to one, beside the basis.
+  // Adds static responses to the terms that are absent at the prior, each part's scaled to one, less their projection onto
+  // the basis.
   void add_sleeping(OrthonormalBasis& basis, const Eigen::MatrixXd& acting) const {
     bool answered = false;
     for (std::size_t p = 0; p < model_.parts().size(); ++p) answered = answered || answers_motion(model_, prior_, p);
@@ -252,7 +257,7 @@ class Builder {
     std::vector<Eigen::MatrixXd> blocks;
     int parts = 0;
     for (std::size_t p = 0; p < model_.parts().size(); ++p) {
-      if (!model_.parts()[p].effect->released_nodes().empty()) continue;
+      if (!model_.parts()[p].effect->compliant_nodes().empty()) continue;
       const std::size_t before = blocks.size();
       for (Eigen::MatrixXd block :
            {sleeping_loads(model_, prior_, mass_, p), sleeping_forces(model_, prior_, p, motion, rows),
@@ -269,7 +274,7 @@ class Builder {
     add_common(basis, scaled_responses(blocks), groups, basis.size() + room);
   }
 
-  // K^-1 times all blocks side by side, each block's responses scaled to one.
+  // Returns K^-1 times all blocks, with each block's responses scaled to one.
   Eigen::MatrixXd scaled_responses(const std::vector<Eigen::MatrixXd>& blocks) const {
     Eigen::Index columns = 0;
     for (const Eigen::MatrixXd& block : blocks) columns += block.cols();
@@ -317,14 +322,15 @@ class Builder {
     return sum;
   }
 
-  // For each support that may give way: responses with its nodes on springs; those to the springs cover other compliances.
+  // Adds responses with the nodes on springs for each support that may be compliant. Responses to the springs cover other
+  // compliances.
   void add_supports(const OrthonormalBasis& held, const Eigen::MatrixXd& acting, ReducedBasis& result) const {
     const Eigen::VectorXd prior = model_.theta(model_.prior_mean());
     for (std::size_t p = 0; p < model_.parts().size(); ++p) {
       const auto& part = model_.parts()[p];
-      if (part.effect->released_nodes().empty() || !model_.estimated(part, {0})) continue;
+      if (part.effect->compliant_nodes().empty() || !model_.estimated(part, {0})) continue;
       Eigen::VectorXd theta = prior_.theta;
-      const Eigen::VectorXd& soft = part.effect->releases(part.parameters(prior)) ? prior : prior_.generic;
+      const Eigen::VectorXd& soft = part.effect->is_compliant(part.parameters(prior)) ? prior : prior_.generic;
       for (const int index : part.indices) theta[index] = soft[index];
       const StaticResponse respond(model_.reference_stiffness(theta), mass_, model_.fixed(theta), nullptr);
       const Eigen::Index before = held.size();

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "tissue_stiffness/forward/reduced_trajectory.hpp"
+#include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -19,7 +20,7 @@ Eigen::MatrixX3d unit_motion(Eigen::Index dofs) {
   return Eigen::Matrix3d::Identity().replicate(dofs / 3, 1);
 }
 
-// out = tall * small, blocks of rows in parallel: the tall one is read once.
+// Computes out = tall * small for blocks of rows in parallel, so that the tall matrix is read once.
 void multiply(const Eigen::MatrixXd& tall, const Eigen::MatrixXd& small, Eigen::Ref<Eigen::MatrixXd> out) {
   constexpr Eigen::Index block = 1024;
   tbb::parallel_for(tbb::blocked_range<Eigen::Index>(0, tall.rows(), block), [&](const auto& part) {
@@ -38,8 +39,8 @@ Eigen::MatrixXd chosen(const Eigen::MatrixXd& m, const std::vector<int>& rows, c
   return part;
 }
 
-// Coefficients over the size of the first that is not zero, which is returned; 1 where there is none. Rounded, because
-// proportions that are the same come out with other last bits.
+// Divides the coefficients by the size of the first that is not zero, and returns this size, or 1 where there is none. They
+// are rounded, because equal proportions may differ in their last bits.
 double divide_by_first(std::vector<double>& coefficients) {
   const auto first = std::find_if(coefficients.begin(), coefficients.end(), [](double c) { return c != 0.0; });
   if (first == coefficients.end()) return 1.0;
@@ -52,7 +53,7 @@ double divide_by_first(std::vector<double>& coefficients) {
   return scale;
 }
 
-// Modes of mass * M + inertia * (stiffness * K) and stiffness * K, from those of M and K: the shapes stay.
+// Returns the modes of mass * M + inertia * (stiffness * K) and stiffness * K, given those of M and K. The shapes stay.
 ReducedModes scaled(const ReducedModes& of, double mass, double stiffness, double inertia) {
   ReducedModes out;
   out.stiffness_inertia = inertia;
@@ -66,7 +67,7 @@ ReducedModes scaled(const ReducedModes& of, double mass, double stiffness, doubl
   return out;
 }
 
-// basis^T K basis, at the cost of K's own rows.
+// Computes basis^T K basis, at the cost of K's own rows.
 Eigen::MatrixXd project_matrix(const SparseMatrix& k, const Eigen::MatrixXd& basis) {
   std::vector<int> rows;
   for (int j = 0; j < k.outerSize(); ++j) {
@@ -92,7 +93,7 @@ Eigen::VectorXd prior_parameters(const Model& model, const Model::Part& part) {
   return part.parameters(model.theta(model.prior_mean()));
 }
 
-bool same(const Discretisation& fem, const StrainFactorField& a, const StrainFactorField& b) {
+bool same_matrix(const Discretisation& fem, const StrainFactorField& a, const StrainFactorField& b) {
   for (int e = 0; e < fem.element_count(); ++e) {
     for (int q = 0; q < fem.points_per_element(); ++q) {
       const StrainFactor one = a(e, q), other = b(e, q);
@@ -120,7 +121,7 @@ ReducedModel::ReducedModel(const Model& model, const BasisOptions& options, cons
   project();
 }
 
-// Its vectors, but for those of supports that this model has not.
+// Returns the relative's vectors, except those of supports that this model does not have.
 ReducedBasis ReducedModel::adopted(const ReducedModel& relative) const {
   const ReducedBasis& of = relative.basis_;
   ReducedBasis out{Eigen::MatrixXd(of.vectors.rows(), of.vectors.cols()), {}, {}, of.root};
@@ -156,7 +157,7 @@ void ReducedModel::adopt_projections(std::size_t index, const ReducedModel& rela
   Projected& out = projected_[index];
   const auto adopt = [](const auto& terms, const auto& others, const auto& from, auto& to) {
     for (std::size_t k = 0; k < std::min(terms.size(), others.size()); ++k) {
-      if (same(*terms[k].matrix, *others[k].matrix)) to[k] = from[k];
+      if (same_matrix(*terms[k].matrix, *others[k].matrix)) to[k] = from[k];
     }
   };
   adopt(part.terms.mass, there->terms.mass, known.mass, out.mass);
@@ -165,7 +166,7 @@ void ReducedModel::adopt_projections(std::size_t index, const ReducedModel& rela
   for (std::size_t k = 0; k < std::min(strained.size(), others.size()); ++k) {
     if (model_.estimated(part, strained[k].shape) || known.strain_stiffness[k].size() == 0) continue;
     const StrainFactorField here = strained[k].at(prior_parameters(model_, part));
-    if (same(model_.fem(), here, others[k].at(prior_parameters(relative.model_, *there)))) {
+    if (same_matrix(model_.fem(), here, others[k].at(prior_parameters(relative.model_, *there)))) {
       out.strain_stiffness[k] = known.strain_stiffness[k];
     }
   }
@@ -185,7 +186,7 @@ void ReducedModel::project() {
   if (!varies) strains_.resize(0, 0);
 }
 
-// All that is not known yet.
+// Projects everything that is not known yet.
 void ReducedModel::project_part(std::size_t index) {
   const auto& part = model_.parts()[index];
   const Eigen::MatrixXd& b = basis_.vectors;
@@ -222,7 +223,7 @@ std::unique_ptr<ReducedModel> ReducedModel::grown() const {
   options.adopt = false;
   auto out = std::make_unique<ReducedModel>(model_, options, this);
   if (out->basis_.vectors.cols() <= basis_.vectors.cols()) return nullptr;
-  out->focus(focus_);
+  out->restrict_output_to(focus_);
   return out;
 }
 
@@ -233,7 +234,7 @@ std::vector<int> ReducedModel::active(const Eigen::VectorXd& theta, bool half) c
     const int support = basis_.support[i];
     if (support >= 0) {
       const auto& part = model_.parts()[static_cast<std::size_t>(support)];
-      if (!part.effect->releases(part.parameters(theta))) continue;
+      if (!part.effect->is_compliant(part.parameters(theta))) continue;
     }
     columns.push_back(static_cast<int>(i));
   }
@@ -254,7 +255,7 @@ ReducedModel::Proportions ReducedModel::proportions(const Eigen::VectorXd& theta
       out.stiffnesses.push_back(c);
       for (const int i : term.shape) out.others.push_back(c == 0.0 ? 0.0 : p[i]);
     }
-    out.others.push_back(part.effect->releases(p) ? 1.0 : 0.0);
+    out.others.push_back(part.effect->is_compliant(p) ? 1.0 : 0.0);
   }
   out.mass = divide_by_first(out.masses);
   out.stiffness = divide_by_first(out.stiffnesses);
@@ -380,7 +381,7 @@ Eigen::MatrixXd ReducedModel::basis_at(const std::vector<int>& nodes) const {
   return rows;
 }
 
-void ReducedModel::focus(const std::vector<int>& nodes) {
+void ReducedModel::restrict_output_to(const std::vector<int>& nodes) {
   focus_ = nodes;
   in_focus_ = PackedMatrix(basis_at(nodes));
 }

@@ -7,7 +7,7 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kLoadStep = 0.004;  // [s] at most between two looks at a load
+constexpr double kLoadStep = 0.004;  // [s] at most between two evaluations of a load
 
 }  // namespace
 

@@ -43,7 +43,7 @@ void StaticResponse::hold(Eigen::MatrixXd& loads) const {
   }
 }
 
-// Empty where there is a factor, which is made where this takes too long.
+// Returns nothing where there is a factor. A factor is made where the conjugate gradients take too long.
 std::optional<Eigen::MatrixXd> StaticResponse::between_meshes(const Eigen::MatrixXd& loads) const {
   if (factorised_) return std::nullopt;
   if (std::optional<Eigen::MatrixXd> found = grids_->solve(loads)) return found;

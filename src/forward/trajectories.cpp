@@ -56,7 +56,7 @@ void SeparateTrajectories::displacements(Eigen::MatrixXd& out) const {
 
 void SeparateTrajectories::combine(const Eigen::VectorXd& weights, Eigen::Ref<Eigen::VectorXd> sum) const {
   const auto displacement = [this](std::size_t i) { return runs_[i]->displacement(); };
-  weigh(weights, displacement, sum);
+  add_weighted(weights, displacement, sum);
 }
 
 }  // namespace tissue_stiffness

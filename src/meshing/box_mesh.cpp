@@ -11,7 +11,7 @@
 namespace tissue_stiffness {
 namespace {
 
-// The axes in the order in which each tetrahedron walks from the cell's first corner to its last; odd orders need a swap.
+// Order of the axes along which each tetrahedron runs from the cell's first corner to its last. An odd order needs a swap.
 struct Walk {
   std::array<int, 3> axes;
   bool odd;
@@ -54,7 +54,7 @@ TetMesh make_box_mesh(const Eigen::Vector3d& size, int cells_x, int cells_y, int
       }
     }
   }
-  if (order == 2) elevate(mesh);
+  if (order == 2) elevate_to_quadratic(mesh);
   set_boundary_facets(mesh, "box mesh");
   return mesh;
 }

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kLeastJacobianRatio = 0.1;  // an element bent more than this is straightened
 
-// Straight places of the mid-edge nodes that lie on the boundary; NaN for all others.
+// Returns the straight positions of the mid-edge nodes on the boundary, and NaN for all others.
 Eigen::Matrix3Xd straight_boundary(const TetMesh& mesh) {
   Eigen::Matrix3Xd straight = Eigen::Matrix3Xd::Constant(3, mesh.node_count(), std::numeric_limits<double>::quiet_NaN());
   for (int f = 0; f < mesh.facet_count(); ++f) {

@@ -8,7 +8,7 @@
 
 namespace tissue_stiffness {
 
-void elevate(TetMesh& mesh) {
+void elevate_to_quadratic(TetMesh& mesh) {
   if (mesh.quadratic()) return;
   std::map<std::pair<int, int>, int> mid_nodes;
   Eigen::MatrixXi tets(10, mesh.tets.cols());

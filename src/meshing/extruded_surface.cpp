@@ -42,7 +42,8 @@ double line_distance(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const E
   return std::abs(side.x() * (p - a).y() - side.y() * (p - a).x()) / side.norm();
 }
 
-// Corners between points `first` and `last` (Ramer 1972, Douglas and Peucker 1973), indices modulo the outline's size.
+// Finds corners between points `first` and `last` (Ramer 1972, Douglas and Peucker 1973). Indices are modulo the outline's
+// size.
 void split(const Outline& outline, Eigen::Index first, Eigen::Index last, std::vector<Eigen::Index>& corners) {
   const Eigen::Index n = outline.points.cols();
   double worst = kCornerSigmas;
@@ -76,7 +77,8 @@ std::vector<Eigen::Index> find_corners(const Outline& outline) {
   return corners;
 }
 
-// Polygon through knots at the corners and at most `length` apart, moved to fit all points by weighted least squares.
+// Returns a polygon with knots at the corners and at most `length` apart. It is fitted to all points by weighted least
+// squares.
 Eigen::Matrix2Xd fit_polygon(const Outline& outline, double length) {
   const Eigen::Index n = outline.points.cols();
   const std::vector<Eigen::Index> corners = find_corners(outline);

@@ -16,7 +16,7 @@ bool is_space(char c) {
   return std::isspace(static_cast<unsigned char>(c)) != 0;
 }
 
-// Words of a binary file shown in a message must not spoil the terminal.
+// Replaces what cannot be printed: words of a binary file in a message must not disturb the terminal.
 std::string printable(const std::string& text) {
   std::string shown = "'" + text.substr(0, 32) + "'";
   std::replace_if(

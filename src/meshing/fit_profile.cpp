@@ -15,7 +15,7 @@ constexpr int kIterations = 12;
 constexpr int kSamples = 65;
 constexpr double kLeastSine = 0.3, kLeastSliceSine = 0.99;  // between the axis and the view
 
-// Axis at the depth of the model's origin, and the direction in which the outline may move it sideways.
+// Axis at the depth of the model's origin, and the direction in which the fit may shift it.
 struct Placement {
   Eigen::Vector3d point, axis, sideways;
 };
@@ -38,8 +38,8 @@ Placement place_axis(const Camera& camera, const Eigen::Vector3d& axis) {
   return {point, axis.normalized(), sideways.normalized()};
 }
 
-// Where each line of sight comes closest to the axis: signed distance and height. Exact for a cylinder; the start of the
-// fit.
+// Returns the signed distance and the height where each line of sight is closest to the axis. This is exact for a cylinder,
+// and the fit starts from it.
 Eigen::Matrix2Xd closest_approach(const ViewingRays& rays, const Placement& place) {
   Eigen::Matrix2Xd result(2, rays.size());
   for (Eigen::Index i = 0; i < rays.size(); ++i) {
@@ -57,7 +57,7 @@ Eigen::RowVectorXd cosines(double angle, Eigen::Index terms) {
   return (Eigen::RowVectorXd::LinSpaced(terms, 0.0, static_cast<double>(terms - 1)) * angle).array().cos();
 }
 
-// The first start: radii of the closest approaches about the outline's middle.
+// Returns the first guess: it has the radii of the closest approaches about the outline's middle.
 RevolutionProfile start_profile(const ViewingRays& rays, const Placement& place) {
   const Eigen::Matrix2Xd approach = closest_approach(rays, place);
   const Eigen::Vector2d middle = 0.5 * (approach.rowwise().minCoeff() + approach.rowwise().maxCoeff());
@@ -73,7 +73,7 @@ RevolutionProfile start_profile(const ViewingRays& rays, const Placement& place)
   return {place.point + middle.x() * place.sideways + middle.y() * place.axis, place.axis, coefficients};
 }
 
-// The point of a line of sight that is deepest in the body, or nearest to it.
+// Returns the point of a line of sight that is deepest in the body, or nearest to it.
 Eigen::Vector3d touching_point(const RevolutionProfile& profile, const Eigen::Vector3d& origin,
                                const Eigen::Vector3d& direction) {
   const auto value = [&](double t) {
@@ -118,15 +118,15 @@ System linearise(const ViewingRays& rays, const RevolutionProfile& profile, cons
   return system;
 }
 
-// Of the integral of (R'' + R - c_0)^2 over the angle, which leaves spheres free wherever their centre is: pi/2 (n^2-1)^2
-// c_n^2. The last entry is the sideways shift, which is free too.
+// Returns the weights of c_n^2 in the integral of (R'' + R - c_0)^2 over the angle: pi/2 (n^2-1)^2. They leave spheres free
+// wherever their centre is. The last entry is the sideways shift, which is free, too.
 Eigen::VectorXd roughness(Eigen::Index terms) {
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(terms + 1);
   for (Eigen::Index n = 2; n < terms; ++n) weights[n] = 0.5 * M_PI * std::pow(static_cast<double>(n * n - 1), 2);
   return weights;
 }
 
-// Generalised cross-validation on the linearised fit: n RSS / (n - trace of the hat matrix)^2.
+// Chooses the smoothing by generalised cross-validation on the linearised fit: n RSS / (n - trace of the hat matrix)^2.
 double choose_smoothing(const System& system, const Eigen::VectorXd& coefficients, const Eigen::VectorXd& weights) {
   const Eigen::MatrixXd normal = system.jacobian.transpose() * system.jacobian;
   Eigen::VectorXd target = system.jacobian.leftCols(coefficients.size()) * coefficients - system.residual;

@@ -13,10 +13,11 @@ constexpr long long kMaxCount = 100000000;
 constexpr long long kMaxTag = std::numeric_limits<long long>::max() / 2;
 constexpr int kTet = 4, kQuadraticTet = 11;
 
-// Gmsh's second-order nodes lie on 01, 12, 02, 03, 23, 13.
+// Gmsh's second-order nodes lie on the edges 01, 12, 02, 03, 23, 13.
 constexpr std::array<int, 10> kFromGmsh = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
 
-// Nodes of the element types that bound a solid: lines, triangles, quadrangles, points, and their second-order kin.
+// Returns the number of nodes of an element type that bounds a solid, and 0 for others. These types are points, lines,
+// triangles, quadrangles, and their second-order variants.
 int flat_size(long long type) {
   switch (type) {
     case 1:
@@ -148,8 +149,8 @@ class MshReader {
     close("$EndElements");
   }
 
-  // A file with tetrahedra of both orders is read as 4-node. Nodes that no tetrahedron has (Gmsh writes construction
-  // points) are left out; the others keep the file's order.
+  // A file with tetrahedra of both orders is read as 4-node. Nodes that no tetrahedron has are left out, as Gmsh writes
+  // construction points. The others keep the file's order.
   TetFile assemble() {
     const bool quadratic = linear_.empty();
     const std::size_t size = quadratic ? 10 : 4;

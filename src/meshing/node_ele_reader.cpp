@@ -8,7 +8,7 @@ namespace {
 
 constexpr long long kMaxCount = 100000000;
 
-// TetGen's second-order nodes: where TetMesh's edges 01, 12, 02, 03, 13, 23 stand behind the corners.
+// Positions of TetMesh's edges 01, 12, 02, 03, 13, 23 among TetGen's second-order nodes, which follow the corners.
 constexpr std::array<int, 6> kTetGenEdges = {2, 3, 5, 1, 4, 0};
 
 struct Nodes {

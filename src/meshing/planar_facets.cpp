@@ -12,7 +12,7 @@
 namespace tissue_stiffness {
 namespace {
 
-// Planes that meet at less than this sine define no straight edge: its vertices are kept.
+// If planes meet at less than this sine, they define no straight edge, and its vertices are kept.
 constexpr double kMinSine = 0.02;
 
 struct Patches {
@@ -21,7 +21,7 @@ struct Patches {
   std::vector<int> sizes;                        // triangles
 };
 
-// Grows patches from the largest triangles, whose planes are the best known.
+// Grows patches from the largest triangles, because their planes are known best.
 Patches grow_patches(const TriangleSurface& surface, const Eigen::Matrix3Xi& neighbours, double tolerance) {
   Eigen::Matrix3Xd areas(3, surface.triangle_count());
   for (int t = 0; t < surface.triangle_count(); ++t) areas.col(t) = triangle_area_vector(surface, t);
@@ -63,7 +63,7 @@ Patches grow_patches(const TriangleSurface& surface, const Eigen::Matrix3Xi& nei
   return patches;
 }
 
-// Edges between patches, seen from every vertex.
+// Edges between patches that meet at a vertex.
 struct VertexFeatures {
   std::vector<int> ends;     // other ends of the feature edges
   std::vector<int> patches;  // all patches at the vertex
@@ -122,7 +122,7 @@ class Merger {
     if (feature(side, t)) at.ends.push_back(surface_.triangles((side + 1) % 3, t));
   }
 
-  // Outline of a patch from one of its edges on, along triangles of the patch around each vertex.
+  // Follows the outline of a patch from one of its edges on, along the patch's triangles around each vertex.
   std::vector<int> trace(int side, int t, Eigen::Matrix<bool, 3, Eigen::Dynamic>& done) const {
     std::vector<int> loop;
     while (!done(side, t)) {
@@ -148,7 +148,7 @@ class Merger {
     return a.dot(b) < 0.0 && a.cross(b).norm() <= 4.0 * tolerance_ / kMinSine * (b - a).norm();
   }
 
-  // Nearest point on the planes of all patches that several triangles define.
+  // Returns the nearest point on the planes of all patches of several triangles.
   Eigen::Vector3d snapped(int vertex) const {
     const VertexFeatures& at = features_[static_cast<std::size_t>(vertex)];
     const Eigen::Vector3d x = surface_.vertices.col(vertex);

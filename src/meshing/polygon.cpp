@@ -8,7 +8,7 @@
 namespace tissue_stiffness {
 namespace {
 
-// Of the squared sides: a corner so near a side counts as on it, whatever the rounding of its coordinates.
+// Share of the squared sides. A corner so near to a side counts as on it, because its coordinates are rounded.
 constexpr double kOnSide = 1e-9;
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
@@ -33,7 +33,8 @@ bool segments_meet(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eig
          (b_side == 0.0 && in_box(c, d, b));
 }
 
-// Twice the area over the squared sides, of the corner at left[i]; minus infinity when other corners lie in it.
+// Returns twice the area over the squared sides of the corner at left[i]. It is minus infinity when other corners lie in
+// it.
 double ear_shape(const Eigen::Matrix2Xd& points, const std::vector<int>& left, std::size_t i) {
   const std::size_t n = left.size();
   const Eigen::Vector2d a = points.col(left[(i + n - 1) % n]), b = points.col(left[i]), c = points.col(left[(i + 1) % n]);
@@ -61,7 +62,7 @@ bool bridge_is_free(const Eigen::Matrix2Xd& points, const std::vector<std::vecto
   return true;
 }
 
-// One outline of all loops: each hole in turn is joined by the shortest bridge that crosses no side.
+// Joins all loops to one outline. Each hole in turn is joined by the shortest bridge that crosses no side.
 std::vector<int> join_loops(const Eigen::Matrix2Xd& points, std::vector<std::vector<int>> loops) {
   const auto area = [&points](const std::vector<int>& loop) {
     Eigen::Matrix2Xd outline(2, static_cast<Eigen::Index>(loop.size()));

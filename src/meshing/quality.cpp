@@ -19,7 +19,7 @@ Eigen::Matrix<double, 3, 4> corners(const TetMesh& mesh, int tet) {
   return x;
 }
 
-// Outward area vectors of the faces.
+// Returns the outward area vectors of the faces.
 Eigen::Matrix<double, 3, 4> face_areas(const Eigen::Matrix<double, 3, 4>& x) {
   Eigen::Matrix<double, 3, 4> areas;
   for (int face = 0; face < 4; ++face) {
@@ -49,7 +49,7 @@ double least_dihedral(const Eigen::Matrix<double, 3, 4>& x) {
   return least;
 }
 
-// dN/d(r, s, t) of the 10-node tetrahedron at barycentric coordinates l.
+// Returns dN/d(r, s, t) of the 10-node tetrahedron at barycentric coordinates l.
 Eigen::Matrix<double, 10, 3> shape_derivatives(const Eigen::Vector4d& l) {
   Eigen::Matrix<double, 4, 3> dl;
   dl << -1.0, -1.0, -1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0;
@@ -106,7 +106,7 @@ MeshQuality measure_quality(const TetMesh& mesh) {
   return quality;
 }
 
-std::string describe(const TetMesh& mesh, const MeshQuality& quality) {
+std::string describe_quality(const TetMesh& mesh, const MeshQuality& quality) {
   std::ostringstream out;
   out.precision(3);
   out << mesh.tet_count() << (mesh.quadratic() ? " 10-node" : " 4-node") << " tetrahedra, " << mesh.node_count()

@@ -14,10 +14,10 @@
 namespace tissue_stiffness {
 namespace {
 
-// Mid nodes at the ends of the inner octahedron's three diagonals, then the ring of four around each.
+// Mid nodes at the ends of the inner octahedron's three diagonals, each followed by the ring of four around it.
 constexpr std::array<std::array<int, 6>, 3> kDiagonals = {{{4, 9, 5, 6, 7, 8}, {5, 7, 4, 6, 9, 8}, {6, 8, 4, 5, 9, 7}}};
 
-/// Quadratic shape functions at barycentric coordinates (l0..l3), node order of TetMesh.
+/// Returns the quadratic shape functions at barycentric coordinates (l0..l3), in the node order of TetMesh.
 Eigen::Matrix<double, 10, 1> quadratic_shape(const Eigen::Vector4d& l) {
   Eigen::Matrix<double, 10, 1> shape;
   for (int i = 0; i < 4; ++i) shape[i] = l[i] * (2.0 * l[i] - 1.0);
@@ -25,7 +25,7 @@ Eigen::Matrix<double, 10, 1> quadratic_shape(const Eigen::Vector4d& l) {
   return shape;
 }
 
-/// Barycentric coordinates of the ten nodes.
+/// Returns the barycentric coordinates of the ten nodes.
 Eigen::Matrix<double, 4, 10> node_coordinates() {
   Eigen::Matrix<double, 4, 10> out = Eigen::Matrix<double, 4, 10>::Zero();
   for (int i = 0; i < 4; ++i) out(i, i) = 1.0;
@@ -39,7 +39,7 @@ void orient(std::array<int, 4>& tet, const Eigen::Matrix<double, 3, 10>& x) {
   if (a.cross(b).dot(c) < 0.0) std::swap(tet[2], tet[3]);
 }
 
-/// The eight children in local numbers.
+/// Returns the eight children in local numbers.
 std::array<std::array<int, 4>, 8> children(const Eigen::Matrix<double, 3, 10>& x) {
   std::array<std::array<int, 4>, 8> out = {{{0, 4, 6, 7}, {4, 1, 5, 8}, {6, 5, 2, 9}, {7, 8, 9, 3}}};
   const auto length = [&x](const std::array<int, 6>& d) { return (x.col(d[0]) - x.col(d[1])).squaredNorm(); };
@@ -52,7 +52,7 @@ std::array<std::array<int, 4>, 8> children(const Eigen::Matrix<double, 3, 10>& x
   return out;
 }
 
-/// A 10-node mesh's children, and where their mid-edge nodes lie on the parent's quadratic geometry.
+/// A 10-node mesh's children, and the positions of their mid-edge nodes on the parent's quadratic geometry.
 struct Children {
   std::vector<std::array<int, 4>> tets;
   std::map<std::pair<int, int>, Eigen::Vector3d> middles;
@@ -81,9 +81,9 @@ Children cut(const TetMesh& mesh) {
 
 }  // namespace
 
-TetMesh refine(const TetMesh& mesh) {
+TetMesh refine_mesh(const TetMesh& mesh) {
   TetMesh parent = mesh;
-  elevate(parent);
+  elevate_to_quadratic(parent);
   const Children cuts = cut(parent);
   TetMesh fine;
   fine.nodes = parent.nodes;
@@ -93,7 +93,7 @@ TetMesh refine(const TetMesh& mesh) {
     for (int i = 0; i < 4; ++i) fine.tets(i, static_cast<Eigen::Index>(t)) = cuts.tets[t][static_cast<std::size_t>(i)];
   }
   if (mesh.quadratic()) {
-    elevate(fine);
+    elevate_to_quadratic(fine);
     for (int t = 0; t < fine.tet_count(); ++t) {
       for (int e = 0; e < 6; ++e) {
         const std::pair<int, int> key = std::minmax(fine.tets(kTetEdges[e][0], t), fine.tets(kTetEdges[e][1], t));
@@ -126,7 +126,7 @@ std::set<Triple> children_of_facets(const TetMesh& parent, const std::vector<int
   return out;
 }
 
-// An edge's middle is inside when both its ends are.
+// A mid-edge node is inside when both ends of its edge are.
 void add_middles(const TetMesh& mesh, std::vector<char>& inside) {
   for (int t = 0; mesh.quadratic() && t < mesh.tet_count(); ++t) {
     for (int e = 0; e < 6; ++e) {
@@ -137,7 +137,7 @@ void add_middles(const TetMesh& mesh, std::vector<char>& inside) {
   }
 }
 
-Region refine(const Region& region, const TetMesh& mesh, const TetMesh& parent, const TetMesh& refined) {
+Region refine_region(const Region& region, const TetMesh& mesh, const TetMesh& parent, const TetMesh& refined) {
   Region out;
   std::vector<char> inside(static_cast<std::size_t>(std::max(parent.node_count(), refined.node_count())), 0);
   for (const int node : region.nodes) inside[static_cast<std::size_t>(node)] = 1;
@@ -159,12 +159,12 @@ Region refine(const Region& region, const TetMesh& mesh, const TetMesh& parent, 
 
 }  // namespace
 
-std::map<std::string, Region> refine(const std::map<std::string, Region>& regions, const TetMesh& mesh,
-                                     const TetMesh& refined) {
+std::map<std::string, Region> refine_regions(const std::map<std::string, Region>& regions, const TetMesh& mesh,
+                                             const TetMesh& refined) {
   TetMesh parent = mesh;
-  elevate(parent);
+  elevate_to_quadratic(parent);
   std::map<std::string, Region> out;
-  for (const auto& [name, region] : regions) out[name] = refine(region, mesh, parent, refined);
+  for (const auto& [name, region] : regions) out[name] = refine_region(region, mesh, parent, refined);
   return out;
 }
 
@@ -193,7 +193,7 @@ Prolongation prolongation(const TetMesh& mesh, const TetMesh& refined) {
     }
   };
   TetMesh parents = mesh;
-  elevate(parents);
+  elevate_to_quadratic(parents);
   for (int t = 0; t < refined.tet_count(); ++t) {
     const auto at = [&](int corner) { return coordinates.col(place_of(refined.tets(corner, t), parents, t / 8)); };
     for (int i = 0; i < 4; ++i) add(refined.tets(i, t), t / 8, at(i));

@@ -32,7 +32,7 @@ Eigen::Vector3d centroid(const TetMesh& mesh, int tet) {
                  mesh.nodes.col(mesh.tets(3, tet)));
 }
 
-// A list of corners takes along the mid-edge nodes between them.
+// Returns the listed corners and the mid-edge nodes between them.
 std::vector<char> listed_nodes(const VertexShape& shape, const TetMesh& mesh, const std::string& where) {
   std::vector<char> in(static_cast<std::size_t>(mesh.node_count()), 0);
   for (const int vertex : shape.vertices) {

@@ -29,7 +29,7 @@ double RevolutionProfile::angle(const Eigen::Vector3d& point) const {
   return std::atan2(x.cross(axis_).norm(), x.dot(axis_));
 }
 
-// grad |x| = x/|x|; grad t = -(a - cos t x/|x|) / (|x| sin t).
+// The gradients are grad |x| = x/|x| and grad t = -(a - cos t x/|x|) / (|x| sin t).
 Eigen::Vector3d RevolutionProfile::gradient(const Eigen::Vector3d& point) const {
   const Eigen::Vector3d x = point - centre_;
   const double length = x.norm();

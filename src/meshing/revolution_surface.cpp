@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kFineSteps = 2000;
 
-// Angles at which the profile is cut into `parts` pieces of equal length.
+// Returns the angles that divide the profile into `parts` pieces of equal length.
 std::vector<double> equal_arcs(const std::vector<double>& lengths, int parts) {
   std::vector<double> angles;
   std::size_t fine = 1;
@@ -39,7 +39,7 @@ struct Ring {
   int vertex(int i) const { return first + i % count; }
 };
 
-// Triangles between two rings, always along the diagonal that turns less.
+// Adds triangles between two rings, always along the diagonal that turns less.
 void stitch(const Ring& upper, const Ring& lower, std::vector<Eigen::Vector3i>& triangles) {
   int i = 0, j = 0;
   while (i < upper.count || j < lower.count) {

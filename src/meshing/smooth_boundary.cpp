@@ -41,7 +41,7 @@ void smooth_boundary(TetMesh& mesh) {
     normals.col(f) = Eigen::Vector3d(x(1) - x(0)).cross(Eigen::Vector3d(x(2) - x(0)));
     for (int i = 0; i < 3; ++i) around[static_cast<std::size_t>(mesh.facets(i, f))].push_back(f);
   }
-  // The normal at a corner on the smooth patch that `side` points out of.
+  // Returns the normal at a corner, averaged over the facets whose normals are within 40 degrees of `side`.
   const auto normal_at = [&](int node, const Eigen::Vector3d& side) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (const int f : around[static_cast<std::size_t>(node)]) {

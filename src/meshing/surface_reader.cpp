@@ -15,7 +15,8 @@
 namespace tissue_stiffness {
 namespace {
 
-// Surface files hold 32-bit coordinates: vertices closer than that resolution, of the body's size, are the same.
+// Surface files hold 32-bit coordinates. Vertices that are closer than their resolution, relative to the body's size, are
+// merged.
 constexpr double kWeldShare = 1e-6;
 constexpr std::size_t kStlHeader = 84, kStlTriangle = 50;
 
@@ -66,7 +67,7 @@ TriangleSurface read_stl(const std::string& file) {
   const std::string& bytes = in.bytes();
   std::uint32_t count = 0;
   if (bytes.size() >= kStlHeader) std::memcpy(&count, bytes.data() + kStlHeader - sizeof(count), sizeof(count));
-  // Some binary files start with "solid" too, so the size decides.
+  // Some binary files also start with "solid", so the size decides.
   if (bytes.size() >= kStlHeader && bytes.size() == kStlHeader + kStlTriangle * count) return read_binary_stl(bytes, count);
   if (in.peek() == "solid") return read_ascii_stl(in);
   in.fail(std::to_string(bytes.size()) + " bytes for " + std::to_string(count) + " triangles",
@@ -118,7 +119,7 @@ TriangleSurface from_polygons(const pcl::PolygonMesh& mesh, const std::string& w
   return surface;
 }
 
-// PCL logs what it thinks of a file on the console; our message is the one that counts.
+// Silences PCL, which logs its own messages about a file. Our message is the one that counts.
 class QuietPcl {
  public:
   QuietPcl() : level_(pcl::console::getVerbosityLevel()) { pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS); }

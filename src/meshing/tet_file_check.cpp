@@ -16,7 +16,7 @@
 namespace tissue_stiffness {
 namespace {
 
-// A tetrahedron flatter than this share of a regular one with its longest edge has no volume to speak of.
+// A tetrahedron whose volume is below this share of its longest edge's cube counts as flat.
 constexpr double kFlatShare = 1e-9;
 
 void check_coordinates(const TetFile& input, const std::string& where) {
@@ -28,7 +28,7 @@ void check_coordinates(const TetFile& input, const std::string& where) {
   }
 }
 
-// Corners first, then mid-edge nodes, each in the file's order.
+// Numbers the corners first and then the mid-edge nodes, each in the file's order.
 TetMesh number_corners_first(const TetFile& input, double scale, const std::string& where) {
   enum class Role : char { unused, mid, corner };
   std::vector<Role> roles(static_cast<std::size_t>(input.nodes.cols()), Role::unused);
@@ -133,7 +133,7 @@ TetMesh check_tet_file(const TetFile& input, double scale, int order, const std:
   check_coincident(mesh, where);
   orient(mesh, where);
   if (order == 1) drop_mid_nodes(mesh);
-  if (order == 2) elevate(mesh);
+  if (order == 2) elevate_to_quadratic(mesh);
   set_boundary_facets(mesh, where);
   return mesh;
 }

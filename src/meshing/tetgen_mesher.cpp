@@ -1,5 +1,5 @@
-// The only file that touches TetGen, whose licence is the AGPL. Without it surfaces are refused with a message that says
-// so.
+// This is the only file that uses TetGen, whose licence is the AGPL. Without TetGen surfaces are refused with a message
+// that says so.
 #include "tissue_stiffness/meshing/tetgen_mesher.hpp"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ namespace tissue_stiffness {
 #ifdef TISSUE_STIFFNESS_TETGEN
 namespace {
 
-// Vertices off a plane by less than this share of the body's size are rounding of 32-bit coordinates.
+// Vertices that are off a plane by less than this share of the body's size are rounded 32-bit coordinates.
 constexpr double kPlaneShare = 2e-6;
 constexpr double kNeedleShare = 1e-9;  // area over the longest side squared
 constexpr unsigned kMaxSeconds = 120;
@@ -59,7 +59,7 @@ void run(std::string switches, tetgenio& in, tetgenio& out) {
   tetrahedralize(&behavior, &in, &out);
 }
 
-// TetGen's search for crossings does not end on triangles without area.
+// TetGen's search for crossings does not terminate for triangles without area.
 void refuse_needles(const TriangleSurface& surface, const std::string& where) {
   for (int t = 0; t < surface.triangle_count(); ++t) {
     Eigen::Matrix3d x;
@@ -86,8 +86,8 @@ void refuse_crossings(const TriangleSurface& surface, double unit, const std::st
                    "triangles that meet at common edges only");
 }
 
-// Radius-edge ratio 1.6 and dihedral angles above 15 degrees where the surface lets them. A volume limit of twice a regular
-// tetrahedron's makes the mean edge 0.94 of the length asked for.
+// The radius-edge ratio is 1.6, and dihedral angles are above 15 degrees where the surface allows it. The volume limit is
+// twice a regular tetrahedron's, which makes the mean edge 0.94 of the requested length.
 std::string switches(double edge, bool keep_triangles) {
   std::ostringstream text;
   text << "pq1.6/15AQ";
@@ -96,7 +96,7 @@ std::string switches(double edge, bool keep_triangles) {
   return text.str();
 }
 
-// Tetrahedra of the regions that an odd number of shells encloses, and the points that they use.
+// Keeps the tetrahedra of the regions that an odd number of shells encloses, and the points that they use.
 TetFile keep_body(const tetgenio& out, double unit, const TriangleSurface& surface, const std::string& where) {
   if (out.numberoftetrahedra == 0) throw InputError(where, "a surface without inside", "a closed surface");
   const Eigen::Map<const Eigen::MatrixXi> tets(out.tetrahedronlist, out.numberofcorners, out.numberoftetrahedra);
@@ -195,7 +195,7 @@ bool has_tetgen() {
   return true;
 }
 
-// Apart, because TetGen 1.5's library frees its memory twice when it gives up.
+// TetGen runs in another process, because the library of TetGen 1.5 frees its memory twice when it gives up.
 TetFile fill_surface(const TriangleSurface& surface, double max_edge_length, bool keep_triangles, const std::string& where,
                      const std::function<void()>& checkpoint) {
   const auto result =

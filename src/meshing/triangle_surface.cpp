@@ -34,7 +34,7 @@ std::vector<Side> sorted_sides(const TriangleSurface& surface) {
   return sides;
 }
 
-// First vertex within the tolerance of each one.
+// Returns for each vertex the first one within the tolerance.
 std::vector<int> representatives(const Eigen::Matrix3Xd& vertices, double tolerance) {
   pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>);
   const Eigen::Vector3d centre = vertices.rowwise().mean();
@@ -68,7 +68,7 @@ bool same_direction(const TriangleSurface& surface, int a, int side_a, int b, co
   return false;
 }
 
-// Calls visit(from, side, to) once for every triangle that a shell's first one reaches, and for every closing edge too.
+// Calls visit(from, side, to, seen) for every side of each triangle in the shell of the first one.
 template <typename Visit>
 void walk_shell(const Eigen::Matrix3Xi& neighbours, int start, std::vector<int>& shell_of, int shell, Visit visit) {
   std::vector<int> stack = {start};

@@ -13,7 +13,7 @@ namespace {
 constexpr long long kMaxCount = std::numeric_limits<int>::max() / 32;
 constexpr int kTet = 10, kQuadraticTet = 24;
 
-// Points, lines, triangles, quadrilaterals and their quadratic kin: they bound the solid, they are not part of it.
+// Points, lines, triangles, quadrilaterals and their quadratic variants bound the solid and are not part of it.
 bool flat_cell(int type) {
   return (type >= 1 && type <= 9) || type == 21 || type == 22 || type == 23;
 }

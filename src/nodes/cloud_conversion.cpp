@@ -97,21 +97,7 @@ double read(const std::uint8_t* point, const Field& field) {
   }
 }
 
-ObservationKind to_kind(ObservationSettings::Kind kind) {
-  switch (kind) {
-    case ObservationSettings::Kind::vertices:
-      return ObservationKind::vertices;
-    case ObservationSettings::Kind::markers:
-      return ObservationKind::markers;
-    case ObservationSettings::Kind::points:
-      return ObservationKind::points;
-    case ObservationSettings::Kind::contour:
-      break;
-  }
-  return ObservationKind::contour;
-}
-
-/// The columns that a cloud is read by.
+/// The fields from which a cloud is read.
 class Columns {
  public:
   Columns(const Cloud& cloud, const std::string& id_name, int id_count, const std::string& topic)
@@ -157,7 +143,7 @@ Observation to_observation(const Cloud& cloud, const ObservationSettings& settin
                         vertices ? vertex_count : static_cast<int>(settings.rest.cols()), topic);
   Observation out;
   out.source = source;
-  out.kind = to_kind(settings.kind);
+  out.kind = settings.kind;
   out.time = cloud.header.stamp.toSec();
   const Eigen::Index most = Eigen::Index{cloud.width} * cloud.height;
   out.points.resize(3, most);

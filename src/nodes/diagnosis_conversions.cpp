@@ -32,7 +32,7 @@ MissingEffectMessage to_message(const MissingEffect& effect) {
 DiagnosisMessage to_message(const Diagnosis& diagnosis, const std_msgs::Header& header) {
   DiagnosisMessage out;
   out.header = header;
-  out.verdict = diagnosis.verdict;
+  out.verdict = to_string(diagnosis.verdict);
   out.summary = diagnosis_sentence(diagnosis);
   out.set = diagnosis.set;
   out.probability_adequate = diagnosis.adequate;

@@ -39,7 +39,7 @@ void EstimatorInputs::listen(std::uint32_t queue_size) {
   }
 }
 
-// Checks the stamp and hands the message to `add`; what is wrong with it is reported, never thrown into the spinner.
+// Checks the stamp and hands the message to `add`. Errors in the message are reported and never thrown into the spinner.
 template <typename Message, typename Add>
 void EstimatorInputs::subscribe(const std::string& topic, std::uint32_t queue_size, Add add) {
   queue_.expect(topic);

@@ -93,7 +93,7 @@ bool EstimatorNode::on_reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Res
   return true;
 }
 
-// The worker's outermost frame: nothing may leave a thread.
+// This is the worker's outermost function, because no exception may leave a thread.
 void EstimatorNode::run() {
   try {
     work();
@@ -124,7 +124,7 @@ void EstimatorNode::work() {
         mark_stale();
       }
       diagnostics_.set("frames waiting", std::to_string(queue_.waiting()));
-      diagnostics_.set("looking back", estimator_->looks_back() ? "yes" : "no");
+      diagnostics_.set("looking back", estimator_->reprocesses() ? "yes" : "no");
     }
   }
 }
@@ -168,7 +168,7 @@ void EstimatorNode::build(const TetMesh& mesh) {
   diagnostics_.state(DiagnosticStatus::OK, to_string(EstimateState::no_data));
 }
 
-// A changed model goes through the kept frames of this run, so that what was measured is not lost.
+// A changed model processes the kept frames of this run, so that the measurements are not lost.
 void EstimatorNode::run_again() {
   const Recording recording = services_->check().recording();
   estimator_->set_first_stamp(recording.first_stamp);
@@ -231,7 +231,7 @@ void EstimatorNode::process(const FrameQueue::Work& work) {
   stale_ = false;
 }
 
-// When a recording is over, the last look at it is not.
+// When a recording has ended, its last reprocessing may still be running.
 void EstimatorNode::catch_up() {
   if (!last_) return;
   const auto result = estimator_->catch_up();
@@ -241,12 +241,12 @@ void EstimatorNode::catch_up() {
   show_state(result->estimate);
 }
 
-// The last estimate stays, marked, when no frame has come for longer than the model allows, by the wall clock: a recording
-// that has ended stops a simulated clock, too.
+// Publishes the last estimate as stale when no frame has come for longer than the model allows. It uses the wall clock,
+// because a recording that has ended also stops a simulated clock.
 void EstimatorNode::mark_stale() {
   if (!last_ || stale_) return;
   const double since = std::chrono::duration<double>(std::chrono::steady_clock::now() - arrival_).count();
-  if (since < running_.stale_after || estimator_->looks_back()) return;
+  if (since < running_.stale_after || estimator_->reprocesses()) return;
   stale_ = true;
   Estimate estimate = estimator_->estimate();
   std::ostringstream why;

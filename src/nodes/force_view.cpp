@@ -20,7 +20,7 @@ geometry_msgs::Point point(const Eigen::Vector3d& p) {
   return out;
 }
 
-// A pyramid on three corners, turned outwards.
+// Adds a pyramid with a triangular base, whose faces are oriented outwards.
 void add_needle(const Eigen::Vector3d& from, const Eigen::Vector3d& along, double radius,
                 std::vector<geometry_msgs::Point>& points) {
   const Eigen::Vector3d axis = along.normalized();

@@ -46,7 +46,7 @@ void FrameQueue::add_load(const std::string& topic, const ros::Time& stamp, Make
   changed_.notify_one();
 }
 
-// The lap that a message belongs to; a jump of its topic's stamps puts the topic into the next one.
+// Returns the lap that a message belongs to. When its topic's stamps jump, the topic enters the next lap.
 FrameQueue::Place FrameQueue::place(const std::string& name, const ros::Time& stamp) {
   Topic& topic = topics_[name];
   const auto lap = laps_.find(topic.lap);
@@ -96,7 +96,7 @@ FrameQueue::Work FrameQueue::take_front() {
   work.stamp = front->first.second;
   work.observations = std::move(front->second.observations);
   frames_.erase(front);
-  // Samples beyond the frame go along: the estimator needs the one behind the frame to interpolate.
+  // Samples later than the frame are included, because the estimator interpolates up to the next one.
   const auto end = loads_.lower_bound(Place(lap + 1, ros::Time()));
   for (auto load = loads_.begin(); load != end; ++load) {
     if (load->first.first == lap) work.loads.push_back(std::move(load->second));

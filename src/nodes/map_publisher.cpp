@@ -5,7 +5,7 @@
 #include <chrono>
 #include <utility>
 
-#include "tissue_stiffness/estimation/aside.hpp"
+#include "tissue_stiffness/estimation/low_priority.hpp"
 #include "tissue_stiffness/nodes/map_view.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
@@ -48,7 +48,7 @@ void MapPublisher::add_frame(const Estimate& estimate, const std::function<Recor
   question.checkpoint = [given_up] {
     if (*given_up) throw NumericalError("given up, because the run, the model or the node changed");
   };
-  work_ = aside([this, given_up, question = std::move(question), stamp = estimate.time] {
+  work_ = at_low_priority([this, given_up, question = std::move(question), stamp = estimate.time] {
     try {
       const StiffnessMap map = map_stiffness(question);
       if (!*given_up) publish(map, question.mesh, stamp);

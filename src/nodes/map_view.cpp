@@ -9,7 +9,7 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr double kLeastRange = 0.6931;  // log 2
-// Viridis, at equal steps.
+// These are colours of Viridis at equal steps.
 constexpr float kScale[5][3] = {{0.267F, 0.005F, 0.329F},
                                 {0.229F, 0.322F, 0.546F},
                                 {0.128F, 0.567F, 0.551F},

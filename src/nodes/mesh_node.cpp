@@ -68,7 +68,7 @@ void MeshNode::await_contour() {
   ROS_INFO("waiting for the first contour on %s", contour_subscriber_.getTopic().c_str());
 }
 
-// Only the first contour shows the body at rest; a later one counts when that one was no good.
+// Only the first contour shows the body at rest. A later one is used if that one failed.
 void MeshNode::on_contour(const ContourConstPtr& message) {
   if (!contour_) contour_ = message;
   build_from_contour();

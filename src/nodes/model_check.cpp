@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "tissue_stiffness/diagnosis/diagnose.hpp"
-#include "tissue_stiffness/estimation/aside.hpp"
+#include "tissue_stiffness/estimation/low_priority.hpp"
 #include "tissue_stiffness/types/error.hpp"
 #include "tissue_stiffness/types/freed_memory.hpp"
 
@@ -12,7 +12,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kMostFrames = 200;    // a check looks at; more are thinned
+constexpr std::size_t kMostFrames = 200;    // that a check uses; more are thinned
 constexpr std::size_t kMostLoads = 500000;  // 40 minutes at 200 Hz
 constexpr std::size_t kFewestFrames = 24;   // for a check that nobody asked for
 
@@ -152,7 +152,7 @@ void ModelCheck::run() {
     lock.unlock();
     const auto begin = Clock::now();
     Outcome outcome;
-    beside([&] { outcome = carry_out(job); });
+    run_at_low_priority([&] { outcome = carry_out(job); });
     return_freed_memory();  // hundreds of megabytes
     const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
     if (outcome.diagnosis && !given_up_) report_(*outcome.diagnosis, stamp);

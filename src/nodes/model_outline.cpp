@@ -23,7 +23,7 @@ ModelOutline::ModelOutline(const ModelSettings& settings, const ObservationSetti
 
 Contour ModelOutline::seen_by(const Camera& camera, const Eigen::Matrix3Xd& positions) const {
   const std::vector<OutlineSegment> pieces =
-      slice_ ? slice(triangles_, positions, camera, cavity_) : silhouette(triangles_, edges_, positions, camera);
+      slice_ ? section_by_plane(triangles_, positions, camera, cavity_) : silhouette(triangles_, edges_, positions, camera);
   std::vector<Eigen::Vector4d> rows;  // point and normal
   for (const OutlineSegment& piece : pieces) {
     if (!piece.from.allFinite() || !piece.to.allFinite()) continue;

@@ -12,7 +12,7 @@
 namespace tissue_stiffness {
 namespace {
 
-// Nothing subscribes to a topic later on, so an added effect can only use those that are heard already.
+// No topic is subscribed to later on, so an added effect can only use topics that the node already listens to.
 void require_known_topics(const ModelSettings& before, const ModelSettings& after) {
   const std::vector<LoadInput> known = load_topics(before);
   for (const LoadInput& input : load_topics(after)) {
@@ -96,7 +96,7 @@ std::string ModelServices::change_model(const std::function<std::string(ModelSet
   return message;
 }
 
-// What the caller gave, or what the last diagnosis found for an effect of that name.
+// Returns the caller's entry, or the one that the last diagnosis found for an effect with this name.
 std::string ModelServices::entry_of(const std::string& effect) const {
   if (effect.find(':') != std::string::npos) return effect;
   const std::optional<Diagnosis> last = check_.last();

@@ -31,7 +31,7 @@ SegmentationSettings read_segmentation(const Value& map) {
   return out;
 }
 
-/// Contour `number` of a model; null when it has none.
+/// Returns contour `number` of a model, or null when the model has no contour. Throws InputError for a number out of range.
 const ObservationSettings* find_contour(const ModelSettings& model, int number) {
   int contours = 0;
   for (const ObservationSettings& observation : model.observations) {

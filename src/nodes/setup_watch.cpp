@@ -15,14 +15,14 @@ namespace {
 
 const ros::WallDuration kPeriod(5.0);
 
-/// What the estimator subscribes to, as the master calls it; images reach it as contours from the segmentation.
+/// Returns the topics of the model with their resolved names. Images reach the estimator as contours from the segmentation.
 std::vector<NeededTopic> needed_by(const ros::NodeHandle& node, const ModelSettings& settings) {
   std::vector<NeededTopic> needed = needed_topics(settings);
   for (NeededTopic& need : needed) need.topic.name = node.resolveName(need.topic.name);
   return needed;
 }
 
-/// Those of other nodes: the estimator does not feed on what it publishes.
+/// Returns the topics of other nodes, because the estimator does not use what it publishes.
 std::vector<Topic> published_topics() {
   ros::master::V_TopicInfo infos;
   if (!ros::master::getTopics(infos)) return {};

@@ -22,7 +22,7 @@ Eigen::Vector3f heat_colour(double sigmas) {
   return {static_cast<float>(std::min(2.0 * heat, 1.0)), static_cast<float>(std::min(2.0 - 2.0 * heat, 1.0)), 0.1F};
 }
 
-/// `light`: 0 in the shade to 1 in the light.
+/// `light`: from 0 in the shade to 1 in the light.
 std_msgs::ColorRGBA shaded(const Eigen::Vector3f& colour, double light) {
   const Eigen::Vector3f lit = static_cast<float>(kAmbient + (1.0 - kAmbient) * light) * colour;
   std_msgs::ColorRGBA out;
@@ -56,7 +56,8 @@ Eigen::VectorXd interpolated(Eigen::VectorXd values, const TetMesh& mesh) {
   return values;
 }
 
-/// How much each node of the surface is turned to a light above, 0 to 1: rviz does not shade what has colours of its own.
+/// Returns how much each node of the surface faces a light above, 0 to 1. rviz does not shade triangles that have their own
+/// colours.
 Eigen::VectorXd lights(const TetMesh& mesh, const Eigen::Matrix3Xd& positions) {
   static const Eigen::Vector3d towards = Eigen::Vector3d(0.35, -0.45, 0.8).normalized();
   Eigen::Matrix3Xd normals = Eigen::Matrix3Xd::Zero(3, positions.cols());
@@ -73,13 +74,13 @@ Eigen::VectorXd lights(const TetMesh& mesh, const Eigen::Matrix3Xd& positions) {
   return out;
 }
 
-/// Corner triples of a facet: itself, or four for one with mid nodes (corners 0-2, mid nodes of 01, 12, 20).
+/// Returns the corner triples of a facet. A facet with mid nodes (corners 0-2, mid nodes of 01, 12, 20) has four.
 std::vector<std::array<int, 3>> triangles(Eigen::Index facet_nodes) {
   if (facet_nodes == 6) return {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
   return {{0, 1, 2}};
 }
 
-/// Of float fields and one integer field after them, `count` points.
+/// Returns a cloud of `count` points with float fields and one integer field after them.
 sensor_msgs::PointCloud2 empty_cloud(const std_msgs::Header& header, const std::vector<std::string>& reals,
                                      const std::string& integer, std::size_t count) {
   sensor_msgs::PointCloud2 cloud;

@@ -20,7 +20,7 @@ json number(double value) {
   return std::isfinite(value) ? json(value) : json(nullptr);
 }
 
-/// The used frames in buckets of successive ones, few enough to draw.
+/// Returns the used frames in buckets of successive ones, few enough to draw.
 std::vector<Bucket> buckets(const std::vector<FrameRecord>& frames) {
   Bucket used;
   for (const FrameRecord& frame : frames) {
@@ -57,7 +57,7 @@ json parameter_course(const ParameterEstimate& last, std::size_t index, const st
           {"upper", uppers}};
 }
 
-/// The largest of a bucket.
+/// Returns the largest value in each bucket.
 template <typename Value>
 json largest(const std::vector<Bucket>& all, const Value& value) {
   json out = json::array();

@@ -29,18 +29,18 @@ std::string paragraph(const std::string& text) {
   return text.empty() ? "" : "<p>" + escape_html(text) + "</p>";
 }
 
-std::string verdict_badge(const std::string& verdict) {
-  const bool open = verdict == "missing" || verdict == "unfinished";
-  const std::string colour = verdict == "adequate" ? "good" : open ? "warn" : "bad";
-  const std::string text = verdict == "missing"      ? "an effect is missing"
-                           : verdict == "numerics"   ? "adequate but for the numerics"
-                           : verdict == "adequate"   ? "model adequate"
-                           : verdict == "unfinished" ? "no verdict yet"
-                                                     : "error not explained";
+std::string verdict_badge(Verdict verdict) {
+  const bool open = verdict == Verdict::missing || verdict == Verdict::unfinished;
+  const std::string colour = verdict == Verdict::adequate ? "good" : open ? "warn" : "bad";
+  const std::string text = verdict == Verdict::missing      ? "an effect is missing"
+                           : verdict == Verdict::numerics   ? "adequate but for the numerics"
+                           : verdict == Verdict::adequate   ? "model adequate"
+                           : verdict == Verdict::unfinished ? "no verdict yet"
+                                                            : "error not explained";
   return "<span class=\"badge " + colour + "\">" + text + "</span>";
 }
 
-/// Young's moduli among parameters: "19.0 kPa".
+/// Returns the Young's moduli among parameters: "19.0 kPa".
 std::string moduli(const std::map<std::string, double>& parameters) {
   std::string text;
   for (const auto& [name, value] : parameters) {
@@ -51,7 +51,7 @@ std::string moduli(const std::map<std::string, double>& parameters) {
   return text;
 }
 
-/// A Young's modulus as the answer, with its interval.
+/// Returns a Young's modulus with its interval as the answer.
 std::string modulus_answer(const std::string& name, const Diagnosis& d) {
   std::string text = moduli(d.steps.back().parameters), interval, comma;
   for (const ParameterEstimate& p : d.estimate.parameters) {
@@ -66,9 +66,10 @@ std::string modulus_answer(const std::string& name, const Diagnosis& d) {
   }
   if (text.empty()) return "";
   if (!interval.empty() && d.estimate.state == EstimateState::no_data) interval += ", of the fit itself";
-  const std::string bias = d.final_verdict == "adequate"     ? ""
-                           : d.final_verdict == "unfinished" ? "not known yet whether something is missing that biases it"
-                                                             : "biased by what is missing";
+  const std::string bias = d.final_verdict == Verdict::adequate ? ""
+                           : d.final_verdict == Verdict::unfinished
+                               ? "not known yet whether something is missing that biases it"
+                               : "biased by what is missing";
   if (!bias.empty()) interval += (interval.empty() ? "" : "; ") + bias;
   return "<p class=\"answer\"><span class=\"name\">" + escape_html(name) + "</span><b>" + escape_html(text) +
          "</b> <span class=\"interval\">" + escape_html(interval) + "</span></p>";
@@ -84,7 +85,7 @@ std::string answer(const Diagnosis& d) {
             paragraph("The given model says " + moduli(first.parameters) + ". With " + effect_list(d.final_effects) +
                       " the held-out error falls from " + millimetres(first.held_out_rms) + " to " +
                       millimetres(last.held_out_rms) + "; the noise is " + millimetres(last.noise_floor) +
-                      ". Then: " + d.final_verdict + ".");
+                      ". Then: " + to_string(d.final_verdict) + ".");
   } else {
     text += modulus_answer("Young's modulus of the given model", d);
   }
@@ -152,17 +153,17 @@ std::string fails(const Diagnosis& d) {
                      chart_place("residual-phase") + "</div>");
 }
 
-/// A refit may even come out worse than the model as given.
+/// A refit may even be worse than the given model.
 std::string gain(double explained) {
   return explained > 5e-4 ? percent(explained) : "nothing";
 }
 
-/// "probability 94 %, leaves z = 1.2".
+/// Returns "probability 94 %, leaves z = 1.2".
 std::string belief(const MissingEffect& c) {
   return "probability " + short_number(100.0 * c.probability, 2) + " %, leaves z = " + short_number(c.z, 2);
 }
 
-/// "the motion dies away faster ...: viscous damping would remove 91 % of the misfit (...)".
+/// Returns "The motion dies away faster ... Adding viscous damping would remove 91 % of the squared error ...".
 std::string story(const MissingEffect& c) {
   const bool refitted = std::isfinite(c.held_out_rms_after);
   std::string text = capital(effect_sign(c.effect)) + ". Adding " + effect_title(c.effect) + " would remove " +

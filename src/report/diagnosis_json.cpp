@@ -91,7 +91,7 @@ json rival_json(const RivalExplanation& rival) {
 }  // namespace
 
 std::string diagnosis_json(const Diagnosis& d) {
-  json final = {{"verdict", d.final_verdict}, {"effects", d.final_effects}};
+  json final = {{"verdict", to_string(d.final_verdict)}, {"effects", d.final_effects}};
   if (d.estimate.state != EstimateState::no_data) final["state"] = to_string(d.estimate.state);
   for (const ParameterEstimate& p : d.estimate.parameters) {
     final["parameters"][p.name] = {
@@ -111,7 +111,7 @@ std::string diagnosis_json(const Diagnosis& d) {
                      {"noise_floor", number(s.noise_floor)}});
   }
   json root = {{"complete", d.interrupted.empty()},
-               {"verdict", d.verdict},
+               {"verdict", to_string(d.verdict)},
                {"set", d.set},
                {"probability_adequate", number(d.adequate)},
                {"none_of_these", number(d.none_of_these)},

@@ -4,7 +4,7 @@
 namespace tissue_stiffness {
 namespace {
 
-/// RFC 4180: quoted where needed, quotes doubled.
+/// By RFC 4180 a field is quoted where needed, and quotes are doubled.
 std::string field(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";

@@ -11,7 +11,7 @@
 namespace tissue_stiffness {
 namespace {
 
-/// Inside a script element only '<' can do harm.
+/// Inside a script element only '<' is dangerous.
 std::string safe_json(const std::string& json) {
   std::string out;
   out.reserve(json.size());
@@ -40,7 +40,7 @@ std::string licence(const std::string& name, const std::string& text) {
   return "<details><summary>" + name + "</summary><pre>" + escape_html(text) + "</pre></details>";
 }
 
-/// Buttons, one of which is down.
+/// Returns buttons, one of which is selected.
 std::string choice(const std::string& name, const std::string& legend,
                    const std::vector<std::pair<std::string, std::string>>& options) {
   std::string text = "<fieldset class=\"choice\" id=\"choose-" + name + "\"><legend>" + legend + "</legend>";
@@ -57,7 +57,7 @@ std::string model_choice(const std::vector<Replay>& replays) {
   return models.size() > 1 ? choice("model", "Model", models) : "";
 }
 
-/// The surface in three dimensions with its controls.
+/// Returns the place of the surface in three dimensions, with its controls.
 std::string surface_place(bool arrows) {
   return "<div id=\"surface\"></div><div id=\"colour-bar\"></div><div class=\"controls\">" +
          choice("colour", "Misfit in", {{"error", "mm"}, {"sigmas", "sigma"}}) +

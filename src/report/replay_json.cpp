@@ -1,4 +1,4 @@
-// Arrays travel as base64 of small integers: a fifth of the size of numbers in text.
+// Arrays are stored as base64 of small integers, which takes a fifth of the size of numbers in text.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -31,12 +31,12 @@ std::string base64(const std::string& bytes) {
   return out;
 }
 
-/// Little-endian, whatever the machine.
+/// The bytes are little-endian on every machine.
 void append(std::string& bytes, unsigned value, int size) {
   for (int k = 0; k < size; ++k) bytes += static_cast<char>(value >> (8U * static_cast<unsigned>(k)) & 255U);
 }
 
-/// {offset, scale, data}: value = offset + scale * 16-bit number.
+/// Returns {offset, scale, data} with value = offset + scale * 16-bit number.
 json shorts(const std::vector<double>& values) {
   double low = INFINITY, high = -INFINITY;
   for (const double value : values) {
@@ -58,7 +58,7 @@ std::vector<double> flat(const Eigen::MatrixXd& m) {
   return {m.data(), m.data() + m.size()};
 }
 
-/// All frames one after the other.
+/// Returns all frames, one after the other.
 template <typename Matrix>
 std::vector<double> flat(const std::vector<Matrix>& frames) {
   std::vector<double> all;
@@ -66,7 +66,7 @@ std::vector<double> flat(const std::vector<Matrix>& frames) {
   return all;
 }
 
-/// {most, data}: value = most * (8-bit number / 254)^2, so that small ones keep their digits.
+/// Returns {most, data} with value = most * (8-bit number / 254)^2, so that small values keep their digits.
 json shades(const std::vector<Eigen::VectorXd>& frames) {
   const std::vector<double> all = flat(frames);
   double most = 0.0;
@@ -100,7 +100,7 @@ json track_json(const ReplayTrack& track) {
   return {{"name", track.name}, {"unit", track.unit}, {"components", components}};
 }
 
-/// Tenths of a pixel; points without a number are left out.
+/// Returns tenths of a pixel. Points without a number are left out.
 std::vector<long> pixels(const Eigen::MatrixXd& points, Eigen::Index stride) {
   std::vector<long> out;
   for (Eigen::Index i = 0; i < points.cols(); i += stride) {
@@ -121,7 +121,7 @@ json outline_json(const ReplayOutline& outline) {
           {"predicted", pixels(outline.predicted, 1)}};
 }
 
-/// Ten microseconds are enough for a clock.
+/// Ten microseconds are precise enough for a clock.
 std::vector<double> clock(const std::vector<double>& times) {
   std::vector<double> out;
   for (const double time : times) out.push_back(std::round(1e5 * time) / 1e5);

@@ -11,7 +11,7 @@
 namespace tissue_stiffness {
 namespace {
 
-/// Words for a state, and the colour that goes with them.
+/// Words for a state, and their colour.
 struct StateWords {
   std::string badge, colour, sentence;
 };
@@ -53,7 +53,7 @@ std::string identifiability_badge(const IdentifiabilityRecord& record) {
   return badge(record.verdict == "none" ? "bad" : "warn", record.verdict == "none" ? "not determined" : "only a ratio");
 }
 
-/// Young's moduli; without one the first parameters. Three at most; the table has all.
+/// Returns at most three parameters: Young's moduli, or without one the first parameters. The table has all of them.
 std::vector<ParameterEstimate> headline(const std::vector<ParameterEstimate>& parameters) {
   std::vector<ParameterEstimate> shown;
   for (const ParameterEstimate& p : parameters) {
@@ -129,7 +129,7 @@ std::string parameter_table(const Results& results) {
           rows + "</table></div>");
 }
 
-/// Reasons why frames were skipped, each with its count and first time, the most frequent first.
+/// Returns the reasons why frames were skipped, each with its count and first time, the most frequent first.
 std::string skipped_table(const Results& results) {
   struct Reason {
     std::string text;
@@ -176,7 +176,7 @@ std::string timing_table(const Results& results) {
                      rows + "</table></div>");
 }
 
-/// What the headline shows against time; other parameters to fold out.
+/// Returns the headline's parameters against time. Other parameters can be unfolded.
 std::string courses(const Results& results) {
   if (results.used() == 0) return "";
   const std::vector<ParameterEstimate> first = headline(results.parameters);

@@ -18,7 +18,7 @@ std::string fixed(double value, int decimals) {
   return stream.str();
 }
 
-/// Position of the leading digit: 0 for 1 to 9.99.
+/// Returns the position of the leading digit: 0 for 1 to 9.99.
 int magnitude(double value) {
   return static_cast<int>(std::floor(std::log10(std::abs(value))));
 }

@@ -21,7 +21,7 @@ std::string millimetres(double metres) {
   return std::isfinite(metres) ? short_number(1e3 * metres, 3) + " mm" : "-";
 }
 
-// "Probabilities: viscous damping 94 %, viscoelasticity 5 %, none of these 1 %."
+// Returns "Probabilities: viscous damping 94 %, viscoelasticity 5 %, none of these 1 %."
 std::string probabilities(const Diagnosis& d) {
   std::vector<std::pair<double, std::string>> all;
   const auto add = [&all](double probability, const std::string& name) {
@@ -39,7 +39,7 @@ std::string probabilities(const Diagnosis& d) {
   return text.empty() ? text : text + ".";
 }
 
-// "These may act without being missed: added mass (49 %, Young's modulus 10 % higher)."
+// Returns "These may act without being missed: added mass (49 %, elasticity.young_modulus 10 % higher with it). ..."
 std::string traces(const Diagnosis& d) {
   std::string list;
   for (const RivalExplanation& trace : d.traces) {
@@ -58,22 +58,22 @@ std::string traces(const Diagnosis& d) {
 }
 
 std::string verdict_sentence(const Diagnosis& d) {
-  if (d.verdict == "unfinished") return "There is no verdict yet: the search for what is missing was interrupted.";
-  if (d.verdict == "adequate") return "The model is adequate: what it leaves is noise.";
-  if (d.verdict == "numerics") {
+  if (d.verdict == Verdict::unfinished) return "There is no verdict yet: the search for what is missing was interrupted.";
+  if (d.verdict == Verdict::adequate) return "The model is adequate: what it leaves is noise.";
+  if (d.verdict == Verdict::numerics) {
     return "The model is adequate but for the numerics: the mesh, or a simulated recording's time steps, explain what it "
            "leaves.";
   }
   if (d.best.effects.empty()) return "The error has structure, but no effect of the library explains it.";
   const bool together = d.best.effects.size() > 1;
   const std::vector<std::string>& found = d.best.effects;
-  std::string text = d.verdict == "missing" ? "Missing: " : "Not explained; nearest: ";
+  std::string text = d.verdict == Verdict::missing ? "Missing: " : "Not explained; nearest: ";
   text += effect_list(found) + (together ? " together" : " (" + effect_sign(found.front()) + ")") +
           (together ? ". They" : ". It") + " would remove " + short_number(100.0 * d.best.explained, 3) +
           " % of the squared error (held-out error " + millimetres(d.steps.front().held_out_rms) + " to " +
           millimetres(d.best.held_out_rms) + ").";
   text += probabilities(d);
-  if (d.verdict == "unexplained") text += " None of them explains the data.";
+  if (d.verdict == Verdict::unexplained) text += " None of them explains the data.";
   std::vector<std::string> others;
   std::copy_if(d.set.begin(), d.set.end(), std::back_inserter(others),
                [&](const std::string& effect) { return std::count(found.begin(), found.end(), effect) == 0; });

@@ -8,7 +8,7 @@
 
 namespace tissue_stiffness {
 
-/// Where data lie in the widget.
+/// Mapping from data to positions in the widget.
 struct CurveView::Axes {
   QRectF plot;
   LiveCurve::Range times, values;
@@ -64,7 +64,7 @@ void CurveView::draw_axes(QPainter& painter, const Axes& axes) const {
   const QColor text = palette().color(QPalette::WindowText);
   QColor grid = text;
   grid.setAlphaF(0.15);
-  for (const double value : ticks(axes.values, std::max(2, static_cast<int>(axes.plot.height() / (1.6 * line))))) {
+  for (const double value : axis_ticks(axes.values, std::max(2, static_cast<int>(axes.plot.height() / (1.6 * line))))) {
     painter.setPen(grid);
     painter.drawLine(QPointF(axes.plot.left(), axes.y(value)), QPointF(axes.plot.right(), axes.y(value)));
     painter.setPen(text);
@@ -72,7 +72,7 @@ void CurveView::draw_axes(QPainter& painter, const Axes& axes) const {
                      QString::number(std::abs(value) < 1e-12 ? 0.0 : value, 'g', 4));
   }
   const LiveCurve::Range since_start{0.0, axes.times.high - axes.times.low};
-  for (const double time : ticks(since_start, std::max(2, static_cast<int>(axes.plot.width() / 60.0)))) {
+  for (const double time : axis_ticks(since_start, std::max(2, static_cast<int>(axes.plot.width() / 60.0)))) {
     const double x = axes.x(axes.times.low + time);
     painter.setPen(grid);
     painter.drawLine(QPointF(x, axes.plot.top()), QPointF(x, axes.plot.bottom()));

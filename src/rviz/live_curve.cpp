@@ -66,7 +66,7 @@ LiveCurve::Range LiveCurve::values() const {
   return out;
 }
 
-std::vector<double> ticks(const LiveCurve::Range& range, int most) {
+std::vector<double> axis_ticks(const LiveCurve::Range& range, int most) {
   const double span = range.high - range.low;
   if (!(span > 0.0) || !std::isfinite(span) || most < 1) return {};
   const double power = std::pow(10.0, std::floor(std::log10(span / most)));

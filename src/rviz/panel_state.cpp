@@ -16,7 +16,7 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Of parameters named effect.parameter.
+/// Returns the effects of parameters that are named effect.parameter.
 std::set<std::string> effects_of(const std::vector<std::string>& parameters) {
   std::set<std::string> out;
   for (const std::string& name : parameters) out.insert(name.substr(0, name.find('.')));
@@ -73,7 +73,7 @@ void PanelState::take(const StiffnessEstimate& message) {
   if (!before.empty()) mark_changes(before, effects_of(message.names));
 }
 
-// Whoever changed the running model, its parameters tell.
+// The parameters show which effects changed in the running model, whoever changed them.
 void PanelState::mark_changes(const std::set<std::string>& before, const std::set<std::string>& now) {
   std::string change;
   for (const std::string& effect : now) change += before.count(effect) == 0 ? " + " + effect_title(effect) : "";
@@ -84,7 +84,7 @@ void PanelState::mark_changes(const std::set<std::string>& before, const std::se
   model_changed_ = true;
 }
 
-// One curve, one unit: it changes only when the numbers would read badly.
+// The unit stays while the numbers are easy to read, because a curve has one unit.
 void PanelState::choose_unit(const std::string& name, double mean, const std::string& unit) {
   const double shown = std::abs(scale_ * mean);
   if (name == name_ && shown > 0.05 && shown < 5e4) return;

@@ -20,7 +20,7 @@ double mean_radius(const Eigen::Matrix2Xd& points) {
   return std::sqrt(std::abs(signed_area(points)) / M_PI);
 }
 
-/// A free round finds centre and size; the next ones follow the shape found so far, which need not be round.
+/// The first pass is free and finds centre and size. The next ones follow the shape found so far, which need not be round.
 WallPath trace_from(const cv::Mat& small, Pool pool) {
   WallPath path = trace_wall(small, pool, Eigen::Matrix2Xd(2, 0), 0.0);
   for (const double reach : {0.5, 0.4, 0.3}) {

@@ -14,17 +14,16 @@ constexpr double speckle_decibel = 5.57;    // standard deviation of log-compres
 constexpr double stretch_fraction = 0.045;  // of the outline, over which levels and mean profiles are averaged (Gaussian)
 constexpr double typical_fraction = 0.5;    // of the median contrast that a wall must have; leaflets have less
 constexpr double smallest_contrast = 0.2;   // (wall - pool) / (wall + pool)
-constexpr double doubt = 0.25;              // of the way from half grey to half power: the compression is not known exactly
-constexpr double contrast_floor = 2.0;      // [grey] on top of it
-constexpr double farthest_offset = 0.15;    // of the radius, from the path
-constexpr double smallest_scatter = 0.3;    // [pixel]
-constexpr double largest_scatter = 0.04;    // of the radius
-constexpr Eigen::Index neighbours = 6;      // on each side
-constexpr double shortest_run = 0.04;       // of the outline
+constexpr double doubt = 0.25;  // of the step from half grey to half power, because the compression is not known exactly
+constexpr double contrast_floor = 2.0;    // [grey] on top of it
+constexpr double farthest_offset = 0.15;  // of the radius, from the path
+constexpr double smallest_scatter = 0.3;  // [pixel]
+constexpr double largest_scatter = 0.04;  // of the radius
+constexpr Eigen::Index neighbours = 6;    // on each side
+constexpr double shortest_run = 0.04;     // of the outline
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Where a column first rises through `level`, starting from the crossing nearest to row `start`; negative when it does
-/// not.
+/// Returns where a column rises through `level`, at the crossing nearest to row `start`; it is negative when there is none.
 double crossing(const Eigen::VectorXd& column, double level, Eigen::Index start) {
   double best = -1.0;
   for (Eigen::Index r = 0; r + 1 < column.size(); ++r) {
@@ -36,7 +35,7 @@ double crossing(const Eigen::VectorXd& column, double level, Eigen::Index start)
   return best;
 }
 
-/// Profiles along all normals, one a column, rows from -reach to reach.
+/// Returns the profiles along all normals: one column for each normal, rows from -reach to reach.
 Eigen::MatrixXd profiles_of(const cv::Mat& grey, const Eigen::Matrix2Xd& outline, const Eigen::Matrix2Xd& normals,
                             const Eigen::VectorXd& shift, int reach) {
   Eigen::MatrixXd profiles(2 * reach + 1, outline.cols());
@@ -46,13 +45,13 @@ Eigen::MatrixXd profiles_of(const cv::Mat& grey, const Eigen::Matrix2Xd& outline
   return profiles;
 }
 
-/// What lies on both sides of the outline, averaged over a stretch of it.
+/// Grey levels on both sides of the outline, averaged over a stretch of it.
 struct Surroundings {
   double stretch;            ///< [points] averaging length along the outline
-  int reach, near, far;      ///< [pixel] half length of profiles; where the wall is looked at
+  int reach, near, far;      ///< [pixel] half length of profiles; range in which the wall is evaluated
   Eigen::MatrixXd profiles;  ///< grey, one normal a column, rows from -reach to reach
   Eigen::RowVectorXd pool, wall;
-  Eigen::Array<bool, 1, Eigen::Dynamic> thick;  ///< bright all the way from near to far: no leaflet, no drop-out
+  Eigen::Array<bool, 1, Eigen::Dynamic> thick;  ///< bright everywhere from near to far: no leaflet, no drop-out
 };
 
 Surroundings look_around(const cv::Mat& grey, const Eigen::Matrix2Xd& outline, const Eigen::Matrix2Xd& normals,
@@ -75,12 +74,12 @@ Surroundings look_around(const cv::Mat& grey, const Eigen::Matrix2Xd& outline, c
   for (Eigen::Index i = 0; i < s.wall.size(); ++i) {
     if (s.thick(i)) contrasts.push_back(s.wall(i) - s.pool(i));
   }
-  s.thick = s.thick && (s.wall - s.pool).array() > typical_fraction * median(contrasts);
+  s.thick = s.thick && (s.wall - s.pool).array() > typical_fraction * median_of(contrasts);
   for (int start = s.near; start + part <= s.far; start += part) s.thick = s.thick && mean_from(start) > half.array();
   return s;
 }
 
-/// Grey levels a decibel, from the scatter of thick wall's pixels about the wall's level.
+/// Returns the grey levels per decibel, from the scatter of a thick wall's pixels about the wall's level.
 double grey_per_decibel(const cv::Mat& grey, const Eigen::Matrix2Xd& outline, const Eigen::Matrix2Xd& normals,
                         const Surroundings& s) {
   double sum = 0.0;
@@ -97,7 +96,8 @@ double grey_per_decibel(const cv::Mat& grey, const Eigen::Matrix2Xd& outline, co
   return std::max(std::sqrt(sum / std::max(count, 1)) / speckle_decibel, 0.1);
 }
 
-/// Half way in grey between pool and wall, where that is steep and near the path; neighbours that disagree are dropped.
+/// Finds the midpoint in grey between pool and wall, where the wall is thick and the point is near the path. Points that
+/// disagree with their neighbours are dropped.
 WallEdges half_grey(const Surroundings& s, double radius) {
   const Eigen::Index n = s.profiles.cols();
   WallEdges edges{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Constant(n, infinity)};
@@ -116,9 +116,9 @@ WallEdges half_grey(const Surroundings& s, double radius) {
     for (Eigen::Index k = n - neighbours; k <= n + neighbours; ++k) {
       if (std::isfinite(found.sigma((i + k) % n))) around.push_back(found.offsets((i + k) % n));
     }
-    const double middle = median(around);
+    const double middle = median_of(around);
     for (const double offset : around) distances.push_back(std::abs(offset - middle));
-    const double scatter = std::max(smallest_scatter, 1.4826 * median(distances));
+    const double scatter = std::max(smallest_scatter, 1.4826 * median_of(distances));
     const bool stands_out = std::abs(found.offsets(i) - middle) > 3.0 * scatter || scatter > largest_scatter * radius;
     edges.sigma(i) = stands_out || 2 * around.size() < neighbours ? infinity : scatter;
   }
@@ -126,7 +126,7 @@ WallEdges half_grey(const Surroundings& s, double radius) {
   return edges;
 }
 
-/// The offsets' course along the outline, averaged over a stretch of the known ones.
+/// Averages the offsets along the outline over a stretch, using only the known ones.
 Eigen::VectorXd smooth_known(const WallEdges& edges, double stretch) {
   Eigen::MatrixXd rows(2, edges.offsets.size());
   rows.row(1) = edges.sigma.array().isFinite().cast<double>().transpose();
@@ -135,8 +135,9 @@ Eigen::VectorXd smooth_known(const WallEdges& edges, double stretch) {
   return (rows.row(0).array() / rows.row(1).array().max(1e-9)).transpose();
 }
 
-/// From half grey outwards to half power between the pool and the brightest `width` pixels of one profile averaged over a
-/// stretch: the interface may echo more than the wall behind it, and the pool mixes with the interface.
+/// Returns the distance outwards from half grey to half power, for one profile that is averaged over a stretch. The wall is
+/// the brightest `width` pixels, because the interface may echo more than the wall behind it. The pool mixes with the
+/// interface.
 double advance_to_half_power(const Eigen::VectorXd& profile, double pool, double decibel, int width) {
   double wall = pool;
   for (Eigen::Index r = 0; r + width <= profile.size(); ++r) wall = std::max(wall, profile.segment(r, width).mean());

@@ -14,7 +14,7 @@ constexpr double farthest = 2.4;           // of the pool's radius
 constexpr double stiffness = 0.03;
 constexpr double floor_grey = 8.0;
 
-/// Sums of grey along each ray from the centre: row r holds the sum of samples 0 ... r-1, one pixel apart.
+/// Sums grey along each ray from the centre. Row r holds the sum of samples 0 ... r-1, which are one pixel apart.
 Eigen::MatrixXd ray_sums(const cv::Mat& grey, const Eigen::Vector2d& centre, int length) {
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(length + 1, rays);
   for (int k = 0; k < rays; ++k) {
@@ -22,13 +22,14 @@ Eigen::MatrixXd ray_sums(const cv::Mat& grey, const Eigen::Vector2d& centre, int
     const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
     for (int r = 0; r < length; ++r) {
       const Eigen::Vector2d p = centre + r * direction;
-      sums(r + 1, k) = sums(r, k) + (inside_image(p, grey, 0.0) ? sample(grey, p.x(), p.y()) : 0.0);
+      sums(r + 1, k) = sums(r, k) + (inside_image(p, grey, 0.0) ? sample_bilinear(grey, p.x(), p.y()) : 0.0);
     }
   }
   return sums;
 }
 
-/// Distance from the centre to a closed curve along each ray (the farthest point near it), smoothed.
+/// Returns the smoothed distance from the centre to a closed curve along each ray; it is that of the farthest point near
+/// the ray.
 Eigen::VectorXd radii_of(const Eigen::Matrix2Xd& outline, const Eigen::Vector2d& centre) {
   Eigen::RowVectorXd radii = Eigen::RowVectorXd::Zero(rays);
   for (Eigen::Index i = 0; i < outline.cols(); ++i) {

@@ -21,27 +21,28 @@ struct Ray {
   double radius = 0.0, contrast = 0.0;
 };
 
-/// Along one ray, the place where the next pixels are brightest compared with the mean of all pixels before.
+/// Finds the place along one ray where the next pixels are brightest compared with the mean of all pixels before.
 Ray clearest_wall(const cv::Mat& grey, const cv::Mat& sector, const Eigen::Vector2d& centre,
                   const Eigen::Vector2d& direction) {
   Ray best;
-  double sum = sample(grey, centre.x(), centre.y());
+  double sum = sample_bilinear(grey, centre.x(), centre.y());
   int count = 1;
   const double lowest = smallest_radius * grey.rows, highest = largest_radius * grey.rows;
   for (double r = 2.0; r < highest; r += 2.0) {
     const Eigen::Vector2d p = centre + r * direction, outside = centre + (r + 4.0) * direction;
     if (!inside_image(outside, grey, 1.0)) break;
     if (sector.at<unsigned char>(cvRound(outside.y()), cvRound(outside.x())) == 0) break;
-    const double before = sum / count, after = sample(grey, outside.x(), outside.y());
+    const double before = sum / count, after = sample_bilinear(grey, outside.x(), outside.y());
     const double contrast = (after - before) / (after + before + floor_grey);
     if (r > lowest && contrast > best.contrast) best = {r, contrast};
-    sum += sample(grey, p.x(), p.y());
+    sum += sample_bilinear(grey, p.x(), p.y());
     ++count;
   }
   return best;
 }
 
-/// Convex hull of the largest connected lit part: the scanned sector without labels. Empty when nothing is lit.
+/// Returns the convex hull of the largest connected lit part, which is the scanned sector without labels. It is empty when
+/// nothing is lit.
 std::vector<cv::Point> lit_sector(const cv::Mat& grey) {
   cv::Mat lit = grey > darkest_tissue;
   cv::morphologyEx(lit, lit, cv::MORPH_CLOSE, cv::getStructuringElement(cv::MORPH_ELLIPSE, {9, 9}));

@@ -77,7 +77,7 @@ Eigen::VectorXd normal_profile(const cv::Mat& grey, const Eigen::Vector2d& point
   for (int line = -1; line <= 1; ++line) {
     for (int t = -reach; t <= reach; ++t) {
       const Eigen::Vector2d place = point + t * normal + line * tangent;
-      profile(t + reach) += sample(grey, place.x(), place.y()) / 3.0;
+      profile(t + reach) += sample_bilinear(grey, place.x(), place.y()) / 3.0;
     }
   }
   return profile;

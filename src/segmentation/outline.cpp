@@ -24,7 +24,7 @@ cv::Mat to_grey(const cv::Mat& image) {
   return result;
 }
 
-float sample(const cv::Mat& grey, double u, double v) {
+float sample_bilinear(const cv::Mat& grey, double u, double v) {
   const double x = std::clamp(u, 0.0, static_cast<double>(grey.cols - 1));
   const double y = std::clamp(v, 0.0, static_cast<double>(grey.rows - 1));
   const int x0 = std::min(static_cast<int>(x), grey.cols - 2);
@@ -116,7 +116,7 @@ Eigen::Vector2d centroid(const Eigen::Matrix2Xd& points) {
   return sum / (6.0 * signed_area(points));
 }
 
-double median(std::vector<double> values) {
+double median_of(std::vector<double> values) {
   if (values.empty()) return 0.0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -139,7 +139,8 @@ Eigen::VectorXd curvature(const Eigen::Matrix2Xd& points, double sigma) {
 
 namespace {
 
-/// Open path that starts and ends in given row bounds of the first column; back-pointers give the rows.
+/// Finds the cheapest open path, whose rows are given by back-pointers. With `first_row` >= 0 the path starts there and
+/// ends at most `max_jump` rows from it.
 Eigen::VectorXi minimum_path(const Eigen::MatrixXd& cost, double stiffness, int max_jump, int first_row, double* total) {
   const int rows = static_cast<int>(cost.rows()), columns = static_cast<int>(cost.cols());
   const double infinity = std::numeric_limits<double>::infinity();
@@ -179,7 +180,7 @@ Eigen::VectorXi minimum_path(const Eigen::MatrixXd& cost, double stiffness, int 
 }  // namespace
 
 Eigen::VectorXi closed_minimum_path(const Eigen::MatrixXd& cost, double stiffness, int max_jump) {
-  // An open path over two turns settles in the middle; a second pass is closed through the row it found there.
+  // An open path over two turns settles in the middle. A second pass is closed through the row that was found there.
   const Eigen::Index n = cost.cols(), half = n / 2;
   Eigen::MatrixXd twice(cost.rows(), 2 * n);
   twice << cost, cost;

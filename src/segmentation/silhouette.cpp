@@ -25,7 +25,7 @@ struct Edges {
   double noise = 0.0;  ///< median standard deviation of the profiles about their fits
 };
 
-/// Fits every profile with every blur; the blur with the least median residual is the frame's.
+/// Fits every profile with every blur. The blur with the least median residual is taken for the whole frame.
 Edges fit_edges(const std::vector<StepEdge>& models, const cv::Mat& grey, const Eigen::Matrix2Xd& outline,
                 const Eigen::Matrix2Xd& normals) {
   Eigen::MatrixXd profiles(2 * reach + 1, outline.cols());
@@ -38,7 +38,7 @@ Edges fit_edges(const std::vector<StepEdge>& models, const cv::Mat& grey, const 
     Edges edges{&model, model.fit(profiles), 0.0};
     std::vector<double> residuals;
     for (const EdgeFit& fit : edges.fits) residuals.push_back(fit.residual);
-    const double middle = median(residuals);
+    const double middle = median_of(residuals);
     edges.noise = std::sqrt(middle / model.degrees_of_freedom());
     if (middle < least) least = middle, best = std::move(edges);
   }
@@ -64,8 +64,8 @@ Located locate(const Edges& edges, const cv::Mat& grey, const Eigen::Matrix2Xd& 
   return result;
 }
 
-/// Rejects offsets that stand out from their neighbours' median, then raises every sigma to the scatter about it, which
-/// knows of the texture that a single profile cannot see.
+/// Rejects offsets that deviate from their neighbours' median. Then it raises every sigma to the scatter about this median,
+/// which includes texture that a single profile cannot show.
 void compare_neighbours(Located* located) {
   const Eigen::Index n = located->sigma.size();
   Eigen::VectorXd checked = located->sigma;
@@ -75,9 +75,9 @@ void compare_neighbours(Located* located) {
     for (Eigen::Index k = n - neighbours; k <= n + neighbours; ++k) {
       if (std::isfinite(located->sigma((i + k) % n))) around.push_back(located->offsets((i + k) % n));
     }
-    const double middle = median(around);
+    const double middle = median_of(around);
     for (const double offset : around) distances.push_back(std::abs(offset - middle));
-    const double spread = 1.4826 * median(distances);
+    const double spread = 1.4826 * median_of(distances);
     const double sigma = std::max(located->sigma(i), spread);
     const bool stands_out = std::abs(located->offsets(i) - middle) > 0.3 + 3.0 * sigma;
     checked(i) = stands_out || sigma > largest_sigma ? infinity : std::hypot(sigma, sigma_floor);

@@ -21,8 +21,8 @@ struct SharpOutline {
   double score = 0.0;  ///< mean of s^2 / (s^2 + scale^2), s the sharpness of the fall at each point: 1 all sharp, 0 no edge
 };
 
-/// `outline` moved along its normals, at most `inward` and `outward` pixels, to the sharpest fall of grey value from inside
-/// to outside: falls as wide as shading are discounted, and clear edges (falls over two pixels well above `scale` grey
+/// Moves `outline` along its normals, at most by `inward` and `outward` pixels, to the sharpest fall of grey value from
+/// inside to outside. Falls as wide as shading are discounted. Clear edges (falls over two pixels well above `scale` grey
 /// values) count alike. `stiffness` resists bends.
 SharpOutline sharpest_outline(const cv::Mat& grey, const Eigen::Matrix2Xd& outline, int inward, int outward, double scale,
                               double stiffness) {
@@ -33,7 +33,7 @@ SharpOutline sharpest_outline(const cv::Mat& grey, const Eigen::Matrix2Xd& outli
   for (Eigen::Index i = 0; i < n; ++i) {
     for (Eigen::Index t = 0; t < value.size(); ++t) {
       const Eigen::Vector2d p = outline.col(i) + static_cast<double>(t - inward - shading_width - 1) * normals.col(i);
-      value(t) = sample(grey, p.x(), p.y());
+      value(t) = sample_bilinear(grey, p.x(), p.y());
     }
     fall = (value.head(fall.size()) - value.tail(fall.size())).cwiseMax(0.0);
     // A fall that goes on for several pixels on either side is shading, not an edge.
@@ -51,7 +51,8 @@ SharpOutline sharpest_outline(const cv::Mat& grey, const Eigen::Matrix2Xd& outli
   return moved;
 }
 
-/// The ellipse with the area and the second moments of the enclosed region: smooth where shading cuts a piece off a body.
+/// Returns the ellipse with the area and the second moments of the enclosed region. It is smooth where shading cuts a piece
+/// off a body.
 Eigen::Matrix2Xd moment_ellipse(const Eigen::Matrix2Xd& outline) {
   std::vector<cv::Point2f> border;
   for (Eigen::Index i = 0; i < outline.cols(); ++i) {
@@ -72,7 +73,7 @@ Eigen::Matrix2Xd moment_ellipse(const Eigen::Matrix2Xd& outline) {
   return points;
 }
 
-/// Searches a wide band around `start`, then narrower ones around what was found.
+/// Searches a wide band around `start`, and then narrower ones around the result.
 SharpOutline settle(const cv::Mat& smooth, const Eigen::Matrix2Xd& start, double scale, double spacing) {
   Eigen::Matrix2Xd outline = resample(smooth_closed(resample(start, spacing), 2.0), spacing);
   const int wide = std::max(band, static_cast<int>(wide_band * std::sqrt(std::abs(signed_area(outline)))));

@@ -15,7 +15,7 @@ constexpr double smallest_area = 0.003, largest_area = 0.8;  // of the image
 
 using Border = std::vector<cv::Point>;
 
-/// Mean gradient along the border; pixels at the image's edge count as none.
+/// Returns the mean gradient along the border; pixels at the image's edge count as zero.
 double border_gradient(const Border& border, const cv::Mat& gradient) {
   double sum = 0.0;
   for (const cv::Point& p : border) {
@@ -25,7 +25,7 @@ double border_gradient(const Border& border, const cv::Mat& gradient) {
   return sum / static_cast<double>(border.size());
 }
 
-/// Shared area over joint area of a border's inside and a mask.
+/// Returns the shared area of a border's inside and a mask over their joint area.
 double overlap(const Border& border, const cv::Mat& mask) {
   cv::Mat inside = cv::Mat::zeros(mask.size(), CV_8U);
   cv::fillPoly(inside, std::vector<Border>{border}, 255);

@@ -18,7 +18,7 @@ std::string shown(const Eigen::Vector3d& v) {
   return "[" + shown(v.x()) + ", " + shown(v.y()) + ", " + shown(v.z()) + "]";
 }
 
-// In quotes where YAML may read anything but this text.
+// Puts the text in quotes where YAML might read something else than this text.
 std::string shown(const std::string& text) {
   const auto harmless = [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.' || c == '/';
@@ -37,7 +37,7 @@ Value vector(const Eigen::Vector3d& v, const std::string& path) {
   return Value::list({number(v.x(), path), number(v.y(), path), number(v.z(), path)}, path);
 }
 
-// How the value and the spread of a prior are called.
+// Names the keys of a prior's value and spread.
 std::pair<const char*, const char*> names(const Quantity& prior) {
   return prior.kind == Quantity::Kind::log_normal ? std::make_pair("prior", "factor") : std::make_pair("mean", "std");
 }
@@ -87,15 +87,15 @@ bool Argument::is(const std::string& text) const {
   return own != nullptr && *own == text;
 }
 
-Quantity normal(double mean, double std) {
+Quantity normal_prior(double mean, double std) {
   return {Quantity::Kind::normal, mean, std};
 }
 
-VectorPrior normal(const Eigen::Vector3d& mean, double std) {
+VectorPrior normal_prior(const Eigen::Vector3d& mean, double std) {
   return {mean, std};
 }
 
-Quantity log_normal(double median, double factor) {
+Quantity log_normal_prior(double median, double factor) {
   return {Quantity::Kind::log_normal, median, factor};
 }
 

@@ -9,7 +9,7 @@
 namespace tissue_stiffness {
 namespace {
 
-// `file` keys, wherever they are: the mesh's, a course's.
+// Makes the paths of all `file` keys absolute, at any depth: that of the mesh, those of courses.
 void make_absolute(YAML::Node node, const std::string& directory) {
   if (node.IsSequence()) {
     for (YAML::Node item : node) make_absolute(item, directory);

@@ -11,7 +11,7 @@
 namespace tissue_stiffness {
 namespace {
 
-/// `- name: {...}`, or `- name` for an effect without keys.
+/// An entry is `- name: {...}`, or `- name` for an effect without keys.
 EffectSettings read_effect(const Value& entry) {
   EffectSettings effect;
   if (entry.type() == Value::Type::text) {
@@ -82,7 +82,7 @@ void check_regions(const ModelSettings& model, const Value& observations) {
     const std::string& region = model.observations[i].region;
     if (region.empty() || std::find(names.begin(), names.end(), region) != names.end()) continue;
     throw InputError(observations.items()[i].at("contour").at("region").path(),
-                     "`" + region + "`" + did_you_mean(region, names), "the regions of this model: " + join(names));
+                     "`" + region + "`" + did_you_mean(region, names), "the regions of this model: " + join_words(names));
   }
 }
 

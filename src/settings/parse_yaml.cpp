@@ -12,7 +12,7 @@
 namespace tissue_stiffness {
 namespace {
 
-// Aliases can make a short file endlessly deep or exponentially large.
+// YAML aliases can make a short file endlessly deep or exponentially large.
 constexpr int deepest = 50;
 constexpr int most_values = 1000000;
 
@@ -20,7 +20,7 @@ class Converter {
  public:
   explicit Converter(std::string name) : name_(std::move(name)) {}
 
-  /// `line`: of the key, for a block map that starts on the line below; `key`: "effects[1].elasticity".
+  /// `line` is the line of the key, because a block map starts on the line below. `key` is e.g. "effects[1].elasticity".
   Value convert(const YAML::Node& node, int line, const std::string& key, int depth) {
     const std::string path = key.empty() ? name_ : name_ + ":" + std::to_string(line + 1) + ": " + key;
     if (depth > deepest) throw InputError(path, "more than " + std::to_string(deepest) + " levels", "less nesting");

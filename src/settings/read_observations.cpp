@@ -53,7 +53,7 @@ ObservationSettings read_observation(const Value& entry) {
   const std::vector<std::string> keys = entry.keys();
   std::vector<std::string> names;
   for (const auto& kind : kinds) names.push_back(kind.first);
-  if (keys.size() != 1) throw InputError(entry.path(), entry.shown(), "one observation an entry: " + join(names));
+  if (keys.size() != 1) throw InputError(entry.path(), entry.shown(), "one observation an entry: " + join_words(names));
   ObservationSettings observation;
   bool known = false;
   for (const auto& kind : kinds) {
@@ -62,7 +62,7 @@ ObservationSettings read_observation(const Value& entry) {
     known = true;
   }
   const Value& map = entry.at(keys.front());
-  if (!known) throw InputError(map.path(), "`" + keys.front() + "`" + did_you_mean(keys.front(), names), join(names));
+  if (!known) throw InputError(map.path(), "`" + keys.front() + "`" + did_you_mean(keys.front(), names), join_words(names));
   if (observation.kind == Kind::contour) {
     read_contour(map, observation);
   } else {

@@ -6,7 +6,7 @@
 namespace tissue_stiffness {
 namespace {
 
-/// Insertions, deletions, substitutions and swaps of neighbours that turn a into b.
+/// Counts the insertions, deletions, substitutions and swaps of neighbours that turn a into b.
 int alignment_distance(const std::string& a, const std::string& b) {
   const auto rows = static_cast<Eigen::Index>(a.size()), columns = static_cast<Eigen::Index>(b.size());
   Eigen::MatrixXi d(rows + 1, columns + 1);
@@ -27,7 +27,7 @@ int alignment_distance(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-std::string closest(const std::string& word, const std::vector<std::string>& candidates) {
+std::string closest_word(const std::string& word, const std::vector<std::string>& candidates) {
   std::string best;
   int best_distance = std::max(1, static_cast<int>(word.size()) / 3) + 1;
   for (const std::string& candidate : candidates) {
@@ -40,14 +40,14 @@ std::string closest(const std::string& word, const std::vector<std::string>& can
   return best;
 }
 
-std::string join(const std::vector<std::string>& words) {
+std::string join_words(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
   return text.empty() ? "nothing" : text;
 }
 
 std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates) {
-  const std::string near = closest(word, candidates);
+  const std::string near = closest_word(word, candidates);
   return near.empty() ? "" : " (did you mean `" + near + "`?)";
 }
 

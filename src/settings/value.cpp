@@ -17,7 +17,7 @@ std::string shortened(std::string text) {
   return text.substr(0, shown_length - 3) + "...";
 }
 
-/// Fewest digits that read back as the same number.
+/// Writes the fewest digits that read back as the same number.
 std::string shown_number(double value) {
   char text[32];
   for (int digits = 6; digits <= 17; ++digits) {
@@ -129,7 +129,7 @@ const Value& Value::at(const std::string& key) const {
     entry.second.read_ = true;
     return entry.second;
   }
-  const std::string present = entries_.empty() ? "" : " among " + join(keys()) + did_you_mean(key, keys());
+  const std::string present = entries_.empty() ? "" : " among " + join_words(keys()) + did_you_mean(key, keys());
   throw InputError(path_, "no key `" + key + "`" + present, "`" + key + "` is required here");
 }
 
@@ -154,7 +154,7 @@ void Value::require_all_read() const {
       allowed.erase(std::remove(allowed.begin(), allowed.end(), entry.first), allowed.end());
       std::sort(allowed.begin(), allowed.end());
       throw InputError(entry.second.path_, "an unknown key `" + entry.first + "`" + did_you_mean(entry.first, allowed),
-                       allowed.empty() ? "no keys" : join(allowed));
+                       allowed.empty() ? "no keys" : join_words(allowed));
     }
     entry.second.require_all_read();
   }

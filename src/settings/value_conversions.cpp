@@ -17,7 +17,7 @@ std::string shown(double value) {
 
 std::string range_text(double lower, double upper, const std::string& unit) {
   std::string text = "a number";
-  const bool positive = lower > 0.0 && lower <= smallest;  // the way to ask for a number greater than zero
+  const bool positive = lower > 0.0 && lower <= smallest;  // this requires a number greater than zero
   if (positive) {
     text += " > 0";
   } else if (lower > -infinity) {
@@ -72,7 +72,7 @@ std::string Value::as_choice(const std::vector<std::string>& allowed) const {
   for (const std::string& choice : allowed) {
     if (type_ == Type::text && text_ == choice) return choice;
   }
-  throw InputError(path_, shown() + (type_ == Type::text ? did_you_mean(text_, allowed) : ""), join(allowed));
+  throw InputError(path_, shown() + (type_ == Type::text ? did_you_mean(text_, allowed) : ""), join_words(allowed));
 }
 
 Eigen::Vector3d Value::as_vector3(const std::string& unit) const {

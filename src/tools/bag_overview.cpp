@@ -60,7 +60,7 @@ void add_transforms(const rosbag::MessageInstance& message, BagOverview& out) {
   }
 }
 
-/// One pass: a compressed bag is slow to read.
+/// Reads all topics in one pass, because a compressed bag is slow to read.
 void read(const rosbag::Bag& bag, const std::vector<std::string>& topics, BagOverview& out) {
   std::map<std::string, std::size_t> strides, come;
   for (const std::string& topic : topics) {

@@ -106,7 +106,7 @@ std::vector<std::string> BagReader::topics() const {
   return out;
 }
 
-// Ahead of everything else: a latched message may have been recorded after the first frames.
+// Static poses are read first, because a latched message may have been recorded after the first frames.
 void BagReader::read_static_poses() {
   rosbag::View messages(bag_, rosbag::TopicQuery("/tf_static"));
   for (const rosbag::MessageInstance& message : messages) add_poses(message, true);
@@ -263,7 +263,7 @@ std::vector<double> BagReader::picture_stamps() const {
   return out;
 }
 
-// The message of the image's own stamp; otherwise the last one before, or the first one after it.
+// Returns the message with the image's stamp. Otherwise it returns the last one before, or else the first one after it.
 sensor_msgs::CameraInfoConstPtr BagReader::camera_info(const std::string& topic, const ros::Time& stamp) const {
   const auto known = cameras_.find(topic);
   if (known == cameras_.end()) {

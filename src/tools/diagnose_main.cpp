@@ -32,13 +32,14 @@ std::string read_text(const std::string& file) {
 
 using namespace tissue_stiffness;
 
-/// What an estimator makes of the last model; of one that is integrated in full what the fit made of it: that would take as
-/// long as the diagnosis.
-Estimate estimate_at_last(const Diagnosis& diagnosis, const Fitted& given, const Fitted& last, const Study* finer) {
-  if (last.study->model().nonlinear()) return diagnosis.estimate;
-  const Recording& recording = given.study->recording();
-  const Model& model = given.study->model();
-  const Relatives relatives{last.study->reduced().get(), finer != nullptr ? finer->reduced().get() : nullptr};
+/// Returns an estimator's result for the last model. For a model that is integrated in full it returns the fit's result,
+/// because the estimator would take as long as the diagnosis.
+Estimate estimate_at_last(const Diagnosis& diagnosis, const FittedModel& given, const FittedModel& last,
+                          const RecordingFit* finer) {
+  if (last.recording_fit->model().nonlinear()) return diagnosis.estimate;
+  const Recording& recording = given.recording_fit->recording();
+  const Model& model = given.recording_fit->model();
+  const ReuseSources relatives{last.recording_fit->reduced().get(), finer != nullptr ? finer->reduced().get() : nullptr};
   Estimator estimator(extend_model(model.settings(), diagnosis.entries), model.mesh(), relatives);
   estimator.set_first_stamp(recording.first_stamp);
   for (const LoadSample& load : recording.loads) estimator.add_load(load);
@@ -46,7 +47,7 @@ Estimate estimate_at_last(const Diagnosis& diagnosis, const Fitted& given, const
   return estimator.estimate();
 }
 
-/// What was found is kept where a last run of it fails, as with a prior that reaches into the impossible.
+/// Keeps the results if a final run fails, as with a prior that reaches impossible values.
 void try_run(const std::string& what, const std::function<void()>& run) {
   try {
     run();
@@ -55,11 +56,11 @@ void try_run(const std::string& what, const std::function<void()>& run) {
   }
 }
 
-/// What the report shows beyond the diagnosis: the estimate, and the free runs of the given model and, where effects were
-/// added, the last one's.
-void run_once_more(Diagnosis& diagnosis, Fitted& given, Fitted& last, const Study* finer, const std::vector<double>& stamps,
-                   std::vector<Replay>& replays) {
-  const auto replay = [&](Fitted& fitted, const std::string& name) {
+/// Computes what the report shows beyond the diagnosis: the estimate, and the free runs of the given model and of the last
+/// one, if effects were added.
+void run_once_more(Diagnosis& diagnosis, FittedModel& given, FittedModel& last, const RecordingFit* finer,
+                   const std::vector<double>& stamps, std::vector<Replay>& replays) {
+  const auto replay = [&](FittedModel& fitted, const std::string& name) {
     Replay out = replay_model(fitted, stamps);
     out.name = name;
     return out;
@@ -117,7 +118,7 @@ int main(int argc, char** argv) {
       progress.show("read the recording");
       const Recording recording = read_recording(reader, settings, texts.recording);
       showing = {recording.first_stamp, {}, reader.reader().pictures()};
-      options.at_end = [&](Diagnosis& found, Fitted& given, Fitted& last, const Study* finer) {
+      options.at_end = [&](Diagnosis& found, FittedModel& given, FittedModel& last, const RecordingFit* finer) {
         run_once_more(found, given, last, finer, reader.reader().picture_stamps(), showing.replays);
       };
       diagnosis = diagnose(settings, reader.mesh(), recording, options);

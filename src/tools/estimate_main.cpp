@@ -6,6 +6,7 @@
 #include "tissue_stiffness/tools/progress.hpp"
 #include "tissue_stiffness/tools/run_tool.hpp"
 #include "tissue_stiffness/tools/stop_on_signals.hpp"
+#include "tissue_stiffness/types/error.hpp"
 
 namespace {
 

@@ -47,7 +47,7 @@ FrameRecord record_of(const Instant& instant, const StepResult& step) {
   return record;
 }
 
-/// Sum of the squared noise that the model file states, over rows.
+/// Sum of the squared noise, as stated in the model file, over rows.
 struct NoiseSum {
   double sum = 0.0;
   double rows = 0.0;
@@ -62,7 +62,7 @@ struct NoiseSum {
   }
 };
 
-/// One run: frames in, records out.
+/// One run, which turns frames into records.
 class Run {
  public:
   Run(const ModelSettings& settings, RecordingReader& recording, const StopRequest& stop)
@@ -71,7 +71,7 @@ class Run {
     if (settings.map) require_map(Model(settings, recording.mesh()));
   }
 
-  /// Whether the frame was used; otherwise `reason` says why not.
+  /// Returns whether the frame was used; otherwise `reason` says why not.
   bool step(const Instant& instant, std::string& reason) {
     for (const LoadSample& sample : instant.loads) estimator_.add_load(sample);
     if (settings_.map) loads_.insert(loads_.end(), instant.loads.begin(), instant.loads.end());

@@ -10,7 +10,7 @@ ExitCode exit_code(const Results& results) {
 
 ExitCode exit_code(const Diagnosis& diagnosis) {
   if (!diagnosis.interrupted.empty()) return ExitCode::interrupted;
-  return diagnosis.final_verdict == "unexplained" ? ExitCode::not_to_be_used : ExitCode::answered;
+  return diagnosis.final_verdict == Verdict::unexplained ? ExitCode::not_to_be_used : ExitCode::answered;
 }
 
 const char* const exit_code_help =

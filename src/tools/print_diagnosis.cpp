@@ -20,9 +20,10 @@ std::string line(const char* pattern, const std::string& name, double a, double 
   return out;
 }
 
-std::string painted(const std::string& verdict, const Paint& paint) {
-  if (verdict == "adequate") return paint.good(verdict);
-  return verdict == "missing" || verdict == "unfinished" ? paint.warning(verdict) : paint.bad(verdict);
+std::string painted(Verdict verdict, const Paint& paint) {
+  const std::string name = to_string(verdict);
+  if (verdict == Verdict::adequate) return paint.good(name);
+  return verdict == Verdict::missing || verdict == Verdict::unfinished ? paint.warning(name) : paint.bad(name);
 }
 
 }  // namespace

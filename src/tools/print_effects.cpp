@@ -36,7 +36,7 @@ std::string sentence(std::string text) {
   return text + ".";
 }
 
-/// A cell of a table must not hold the table's own mark.
+/// Escapes the mark of a table, which a cell must not hold.
 std::string cell(std::string text) {
   for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, "\\");
   return text;

@@ -18,7 +18,7 @@ void read_size(const Value& map, Camera& camera) {
   camera.height = size.items()[1].as_integer(16, 16384);
 }
 
-/// Columns: x and y are made perpendicular to z and each other, starting from y.
+/// Returns a frame whose columns x and y are perpendicular to z and each other, starting from y.
 Eigen::Matrix3d frame_of(const Eigen::Vector3d& y, const Eigen::Vector3d& z, const Value& where) {
   Eigen::Matrix3d rotation;
   const Eigen::Vector3d x = y.cross(z);

@@ -5,7 +5,7 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
-#include "tissue_stiffness/forward/closest_point.hpp"
+#include "tissue_stiffness/observation/closest_point.hpp"
 #include "tissue_stiffness/tools/render.hpp"
 
 namespace tissue_stiffness {
@@ -15,7 +15,7 @@ constexpr int kSuper = 4;  // samples a pixel in each direction
 constexpr double kAmbient = 95.0, kLit = 85.0, kTexture = 14.0;
 constexpr double kBackground = 60.0, kClouds = 14.0, kFloor = 95.0;
 
-/// Smooth random field of unit variance: octaves of coarse noise, enlarged.
+/// Returns a smooth random field of unit variance, which is a sum of octaves of enlarged coarse noise.
 cv::Mat cloudy(int width, int height, cv::RNG& random) {
   cv::Mat sum = cv::Mat::zeros(height, width, CV_32F);
   double variance = 0.0, weight = 1.0;
@@ -29,7 +29,7 @@ cv::Mat cloudy(int width, int height, cv::RNG& random) {
   return sum / std::sqrt(variance);
 }
 
-/// Pattern fixed to the body: waves in random directions of the rest position.
+/// Pattern that is fixed to the body. It consists of waves in random directions of the rest position.
 class Texture {
  public:
   Texture(double size, cv::RNG& random) {
@@ -98,7 +98,7 @@ class CameraRenderer : public Renderer {
   }
 
  private:
-  // The plane's near edge, at the depth of the body's centre.
+  // Draws the plane's near edge, at the depth of the body's centre.
   void draw_floor(const Plane& plane, const Eigen::Vector3d& centre) {
     const Camera& camera = scene_.camera;
     const double depth = (camera.model_from_sensor.inverse() * centre).z();
@@ -127,7 +127,7 @@ class CameraRenderer : public Renderer {
     return out;
   }
 
-  // Barycentric rasterisation with a depth buffer.
+  // Fills a triangle by barycentric rasterisation with a depth buffer.
   void fill(const Eigen::Vector3i& nodes, const Eigen::Matrix3Xd& local, const Eigen::VectorXd& shade, cv::Mat& grey,
             cv::Mat& depth) const {
     Eigen::Matrix<double, 2, 3> p;

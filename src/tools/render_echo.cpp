@@ -3,8 +3,8 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "tissue_stiffness/forward/closest_point.hpp"
 #include "tissue_stiffness/meshing/refine.hpp"
+#include "tissue_stiffness/observation/closest_point.hpp"
 #include "tissue_stiffness/tools/render.hpp"
 
 namespace tissue_stiffness {
@@ -17,7 +17,7 @@ constexpr double kWall = 150.0, kPool = 14.0, kSurroundings = 45.0, kLost = 0.25
 class EchoRenderer : public Renderer {
  public:
   EchoRenderer(const Model& model, const ObservationSettings& observation, const ImageScene& scene, std::uint64_t seed)
-      : scene_(scene), seed_(seed), tets_(refine(model.mesh()).tets.topRows(4)) {  // linear pieces between all nodes
+      : scene_(scene), seed_(seed), tets_(refine_mesh(model.mesh()).tets.topRows(4)) {  // linear pieces between all nodes
     const auto region = model.regions().find(observation.region);
     const SurfaceTriangles surface =
         region == model.regions().end() ? split_facets(model.mesh()) : split_facets(model.mesh(), region->second.facets);
@@ -74,7 +74,7 @@ class EchoRenderer : public Renderer {
             static_cast<int>(std::lround(scale * (kSuper * (v + 0.5) - 0.5)))};
   }
 
-  /// Where the plane z = 0 cuts the edges between the nodes.
+  /// Returns the points where the plane z = 0 cuts the edges between the nodes.
   template <typename Nodes>
   std::vector<cv::Point> cut(const Nodes& nodes, const Eigen::Matrix3Xd& local) const {
     std::vector<cv::Point> points;
@@ -97,7 +97,7 @@ class EchoRenderer : public Renderer {
     cv::fillConvexPoly(mask, polygon, cv::Scalar(255), cv::LINE_8, kShift);
   }
 
-  // The pool is closed where the wall is open: the hull of the cavity's outline.
+  // The pool is the hull of the cavity's outline, so it is closed where the wall is open.
   void fill_pool(const Eigen::Matrix3Xd& local, cv::Mat& mask) const {
     std::vector<cv::Point> outline, hull;
     for (Eigen::Index t = 0; t < triangles_.cols(); ++t) {
@@ -108,7 +108,7 @@ class EchoRenderer : public Renderer {
     cv::fillConvexPoly(mask, hull, cv::Scalar(255), cv::LINE_8, kShift);
   }
 
-  // Log-compressed Rayleigh speckle, wider across the beam than along it, mean 1.
+  // Returns log-compressed Rayleigh speckle with mean 1, wider across the beam than along it.
   cv::Mat speckle(int frame) const {
     cv::RNG random(seed_ + 1000003u * (1 + static_cast<std::uint64_t>(frame)));
     cv::Mat real(gain_.size(), CV_32F), imaginary(gain_.size(), CV_32F), magnitude;

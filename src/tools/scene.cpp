@@ -69,7 +69,7 @@ Scene load_scene(const std::string& file) {
   const Value root = load_yaml(file);
   const std::size_t slash = file.find_last_of('/');
   const std::string directory = slash == std::string::npos ? "." : file.substr(0, slash);
-  const Value simulation = root.at("simulation");  // copied unread: the model, which says what to look for, is read first
+  const Value simulation = root.at("simulation");  // copied unread: the model is read first, because it determines the keys
   root.at("simulation").mark_read_deep();
   Scene scene;
   scene.model = read_model(root, directory);

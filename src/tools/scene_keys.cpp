@@ -10,7 +10,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kPositive = std::numeric_limits<double>::min();
 constexpr int kMost = std::numeric_limits<int>::max();
 
-// Below `simulation`.
+// These functions make keys below `simulation`.
 KeySpec number(const std::string& path, const std::string& unit, double lower, double upper, double value,
                const std::string& meaning) {
   return number_key("simulation." + path, unit, lower, upper, value, meaning);

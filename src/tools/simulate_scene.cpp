@@ -7,11 +7,11 @@
 #include <random>
 #include <set>
 
-#include "tissue_stiffness/forward/closest_point.hpp"
 #include "tissue_stiffness/forward/full_model.hpp"
-#include "tissue_stiffness/forward/observation_operator.hpp"
 #include "tissue_stiffness/meshing/build_mesh.hpp"
 #include "tissue_stiffness/meshing/refine.hpp"
+#include "tissue_stiffness/observation/closest_point.hpp"
+#include "tissue_stiffness/observation/observation_operator.hpp"
 #include "tissue_stiffness/tools/recording_writer.hpp"
 #include "tissue_stiffness/tools/render.hpp"
 #include "tissue_stiffness/types/error.hpp"
@@ -34,11 +34,11 @@ TetMesh refined_mesh(const Scene& scene) {
     }
   }
   TetMesh mesh = build_mesh(scene.model.mesh);
-  for (int i = 0; i < scene.refine; ++i) mesh = refine(mesh);
+  for (int i = 0; i < scene.refine; ++i) mesh = refine_mesh(mesh);
   return mesh;
 }
 
-/// Vertices of the unrefined mesh that a sensor follows. Refinement keeps their numbers.
+/// Returns the vertices of the unrefined mesh that a sensor follows. Refinement keeps their numbers.
 Eigen::VectorXi followed_vertices(const Scene& scene, const SensorScene& sensor) {
   std::vector<int> ids = sensor.vertices;
   if (ids.empty()) {
@@ -55,7 +55,7 @@ Eigen::VectorXi followed_vertices(const Scene& scene, const SensorScene& sensor)
   return Eigen::Map<Eigen::VectorXi>(ids.data(), static_cast<Eigen::Index>(ids.size()));
 }
 
-/// The displacement with every surface node moved outward by what surface sensors see beside it.
+/// Returns the displacement with every surface node moved outward by the surface sensors' offset.
 Eigen::VectorXd swollen(const ObservedMotion& motion) {
   Eigen::VectorXd u = motion.displacement;
   if (motion.outward == 0.0) return u;
@@ -118,7 +118,7 @@ class Sensor {
   }
 
  private:
-  /// Of this frame: in time an autoregression with coefficient `memory`, of the same variance in every frame.
+  /// Returns the noise of this frame. In time it is an autoregression with coefficient `memory` and a constant variance.
   Eigen::Matrix3Xd noise(Eigen::Index count) {
     Eigen::Matrix3Xd fresh(3, count);
     for (Eigen::Index i = 0; i < fresh.size(); ++i) fresh.data()[i] = scene_.noise * normal_(random_);
@@ -132,7 +132,7 @@ class Sensor {
 
   Observation seen() const {
     Observation observation;
-    observation.kind = observation_.kind == Kind::vertices ? ObservationKind::vertices : ObservationKind::markers;
+    observation.kind = observation_.kind;
     observation.points = Eigen::Matrix3Xd::Zero(3, ids_.size());
     observation.ids = ids_;
     return observation;
@@ -143,7 +143,7 @@ class Sensor {
     return Eigen::Map<const Eigen::Matrix3Xd>(prediction.predicted.data(), 3, ids_.size());
   }
 
-  /// Points spread evenly over the surface.
+  /// Returns points that are spread evenly over the surface.
   Eigen::Matrix3Xd sampled(const Eigen::VectorXd& u) {
     const Eigen::Matrix3Xd x = model_.mesh().nodes + Eigen::Map<const Eigen::Matrix3Xd>(u.data(), 3, u.size() / 3);
     const SurfaceTriangles triangles = split_facets(model_.mesh());
@@ -182,7 +182,7 @@ void require_known(const Scene& scene, const Model& model) {
                    "known numbers only: a scene is the truth");
 }
 
-/// The loads act as they are; what is published may be noisy.
+/// The exact loads act, while the published ones may be noisy.
 void drive(const Scene& scene, Model& model) {
   model.set_first_stamp(kFirstStamp.toSec());
   for (const LoadScene& load : scene.loads) {

@@ -12,7 +12,7 @@
 #include "tissue_stiffness/check/check_images.hpp"
 #include "tissue_stiffness/check/check_motion.hpp"
 #include "tissue_stiffness/check/rigid_fit.hpp"
-#include "tissue_stiffness/estimation/ensemble.hpp"
+#include "tissue_stiffness/fit/ensemble.hpp"
 
 namespace tissue_stiffness {
 namespace {

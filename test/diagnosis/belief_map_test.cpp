@@ -1,4 +1,5 @@
-// Where and when a model is valid: an error that is put into one part and one third is found there, and nowhere else.
+// The map shows where and when a model is valid: an error that is put into one part and one third is found there, and
+// nowhere else.
 #include "tissue_stiffness/diagnosis/belief_map.hpp"
 
 #include <gtest/gtest.h>
@@ -26,11 +27,11 @@ TEST(BeliefMap, ShowsWhereAndWhenAModelFails) {
   const Experiment experiment(settings, bar_mesh(), {20e3});
   Recording recording;
   recording.frames = see_all(experiment, experiment.film(0.0, 0.02, 30), kNoise, 1);
-  Fitted model;
-  model.study = std::make_unique<Study>(settings, bar_mesh(), recording);
-  const Model& body = model.study->model();
-  model.fit = model.study->fit(body.prior_mean(), 0.1 * body.prior_std());
-  model.rows = model.study->rows(model.fit.w);
+  FittedModel model;
+  model.recording_fit = std::make_unique<RecordingFit>(settings, bar_mesh(), recording);
+  const Model& body = model.recording_fit->model();
+  model.fit = model.recording_fit->fit(body.prior_mean(), 0.1 * body.prior_std());
+  model.rows = model.recording_fit->rows(model.fit.w);
   const ModelComparison comparison(model, Eigen::VectorXd::Zero(model.rows.error.size()));
 
   const BeliefMap clean = belief_map(model, model.rows.error, comparison);

@@ -1,4 +1,4 @@
-// Recordings of a bar with something hidden: the diagnosis names it, proves it, and is silent where nothing is.
+// In recordings of a bar with something hidden the diagnosis names it, proves it, and is silent where nothing is.
 #include "tissue_stiffness/diagnosis/diagnose.hpp"
 
 #include <gtest/gtest.h>
@@ -8,9 +8,10 @@
 
 #include "../box_model.hpp"
 #include "tissue_stiffness/diagnosis/finding.hpp"
-#include "tissue_stiffness/diagnosis/first_look.hpp"
+#include "tissue_stiffness/diagnosis/screening.hpp"
 #include "tissue_stiffness/forward/full_model.hpp"
 #include "tissue_stiffness/settings/extend_model.hpp"
+#include "tissue_stiffness/types/error.hpp"
 #include "verification/experiment.hpp"
 
 namespace tissue_stiffness {
@@ -39,7 +40,7 @@ Diagnosis diagnose_bar(const Recording& recording, const DiagnosisOptions& optio
 TEST(Diagnose, FindsNothingWhereNothingIsMissing) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     const Diagnosis d = diagnose_bar(film({}, seed), {});
-    EXPECT_EQ(d.verdict, "adequate") << seed;
+    EXPECT_EQ(d.verdict, Verdict::adequate) << seed;
     EXPECT_TRUE(d.set.empty());
     EXPECT_NEAR(d.steps.front().parameters.at("elasticity.young_modulus") / kTruth, 1.0, 0.01);
   }
@@ -48,35 +49,35 @@ TEST(Diagnose, FindsNothingWhereNothingIsMissing) {
 TEST(Diagnose, NamesHiddenDampingAndAddsIt) {
   DiagnosisOptions options;
   options.automatic = true;
-  bool added = false, looks_again = false;
+  bool added = false;
   options.progress = [&](const std::string& what, std::size_t, std::size_t) {
     added = added || what == "add viscous_damping";
-    looks_again = looks_again || (added && what.rfind("tangents", 0) == 0);
   };
   const Diagnosis d = diagnose_bar(film({"viscous_damping: {beta: 6.0e-3}"}, 1), options);
   EXPECT_TRUE(added);
-  EXPECT_FALSE(looks_again) << "what the damping leaves is noise";
-  EXPECT_EQ(d.verdict, "missing");
+  EXPECT_EQ(d.verdict, Verdict::missing);
   EXPECT_NE(std::find(d.set.begin(), d.set.end(), "viscous_damping"), d.set.end());
   ASSERT_GE(d.steps.size(), 2U);
   EXPECT_LT(d.steps.back().held_out_rms, 0.2 * d.steps.front().held_out_rms);
   EXPECT_LT(d.steps.back().held_out_rms, 1.1 * d.steps.back().noise_floor);
   EXPECT_NEAR(d.steps.back().parameters.at("elasticity.young_modulus") / kTruth, 1.0, 0.02);
-  EXPECT_EQ(d.final_verdict, "adequate");
+  EXPECT_EQ(d.final_verdict, Verdict::adequate);
 }
 
 // A larger model that finds another minimum shows the given one where to start: nothing is missing there.
 TEST(Diagnose, StartsTheGivenModelWhereARefitEnds) {
   const Recording recording = film({}, 1);
-  Fitted base;
-  base.study = std::make_unique<Study>(box_settings(bar("{prior: 35.0e3, factor: 3}")), bar_mesh(), recording);
-  base.fit = base.study->fit(base.study->model().prior_mean(), 0.1 * base.study->model().prior_std());
-  base.rows = base.study->rows(base.fit.w);
-  EXPECT_FALSE(look(base, {}, {}).base_moved);
+  FittedModel base;
+  base.recording_fit =
+      std::make_unique<RecordingFit>(box_settings(bar("{prior: 35.0e3, factor: 3}")), bar_mesh(), recording);
+  base.fit =
+      base.recording_fit->fit(base.recording_fit->model().prior_mean(), 0.1 * base.recording_fit->model().prior_std());
+  base.rows = base.recording_fit->rows(base.fit.w);
+  EXPECT_FALSE(diagnose_once(base, {}, {}).base_moved);
   base.fit.w[0] = std::log(1.25 * kTruth);
-  base.rows = base.study->rows(base.fit.w);
+  base.rows = base.recording_fit->rows(base.fit.w);
   base.fit.cost = base.rows.error.squaredNorm();
-  const Finding finding = look(base, {}, {});
+  const Finding finding = diagnose_once(base, {}, {});
   EXPECT_TRUE(finding.base_moved);
   EXPECT_NEAR(std::exp(base.fit.w[0]) / kTruth, 1.0, 0.01);
   EXPECT_EQ(finding.verdict, Verdict::adequate);
@@ -88,20 +89,21 @@ TEST(Diagnose, DoesNotLookForWhatItIsToldToIgnore) {
   options.ignore = {"viscous_damping", "mass_damping", "viscoelasticity"};
   options.automatic = true;
   const Diagnosis d = diagnose_bar(film({"viscous_damping: {beta: 6.0e-3}"}, 1), options);
-  EXPECT_EQ(d.verdict, "unexplained");
+  EXPECT_EQ(d.verdict, Verdict::unexplained);
   EXPECT_EQ(d.steps.size(), 1U) << "nothing is added that does not explain the error";
-  EXPECT_EQ(d.final_verdict, "unexplained");
+  EXPECT_EQ(d.final_verdict, Verdict::unexplained);
   for (const MissingEffect& effect : d.candidates) EXPECT_NE(effect.effect, "viscous_damping");
   options.ignore = {"magic"};
   EXPECT_NE(refusal([&] { diagnose_bar(film({}, 1), options); }).find("magic"), std::string::npos);
 }
 
-// So strong that E makes up for it with three times its value, and phases drift apart where the tangents look.
+// The effect is so strong that E compensates for it with three times its value, and phases drift apart where tangents are
+// read.
 TEST(Diagnose, FindsAStrongEffectFromTheRecordingsBeginning) {
   const Recording recording = film({"foundation: {stiffness: 1000}"}, 6);
   const Diagnosis d = diagnose_bar(recording, {});
   EXPECT_GT(d.steps.front().parameters.at("elasticity.young_modulus"), 3.0 * kTruth);
-  EXPECT_EQ(d.verdict, "missing");
+  EXPECT_EQ(d.verdict, Verdict::missing);
   ASSERT_FALSE(d.candidates.empty());
   EXPECT_EQ(d.candidates.front().effect, "foundation");
   EXPECT_NEAR(d.candidates.front().parameters.at("foundation.stiffness"), 1e3, 20.0);
@@ -109,16 +111,16 @@ TEST(Diagnose, FindsAStrongEffectFromTheRecordingsBeginning) {
   EXPECT_LT(d.candidates.front().held_out_rms_after, 1.1 * kNoise);
 }
 
-// A thousandth of the springs that a stout body would notice.
+// The springs are a thousandth of those that a stout body would notice.
 TEST(Diagnose, SeesWeakSurroundingsOfASlenderBar) {
   const Diagnosis d = diagnose_bar(film({"foundation: {region: top, stiffness: 20}"}, 7), {});
-  EXPECT_EQ(d.verdict, "missing");
+  EXPECT_EQ(d.verdict, Verdict::missing);
   ASSERT_FALSE(d.set.empty());
   EXPECT_EQ(d.set.front(), "foundation");
   EXPECT_NEAR(d.candidates.front().parameters.at("foundation.stiffness"), 20.0, 1.0);
 }
 
-// Smaller than the noise: what the tangents do not declare may explain it as well.
+// The effect is smaller than the noise: what the tangents do not declare may explain it as well.
 TEST(Diagnose, RefitsTheRivalsOfAFaintEffect) {
   const Diagnosis d = diagnose_bar(film({"foundation: {region: top, stiffness: 24}"}, 7), {});
   ASSERT_FALSE(d.set.empty());
@@ -129,7 +131,7 @@ TEST(Diagnose, RefitsTheRivalsOfAFaintEffect) {
   EXPECT_TRUE(std::isfinite(mass->held_out_rms_after));
 }
 
-// Newmark's average acceleration, in steps of a simulation that has no others.
+// Simulates with Newmark's average acceleration, in steps of length `step` alone.
 Recording simulate(const std::vector<std::string>& hidden, double step, unsigned seed) {
   std::vector<std::string> effects = bar("{prior: 20.0e3, factor: 3}");
   effects.insert(effects.end(), hidden.begin(), hidden.end());
@@ -153,7 +155,7 @@ TEST(Diagnose, TakesTheTimeStepsOfASimulationForNumerics) {
   constexpr double step = 0.01;  // half a frame
   const Recording recording = simulate({}, step, 8);
   const Diagnosis d = diagnose_bar(recording, {});
-  EXPECT_EQ(d.verdict, "numerics");
+  EXPECT_EQ(d.verdict, Verdict::numerics);
   EXPECT_TRUE(d.set.empty());
   DiagnosisOptions options;
   options.add = {"period_elongation"};
@@ -162,7 +164,7 @@ TEST(Diagnose, TakesTheTimeStepsOfASimulationForNumerics) {
   EXPECT_NEAR(known.at("elasticity.young_modulus") / kTruth, 1.0, 0.003);
 }
 
-// Late fast swings look more like the other damping.
+// Late fast swings resemble the other damping more.
 TEST(Diagnose, TellsTwinsApartBesideTheTimeStepsOfASimulation) {
   for (const std::string alpha : {"2", "3"}) {
     const Diagnosis d = diagnose_bar(simulate({"mass_damping: {alpha: " + alpha + "}"}, 0.02, 9), {});
@@ -174,13 +176,13 @@ TEST(Diagnose, TellsTwinsApartBesideTheTimeStepsOfASimulation) {
     std::printf("mass damping of %s/s in steps of a frame: it explains %.2f %%, viscous damping %.2f %%\n", alpha.c_str(),
                 100.0 * explained("mass_damping"), 100.0 * explained("viscous_damping"));
     EXPECT_GT(explained("viscous_damping"), explained("mass_damping")) << "no test: the right one explains more anyway";
-    EXPECT_EQ(d.verdict, "missing");
+    EXPECT_EQ(d.verdict, Verdict::missing);
     ASSERT_FALSE(d.set.empty());
     EXPECT_EQ(d.set.front(), "mass_damping") << alpha;
   }
 }
 
-// E makes up for most of the springs below the clamp; what it leaves is within what may be noise.
+// E compensates for most of the springs below the clamp; what it leaves is within what may be noise.
 TEST(Diagnose, LooksForWhatHidesInTheModulus) {
   const std::string sensor = "[{vertices: {topic: /vertices, noise: 4.0e-3}}]";
   std::vector<std::string> effects = bar("{prior: 20.0e3, factor: 3}");
@@ -193,7 +195,7 @@ TEST(Diagnose, LooksForWhatHidesInTheModulus) {
               1e-3 * d.steps.front().parameters.at("elasticity.young_modulus"), d.sigmas.total);
   EXPECT_LT(d.sigmas.total, 1.1);
   EXPECT_LT(d.steps.front().parameters.at("elasticity.young_modulus"), 0.9 * kTruth);
-  EXPECT_EQ(d.verdict, "missing");
+  EXPECT_EQ(d.verdict, Verdict::missing);
   ASSERT_FALSE(d.set.empty());
   EXPECT_EQ(d.set.front(), "elastic_support");
   EXPECT_NEAR(d.candidates.front().parameters.at("elasticity.young_modulus") / kTruth, 1.0, 0.03);
@@ -210,7 +212,7 @@ TEST(Diagnose, AddsWhatItIsTold) {
   EXPECT_NE(refusal([&] { diagnose_bar(film({}, 1), options); }).find("--add"), std::string::npos);
 }
 
-// The first one's fit made up for the second.
+// The first one's fit compensated for the second.
 TEST(Diagnose, ProposesWhatItAddedAsTheLastFitHasIt) {
   DiagnosisOptions options;
   options.add = {"mass_damping", "added_mass"};
@@ -238,7 +240,7 @@ TEST(Diagnose, NamesTwoEffectsThatAreMissingTogether) {
   EXPECT_TRUE(added("viscous_damping") || added("mass_damping") || added("viscoelasticity"))
       << "alike where one mode rings";
   EXPECT_TRUE(added("added_mass"));
-  EXPECT_EQ(d.final_verdict, "adequate");
+  EXPECT_EQ(d.final_verdict, Verdict::adequate);
   EXPECT_NEAR(d.steps.back().parameters.at("elasticity.young_modulus") / kTruth, 1.0, 0.03);
 }
 
@@ -247,7 +249,7 @@ struct Told {
   std::size_t done, total;
 };
 
-// What the diagnosis of a bar refits, as it tells it.
+// Returns the refits that the diagnosis of a bar tells of.
 std::vector<Told> refits_told(const Recording& recording, Diagnosis& d) {
   std::vector<Told> told;
   DiagnosisOptions options;
@@ -259,7 +261,7 @@ std::vector<Told> refits_told(const Recording& recording, Diagnosis& d) {
   return told;
 }
 
-// Damping explains most of the error; what the small mass adds to it shows once damping is in the model.
+// Each refit is told with the number that are over and the number that there are.
 TEST(Diagnose, CountsTheRefitsOfEachRound) {
   Diagnosis d;
   const auto told = refits_told(film({"viscous_damping: {beta: 6.0e-3}"}, 1), d);
@@ -274,7 +276,7 @@ TEST(Diagnose, CountsTheRefitsOfEachRound) {
   }
 }
 
-// Filmed on a mesh three times as fine, seen at the coarse one's vertices.
+// Films on a mesh three times as fine, seen at the coarse one's vertices.
 Recording film_finer(const ModelSettings& settings, const TetMesh& coarse, double noise = 0.1 * kNoise) {
   const Experiment experiment(settings, bar_mesh(24, 6, 6), {kTruth});
   std::mt19937 engine(1);
@@ -289,30 +291,31 @@ TEST(Diagnose, TakesTheErrorOfACoarseMeshForNoEffect) {
   const Recording recording = film_finer(settings, coarse);
   settings.mesh.discretisation_error = true;
   const Diagnosis d = diagnose(settings, coarse, recording, {});
-  EXPECT_EQ(d.verdict, "numerics") << "noise of 0.01 mm under an error of the mesh of " << d.metres.numerical << " m";
+  EXPECT_EQ(d.verdict, Verdict::numerics) << "noise of 0.01 mm under an error of the mesh of " << d.metres.numerical
+                                          << " m";
   EXPECT_TRUE(d.set.empty());
   EXPECT_GT(d.sigmas.numerical, 1.0);
 }
 
-// Whatever the recording, and whether or not the finer mesh is known.
+// The change does not depend on the recording, nor on whether the finer mesh is known.
 TEST(Diagnose, FindsOutWhatAFinerMeshChanges) {
   ModelSettings settings = box_settings(bar("{prior: 20.0e3, factor: 3}"));
   const TetMesh coarse = bar_mesh(8, 2, 2);
   const Recording recording = film_finer(settings, coarse);
   settings.mesh.discretisation_error = true;
-  Fitted base;
-  base.study = std::make_unique<Study>(settings, coarse, recording);
-  const Model& model = base.study->model();
-  base.fit = base.study->fit(model.prior_mean(), 0.1 * model.prior_std());
-  base.rows = base.study->rows(base.fit.w);
+  FittedModel base;
+  base.recording_fit = std::make_unique<RecordingFit>(settings, coarse, recording);
+  const Model& model = base.recording_fit->model();
+  base.fit = base.recording_fit->fit(model.prior_mean(), 0.1 * model.prior_std());
+  base.rows = base.recording_fit->rows(base.fit.w);
   const FinerMesh alone = finer_mesh(base);
   EXPECT_GT(alone.change.dot(base.rows.error), 0.9 * alone.change.norm() * base.rows.error.norm());
-  EXPECT_TRUE(alone.change.isApprox(finer_mesh(base, alone.study.get()).change, 1e-6));
+  EXPECT_TRUE(alone.change.isApprox(finer_mesh(base, alone.recording_fit.get()).change, 1e-6));
   base.rows.error *= -3.0;
-  EXPECT_TRUE(alone.change.isApprox(finer_mesh(base, alone.study.get()).change, 1e-6));
+  EXPECT_TRUE(alone.change.isApprox(finer_mesh(base, alone.recording_fit.get()).change, 1e-6));
 }
 
-// Fibres imitate the mesh's error besides. Weak springs would be less than what the mesh may be wrong by.
+// Fibres imitate the mesh's error as well. Weak springs would be less than what the mesh may be wrong by.
 TEST(Diagnose, NamesAnEffectBesideTheErrorOfTheMesh) {
   std::vector<std::string> effects = bar("{prior: 20.0e3, factor: 3}");
   ModelSettings settings = box_settings(effects);
@@ -323,7 +326,7 @@ TEST(Diagnose, NamesAnEffectBesideTheErrorOfTheMesh) {
   settings.mesh.discretisation_error = true;
   settings.observations.front().noise = noise;
   const Diagnosis d = diagnose(settings, coarse, recording, {});
-  EXPECT_EQ(d.verdict, "missing");
+  EXPECT_EQ(d.verdict, Verdict::missing);
   ASSERT_FALSE(d.set.empty());
   EXPECT_EQ(d.set.front(), "foundation");
 }

@@ -1,4 +1,4 @@
-// The smoother against Gaussian conditioning on everything at once.
+// The smoother is compared with Gaussian conditioning on everything at once.
 #include "tissue_stiffness/diagnosis/force_smoother.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ constexpr int kFrames = 7;
 struct Problem {
   std::vector<ModalTransition> transitions;
   std::vector<FrameEvidence> evidence;
-  Eigen::MatrixXd h;  ///< all rows of all frames, of the modes' displacement at all frames
+  Eigen::MatrixXd h;  ///< all rows of all frames per displacement of the modes at all frames
   Eigen::VectorXd e;
 };
 
@@ -40,7 +40,7 @@ Problem draw(unsigned seed) {
   return p;
 }
 
-/// Displacement of every frame from the first force and the steps that follow, by carrying units along.
+/// Returns the displacement of every frame from the first force and the steps that follow, by carrying units along.
 Eigen::MatrixXd responses(const Problem& p) {
   Eigen::MatrixXd out(kModes * kFrames, kModes * (kFrames + 1));
   for (Eigen::Index unit = 0; unit < out.cols(); ++unit) {
@@ -88,7 +88,7 @@ TEST(ForceSmoother, IsGaussianConditioning) {
   compare_with_conditioning({0.7, 2.0}, {0.2, 0.5});
 }
 
-// Covariances are singular.
+// The covariances are singular here.
 TEST(ForceSmoother, IsGaussianConditioningOfForcesThatNeverChange) {
   compare_with_conditioning({0.7, 2.0}, {0.0, 0.0});
   compare_with_conditioning({0.0, 2.0}, {0.0, 0.5});

@@ -19,7 +19,7 @@ std::vector<std::string> bar(const std::string& modulus) {
           "fixed: {region: clamp}", "gravity: {acceleration: [0.5, 1, -3]}"};
 }
 
-/// A bar with damping that the model does not know.
+/// The fixture is a bar with damping that the model does not know.
 class InterruptedDiagnosis : public ::testing::Test {
  protected:
   InterruptedDiagnosis() {
@@ -32,7 +32,7 @@ class InterruptedDiagnosis : public ::testing::Test {
 
   Diagnosis run() { return diagnose(box_settings(bar("{prior: 35.0e3, factor: 3}")), bar_mesh(), recording_, options_); }
 
-  /// Interrupted as soon as `enough` is true of what is known.
+  /// Interrupts as soon as `enough` is true of what is known.
   Diagnosis run_until(const std::function<bool(const Diagnosis&)>& enough) {
     StopRequest stop;
     recording_.checkpoint = [&] { stop.check(); };
@@ -53,8 +53,8 @@ bool refitted(const MissingEffect& candidate) {
 
 TEST_F(InterruptedDiagnosis, HoldsTheFitOfTheGivenModel) {
   const Diagnosis d = run_until([](const Diagnosis& known) { return !known.steps.empty(); });
-  EXPECT_EQ(d.verdict, "unfinished");
-  EXPECT_EQ(d.final_verdict, "unfinished");
+  EXPECT_EQ(d.verdict, Verdict::unfinished);
+  EXPECT_EQ(d.final_verdict, Verdict::unfinished);
   EXPECT_EQ(d.interrupted.rfind("compare the given model", 0), 0U) << d.interrupted;
   ASSERT_EQ(d.steps.size(), 1U);
   EXPECT_GT(d.steps.front().held_out_rms, d.steps.front().noise_floor);
@@ -66,7 +66,7 @@ TEST_F(InterruptedDiagnosis, HoldsTheFitOfTheGivenModel) {
 
 TEST_F(InterruptedDiagnosis, HoldsTheCandidatesByTheirTangents) {
   const Diagnosis d = run_until([](const Diagnosis& known) { return !known.candidates.empty(); });
-  EXPECT_EQ(d.verdict, "unfinished");
+  EXPECT_EQ(d.verdict, Verdict::unfinished);
   ASSERT_FALSE(d.candidates.empty());
   EXPECT_TRUE(std::none_of(d.candidates.begin(), d.candidates.end(), refitted));
 }
@@ -78,14 +78,14 @@ TEST_F(InterruptedDiagnosis, HoldsTheRefitsThatWereDone) {
     if (what.rfind("refit with ", 0) == 0 && done > 0) stop.stop();  // while others of the same batch are under way
   };
   const Diagnosis d = run();
-  EXPECT_EQ(d.verdict, "unfinished");
+  EXPECT_EQ(d.verdict, Verdict::unfinished);
   EXPECT_EQ(d.interrupted.rfind("refit with ", 0), 0U) << d.interrupted;
   EXPECT_GE(std::count_if(d.candidates.begin(), d.candidates.end(), refitted), 1);
 }
 
 TEST_F(InterruptedDiagnosis, HoldsTheVerdictOnceThereIsOne) {
   const Diagnosis d = run_until([](const Diagnosis& known) { return known.steps.size() > 1; });
-  EXPECT_EQ(d.verdict, "missing");
+  EXPECT_EQ(d.verdict, Verdict::missing);
   EXPECT_EQ(d.steps.size(), 2U);
   EXPECT_EQ(d.entries.size(), d.final_effects.size());
 }
@@ -105,7 +105,7 @@ TEST_F(InterruptedDiagnosis, EndsAtAnyFrame) {
     };
     const Diagnosis d = run();
     EXPECT_FALSE(d.interrupted.empty()) << trial;
-    EXPECT_TRUE(d.verdict == "unfinished" || d.verdict == whole.verdict) << d.verdict;
+    EXPECT_TRUE(d.verdict == Verdict::unfinished || d.verdict == whole.verdict) << to_string(d.verdict);
   }
 }
 

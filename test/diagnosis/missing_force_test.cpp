@@ -1,4 +1,4 @@
-// Recordings of a bar with something hidden: the force that the model lacks is that of what was hidden.
+// In recordings of a bar with something hidden, the force that the model lacks is that of what was hidden.
 #include "tissue_stiffness/diagnosis/missing_force.hpp"
 
 #include <gtest/gtest.h>
@@ -17,15 +17,15 @@ std::vector<std::string> bar() {
           "fixed: {region: clamp}", "gravity: {acceleration: [0.5, 1, -3]}"};
 }
 
-/// The force that a bar of the right modulus lacks in a recording of one with `hidden`.
+/// Returns the force that a bar of the right modulus lacks in a recording of one with `hidden`.
 MissingForce lacking(const std::vector<std::string>& hidden) {
   std::vector<std::string> effects = bar();
   effects.insert(effects.end(), hidden.begin(), hidden.end());
   const Experiment experiment(box_settings(effects), bar_mesh(), {kModulus});
   Recording recording;
   recording.frames = see_all(experiment, experiment.film(0.0, 0.02, 60), kNoise, 1);
-  const Study study(box_settings(bar()), bar_mesh(), recording);
-  return missing_force(study, study.model().prior_mean());
+  const RecordingFit recording_fit(box_settings(bar()), bar_mesh(), recording);
+  return missing_force(recording_fit, recording_fit.model().prior_mean());
 }
 
 TEST(MissingForce, IsNoneWhereNothingIsMissing) {
@@ -33,7 +33,7 @@ TEST(MissingForce, IsNoneWhereNothingIsMissing) {
   EXPECT_TRUE(force.time.empty()) << force.words;
 }
 
-// A push of 0.4 N/kg everywhere: what the clamp does not carry of it is felt by the modes.
+// A push of 0.4 N/kg acts everywhere: the modes feel what the clamp does not carry of it.
 TEST(MissingForce, IsTheWeightThatIsMissing) {
   const MissingForce force = lacking({"gravity: {acceleration: [0, 0.4, 0]}"});
   ASSERT_EQ(force.time.size(), 59U) << "intervals between frames";
@@ -51,7 +51,7 @@ TEST(MissingForce, FollowsTheVelocityWhereDampingIsMissing) {
   EXPECT_NE(force.words.find("follows the velocity"), std::string::npos) << force.words;
 }
 
-// The free end is where a spring is missing that nothing else holds.
+// Nothing else holds the free end, where a spring is missing.
 TEST(MissingForce, IsWhereASpringIsMissing) {
   const MissingForce force = lacking({"foundation: {region: tip, stiffness: 3.0e3}"});
   ASSERT_EQ(force.time.size(), 59U) << "intervals between frames";

@@ -28,7 +28,7 @@ TEST(MixExplanations, LeavesAloneWhatNoRivalDisagreesAbout) {
   }
 }
 
-// Against samples of the mixture.
+// The quantiles are compared with samples of the mixture.
 TEST(MixExplanations, HasTheQuantilesOfTheMixture) {
   std::vector<ParameterEstimate> mixed = estimates();
   mix_explanations({{{"force_scale", 0.3, {{kName, 0.8}}}}, {{"gravity", 0.2, {{kName, 1.1}}}}}, mixed);

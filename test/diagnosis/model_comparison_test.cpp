@@ -1,4 +1,4 @@
-// The likelihood beside the mesh's error, the evidence, and what is judged from the probabilities.
+// These tests cover the likelihood with the mesh's error, the evidence, and what is judged from the probabilities.
 #include "tissue_stiffness/diagnosis/model_comparison.hpp"
 
 #include <gtest/gtest.h>
@@ -28,10 +28,10 @@ class CleanBar : public ::testing::Test {
                       "fixed: {region: clamp}", "gravity: {acceleration: [0.5, 1, -3]}"});
     const Experiment experiment(settings, bar_mesh(), {20e3});
     recording_.frames = see_all(experiment, experiment.film(0.0, 0.02, 20), kNoise, 1);
-    base_.study = std::make_unique<Study>(settings, bar_mesh(), recording_);
-    const Model& model = base_.study->model();
-    base_.fit = base_.study->fit(model.prior_mean(), 0.1 * model.prior_std());
-    base_.rows = base_.study->rows(base_.fit.w);
+    base_.recording_fit = std::make_unique<RecordingFit>(settings, bar_mesh(), recording_);
+    const Model& model = base_.recording_fit->model();
+    base_.fit = base_.recording_fit->fit(model.prior_mean(), 0.1 * model.prior_std());
+    base_.rows = base_.recording_fit->rows(base_.fit.w);
   }
 
   Eigen::VectorXd slow() const {  // bends the bar to and fro, as missing physics does
@@ -40,10 +40,10 @@ class CleanBar : public ::testing::Test {
   }
 
   Recording recording_;
-  Fitted base_;
+  FittedModel base_;
 };
 
-// A model without anything to fit.
+// Returns a model without anything to fit.
 Explained rigid(const Eigen::VectorXd& error) {
   Explained out{error, {}};
   out.linearisation.columns.resize(error.size(), 0);
@@ -88,7 +88,7 @@ TEST_F(CleanBar, BelievesNoNumericsBeyondThreeStandardDeviations) {
   EXPECT_FALSE(models.assess(far).test.passes());
 }
 
-// One column x with prior N(m, 1) beside white noise: the evidence is that of N(x m, s I + x x^T).
+// One column x has the prior N(m, 1) beside white noise: the evidence is that of N(x m, s I + x x^T).
 TEST_F(CleanBar, HasTheEvidenceOfALinearModel) {
   const ModelComparison models(base_, Eigen::VectorXd::Zero(base_.rows.error.size()));
   const double s = models.noise_variance(), mean = -0.7;
@@ -103,11 +103,11 @@ TEST_F(CleanBar, HasTheEvidenceOfALinearModel) {
   EXPECT_NEAR(models.assess(model).log_evidence, before - 12.5, 1e-9);
 }
 
-// An amplitude whose size is not known beforehand: the mean of the evidence with priors of several widths.
+// If an amplitude's size is not known beforehand, the evidence is the mean over priors of several widths.
 TEST_F(CleanBar, MixesThePriorsOfAnAddedAmplitude) {
   const ModelComparison models(base_, Eigen::VectorXd::Zero(base_.rows.error.size()));
   const double s = models.noise_variance();
-  const Eigen::VectorXd x = 100.0 * slow();  // that many times the width that is stated is seen at one sigma
+  const Eigen::VectorXd x = 100.0 * slow();  // 100 times the stated width is seen at one sigma
   const Explained model{base_.rows.error + 0.002 * x, {x, 1, Eigen::VectorXd::Zero(1), {0}, 0.0}};
   const double square = x.squaredNorm(), along = x.dot(model.error);
   double sum = 0.0;
@@ -132,7 +132,7 @@ TEST_F(CleanBar, SumsTheRootsOfItsRobustWeights) {
   EXPECT_NEAR(log_root_weights(base_.rows), 10.0 * std::log(0.5), 2.0);
 }
 
-// The mesh's error along a mode has other courses in time than the change of a refinement: a displacement of half its mean
+// The mesh's error along a mode has other courses in time than the change of a refinement. A displacement of half its mean
 // square is expected, and evidence and test allow for it.
 TEST_F(CleanBar, AllowsForMeshErrorsThatARefinementDoesNotShow) {
   const Eigen::VectorXd change =
@@ -145,7 +145,7 @@ TEST_F(CleanBar, AllowsForMeshErrorsThatARefinementDoesNotShow) {
     const Eigen::Index size = offsets[k + 1] - offsets[k];
     reversed.segment(offsets[k], size) = change.segment(offsets[frames - 1 - k], size);
   }
-  // x^T C^-1 x of x along the modes with C = s I + R^2 P: |x|^2 / (s + R^2), R^2 the mean square of a frame.
+  // Here C = s I + R^2 P, where R^2 is the mean square of a frame. For x along the modes, x^T C^-1 x = |x|^2 / (s + R^2).
   const double s = models.noise_variance(), share = kComparison.left_of_mesh;
   const double room = share * share * change.squaredNorm() / static_cast<double>(frames);
   EXPECT_NEAR(models.whitened(reversed).squaredNorm() / s, reversed.squaredNorm() / (s + room),
@@ -184,7 +184,7 @@ TEST(ComparisonNumbers, AreThoseOfTheMethodsTable) {
   row("`mesh_modes`, `test_modes`", text(kComparison.test_modes));
 }
 
-// `random_force`: one that does nothing.
+// `random_force` adds one that does nothing.
 Hypothesis hypothesis(std::vector<std::string> effects, double weight, bool passes, bool random_force = false) {
   Hypothesis out;
   out.effects = std::move(effects);
@@ -202,7 +202,7 @@ Comparison compared(std::vector<Hypothesis> hypotheses) {
   return out;
 }
 
-// A residual that looks like noise of twice the level is a misfit once another model has shown how little noise there is.
+// A residual that resembles noise of twice the level is a misfit once another model has shown how little noise there is.
 TEST_F(CleanBar, TestsAllModelsAgainstTheSameNoise) {
   const ModelComparison models(base_, Eigen::VectorXd::Zero(base_.rows.error.size()));
   const Eigen::VectorXd loud = 2.0 * base_.rows.error;
@@ -214,7 +214,7 @@ TEST_F(CleanBar, TestsAllModelsAgainstTheSameNoise) {
   EXPECT_TRUE(own.passes());
 }
 
-// Hypotheses of several looks are weighed by one likelihood.
+// Hypotheses of several rounds are weighed by one likelihood.
 TEST_F(CleanBar, AssessesAllHypothesesAlike) {
   const ModelComparison models(base_, Eigen::VectorXd::Zero(base_.rows.error.size()));
   Comparison c;
@@ -288,7 +288,7 @@ TEST(Comparison, GivesNothingToWhatExtendsASufficientModel) {
   EXPECT_EQ(c.none_of_these(), 0.0);
   EXPECT_DOUBLE_EQ(c.hypotheses[3].log_weight, 90.0);
   EXPECT_EQ(judge(c), Verdict::missing);
-  EXPECT_EQ(believed_effects(c), (std::vector<std::string>{"a", "b"}));  // each alone
+  EXPECT_EQ(believed_effects(c), (std::vector<std::string>{"a", "b"}));  // each of them alone
   EXPECT_LT(c.hypotheses[2].probability, 1.0);
   c.hypotheses[0].structured = false;
   c.find_probabilities();
@@ -296,7 +296,7 @@ TEST(Comparison, GivesNothingToWhatExtendsASufficientModel) {
   EXPECT_EQ(judge(c), Verdict::adequate);
 }
 
-// The evidence of what is superfluous still counts for E, but no more than the test that does without.
+// The evidence of what is superfluous still counts for E, but no more than the test that does without it.
 TEST(Comparison, TracesWhatMayActWithoutBeingMissed) {
   std::vector<Hypothesis> list{hypothesis({}, 0.0, true), hypothesis({"a"}, 2000.0, true), hypothesis({"b"}, 1999.0, true),
                                hypothesis({"c"}, 5000.0, false, true)};

@@ -24,7 +24,7 @@ TEST(Rank, PutsWhatIsThereFirstWithTheBestOfItsWays) {
   const Eigen::VectorXd residual = normal_numbers(1, 2) + 0.5 * x.col(0);
   const std::vector<Candidate> candidates{candidate("absent", x.col(1)), candidate("there", x.col(0)),
                                           candidate("there", x.col(2))};
-  const std::vector<Ranked> ranked = rank({residual, Eigen::MatrixXd(kRows, 0), 1.0}, candidates);
+  const std::vector<Ranked> ranked = rank_effects({residual, Eigen::MatrixXd(kRows, 0), 1.0}, candidates);
   ASSERT_EQ(ranked.size(), 2U);
   EXPECT_EQ(ranked.front().effect, "there");
   EXPECT_EQ(ranked.front().best, &candidates[1]);
@@ -38,8 +38,8 @@ TEST(Rank, PutsAnAmplitudeOutOfItsBoundsLast) {
   Candidate damping = candidate("damping", x.col(0));
   damping.lower = 0.0;
   const std::vector<Candidate> candidates{damping, candidate("absent", x.col(1))};
-  EXPECT_EQ(rank({0.5 * x.col(0), Eigen::MatrixXd(kRows, 0), 1.0}, candidates).front().effect, "damping");
-  EXPECT_EQ(rank({-0.5 * x.col(0), Eigen::MatrixXd(kRows, 0), 1.0}, candidates).front().effect, "absent");
+  EXPECT_EQ(rank_effects({0.5 * x.col(0), Eigen::MatrixXd(kRows, 0), 1.0}, candidates).front().effect, "damping");
+  EXPECT_EQ(rank_effects({-0.5 * x.col(0), Eigen::MatrixXd(kRows, 0), 1.0}, candidates).front().effect, "absent");
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ Eigen::VectorXd noise(std::mt19937& engine) {
   return Eigen::VectorXd::NullaryExpr(kRows, [&](auto) { return normal(engine); });
 }
 
-// A motion of the whole body that rings at `frequency` and dies over `life` frames.
+// Returns a motion of the whole body that rings at `frequency` and dies over `life` frames.
 Eigen::MatrixXd ringing(double frequency, double life, unsigned seed = 1) {
   std::mt19937 engine(seed);
   std::normal_distribution<double> normal;
@@ -52,7 +52,7 @@ TEST(Scores, LogBayesFactorIsTheClosedFormOfOneColumn) {
   const double expected = 0.5 * b * b / (1.0 + gram) - 0.5 * std::log1p(gram);
   const Eigen::MatrixXd none(kRows, 0);
   EXPECT_NEAR(Scorer(e, none, 1.0).score(tangent(x, prior)).log_bayes_factor, expected, 1e-9 * std::abs(expected));
-  // Twice as large an error of twice the noise says the same of twice the amplitude.
+  // An error twice as large, in twice the noise, gives as much evidence for an effect twice as large.
   EXPECT_NEAR(Scorer(2.0 * e, none, 4.0).score(tangent(2.0 * x, prior)).log_bayes_factor, expected,
               1e-9 * std::abs(expected));
 }
@@ -78,7 +78,7 @@ TEST(LogMeanExp, SurvivesLargeNumbers) {
   EXPECT_NEAR(log_mean_exp({0.0, std::log(3.0)}), std::log(2.0), 1e-12);
 }
 
-// -e p log p of p = 0.05 and 0.001, as Sellke, Bayarri & Berger print it: 2.5 and 53 to one.
+// Sellke, Bayarri & Berger print -e p log p of p = 0.05 and 0.001 as 2.5 and 53 to one.
 TEST(LogBayesFactorBound, CalibratesAPValue) {
   EXPECT_NEAR(std::exp(log_bayes_factor_bound(1.6449)), 2.456, 0.01);
   EXPECT_NEAR(std::exp(log_bayes_factor_bound(3.0902)), 53.25, 0.1);

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "../box_model.hpp"
-#include "tissue_stiffness/fem/newmark.hpp"
+#include "tissue_stiffness/fem/generalized_alpha.hpp"
 #include "tissue_stiffness/forward/full_model.hpp"
 #include "tissue_stiffness/meshing/elevate.hpp"
 #include "tissue_stiffness/meshing/surface.hpp"
@@ -192,7 +192,7 @@ TetMesh hollow_box() {
   }
   mesh.tets = kept.leftCols(count);
   set_boundary_facets(mesh, "hollow box");
-  elevate(mesh);
+  elevate_to_quadratic(mesh);
   return mesh;
 }
 

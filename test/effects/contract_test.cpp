@@ -306,13 +306,13 @@ TEST(EveryEffect, FrictionEqualsFiniteDifferencesByTheVelocity) {
       if (part.effect->nonlinear()) part.effect->add_force(motion(u, velocity), p, f);
       return f;
     };
-    if (!part.effect->rubs(p)) {
+    if (!part.effect->has_velocity_tangent(p)) {
       EXPECT_EQ(force(v), force(-v)) << spec.name << " depends on the velocity but does not say so";
       continue;
     }
     ++rubbing;
     SparseMatrix tangent = model.fem().pattern();
-    part.effect->add_friction(motion(u, v), p, tangent);
+    part.effect->add_velocity_tangent(motion(u, v), p, tangent);
     Eigen::MatrixXd differences(u.size(), u.size());
     const double h = 1e-7;
     for (Eigen::Index j = 0; j < u.size(); ++j) {

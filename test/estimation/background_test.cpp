@@ -1,4 +1,4 @@
-// What takes long runs beside the frames: no frame waits for it, and the answer is the same.
+// Long work runs in the background: no frame waits for it, and the estimate does not change.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -30,7 +30,7 @@ std::vector<Frame> recording() {
   return see_all(bar, bar.film(0.0, kFilmed, kFrames), kNoise, 1);
 }
 
-/// Loads come with the frames, as they do live.
+/// Loads come with the frames, as in a live run.
 StepResult step_with_loads(Estimator& estimator, const std::vector<Frame>& frames, std::chrono::microseconds pause) {
   estimator.set_first_stamp(0.0);
   estimator.add_load(wrench(0.0));
@@ -49,7 +49,7 @@ ParameterEstimate estimated_at_once(const std::vector<Frame>& frames) {
   return step_with_loads(waiting, frames, {}).estimate.parameters.front();
 }
 
-/// The processor time [s] that the calling thread spends on all frames. All loads are known before.
+/// Returns the processor time [s] that the calling thread spends on all frames. All loads are known before.
 double spent_on(Estimator& estimator, const std::vector<Frame>& frames) {
   estimator.set_first_stamp(0.0);
   for (int k = 0; k <= kFrames; ++k) estimator.add_load(wrench(kFilmed * k));
@@ -76,19 +76,19 @@ TEST(Background, CatchesUpAfterTheLastFrame) {
   const ParameterEstimate at_once = estimated_at_once(frames);
   std::unique_ptr<Estimator> running;
   StepResult last;
-  for (int k = 0; k < 10 && !(running && running->looks_back()); ++k) {  // now and then a look ends in time
+  for (int k = 0; k < 10 && !(running && running->reprocesses()); ++k) {  // now and then the reprocessing ends in time
     running = std::make_unique<Estimator>(box_settings(kPulled), bar_mesh());
     running->work_in_background();
     last = step_with_loads(*running, frames, {});
   }
   Estimator& estimator = *running;
   const double time = last.estimate.time;
-  EXPECT_TRUE(estimator.looks_back());
-  for (int k = 0; k < 1000 && estimator.looks_back(); ++k) {
+  EXPECT_TRUE(estimator.reprocesses());
+  for (int k = 0; k < 1000 && estimator.reprocesses(); ++k) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
     if (const auto result = estimator.catch_up()) last = *result;
   }
-  EXPECT_FALSE(estimator.looks_back());
+  EXPECT_FALSE(estimator.reprocesses());
   EXPECT_EQ(last.estimate.time, time);
   EXPECT_NEAR(last.estimate.parameters.front().mean, at_once.mean, 0.3 * at_once.std);
   EXPECT_NEAR(value(estimator), at_once.mean, 0.3 * at_once.std);

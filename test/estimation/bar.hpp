@@ -16,18 +16,18 @@ inline std::string modulus(const std::string& value, const std::string& region =
          (region.empty() ? "}" : ", region: " + region + "}");
 }
 
-/// {prior, factor} of a model file.
+/// Returns {prior, factor} as a model file has it.
 inline std::string prior(double median, double factor) {
   return "{prior: " + std::to_string(median) + ", factor: " + std::to_string(factor) + "}";
 }
 
-/// A clamped bar of the given modulus under gravity.
+/// Returns the effects of a clamped bar of the given modulus under gravity.
 inline std::vector<std::string> bar_under_gravity(const std::string& young_modulus) {
   return {"inertia: {density: 1000}", modulus(young_modulus), "fixed: {region: clamp}",
           "gravity: {acceleration: [0.5, 1, -3]}"};
 }
 
-/// The result of the last frame.
+/// Returns the result of the last frame.
 inline StepResult step_through(Estimator& estimator, const std::vector<Frame>& frames) {
   StepResult last;
   for (const Frame& frame : frames) last = estimator.step(frame);
@@ -42,7 +42,7 @@ inline bool holds(const ParameterEstimate& parameter, double truth) {
   return parameter.lower95 <= truth && truth <= parameter.upper95;
 }
 
-/// Every number and word of an estimate and of the body's state, byte by byte.
+/// Returns every number and word of an estimate and of the body's state, byte by byte.
 inline std::string bytes(Estimator& estimator) {
   std::string out;
   const auto append = [&out](const double* data, Eigen::Index count) {

@@ -1,13 +1,13 @@
-// The error of the reduced basis: reported, a bound on the real one, and small because the basis grows.
+// The error of the reduced basis is reported, bounds the real one, and is small because the basis grows.
 #include "tissue_stiffness/estimation/basis_error.hpp"
 
 #include <gtest/gtest.h>
 
 #include "bar.hpp"
-#include "tissue_stiffness/estimation/batch_fit.hpp"
+#include "tissue_stiffness/fit/batch_fit.hpp"
 #include "tissue_stiffness/forward/full_model.hpp"
-#include "tissue_stiffness/forward/observation_operator.hpp"
 #include "tissue_stiffness/meshing/surface.hpp"
+#include "tissue_stiffness/observation/observation_operator.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -35,7 +35,7 @@ class BasisErrorOfABar : public testing::Test {
     return basis_error(model, {model_, model, operators_, frames_, 0.0}, model_.prior_mean(), surface_nodes(mesh_));
   }
 
-  // Against a basis so large that nothing is missing from it.
+  // Compares with a basis so large that nothing is missing from it.
   double real(const ReducedModel& model) const {
     const ReducedModel full = reduced(200);
     const Eigen::VectorXd theta = model_.theta(model_.prior_mean());

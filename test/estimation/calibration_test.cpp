@@ -1,4 +1,4 @@
-// 100 simulated recordings: is the interval as wide as the errors are?
+// In 100 simulated recordings, the interval has to be as wide as the errors are.
 #include "../figures.hpp"
 
 namespace tissue_stiffness {

@@ -18,7 +18,7 @@ ModelSettings drifting(const std::string& drift, double start = 45e3) {
                                         (drift.empty() ? "" : ", drift: " + drift) + "}"));
 }
 
-/// A bar under gravity whose modulus is `course` of the time, piecewise constant between `steps` instants a frame.
+/// Films a bar under gravity whose modulus is `course` of the time, piecewise constant between `steps` instants a frame.
 std::vector<Frame> film(const std::function<double(double)>& course, int steps, unsigned seed, int frames = kFrames) {
   const Experiment bar(drifting(""), bar_mesh(), {course(0.0)});
   const ReducedModel runs(bar.model());
@@ -101,7 +101,8 @@ TEST(Change, ANegativeRateIsRefused) {
   EXPECT_NE(refusal([] { Estimator(drifting("-1"), bar_mesh()); }).find("drift"), std::string::npos);
 }
 
-// The window holds 100 frames; the bar is filmed for four times as long. Its phase since the start is then told less well.
+// The window holds 100 frames, and the bar is filmed for four times as long. Its phase since the start is then told less
+// well.
 TEST(Window, LeavesOldFramesBehindButNotWhatTheyTold) {
   const std::vector<Frame> frames = film(jump(1e9, 1.0), 1, 5, 400);
   ModelSettings settings = drifting("");

@@ -1,4 +1,4 @@
-// What goes wrong with recordings: outliers, bad frames, loads out of order; and what must not change: the result.
+// Recordings go wrong: outliers, bad frames, loads out of order. The result must not change.
 #include <gtest/gtest.h>
 
 #include <algorithm>

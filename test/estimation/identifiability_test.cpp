@@ -1,4 +1,4 @@
-// What the data determine, where theory says so: (E, density, loads) rescale together.
+// Theory says what the data determine: (E, density, loads) rescale together.
 #include <gtest/gtest.h>
 
 #include "bar.hpp"
@@ -10,7 +10,8 @@ const std::string kFixed = "fixed: {region: clamp}", kGravity = "gravity: {accel
                   kPushed = "traction: {region: tip, topic: /wrench}",
                   kUnknownDensity = "inertia: {density: " + prior(1000, 2) + "}";
 
-// Verdicts after a recording whose truth is every parameter's prior; pushed when the model asks for it.
+// Returns the verdicts after a recording whose truth is every parameter's prior. The bar is pushed when the model asks for
+// it.
 std::map<std::string, Identifiability> verdicts(const std::vector<std::string>& effects, int frames = 25) {
   const TetMesh mesh = bar_mesh();
   const ModelSettings settings = box_settings(effects);

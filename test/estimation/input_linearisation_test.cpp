@@ -52,7 +52,7 @@ struct Setting {
     models->base.set_first_stamp(0.0);
     models->uncertain.set_first_stamp(0.0);
     for (const auto& [topic, course] : question->courses) *models->uncertain.courses().at(topic) = course;
-    models->runs->focus(observed_nodes(models->operators, frames));
+    models->runs->restrict_output_to(observed_nodes(models->operators, frames));
   }
 };
 

@@ -13,7 +13,7 @@ namespace {
 
 using Values = std::function<Eigen::VectorXd(const Eigen::VectorXd& z)>;
 
-// Rows y - h(z) of unit noise, with h's derivatives by differences; a row's weight may fall with its error.
+// Returns the rows y - h(z) of unit noise, with h's derivatives by differences; a row's weight may fall with its error.
 InputPosterior::Rows rows_of(const Values& h, const Eigen::VectorXd& y, double robust = 1e9) {
   return [=](const Eigen::VectorXd& z) {
     NormalEquations out(z.size(), 0);
@@ -32,7 +32,7 @@ InputPosterior::Rows rows_of(const Values& h, const Eigen::VectorXd& y, double r
   };
 }
 
-// Mean and variance of z[0] by brute force: z[1] at its most probable on a fine grid of its own.
+// Returns mean and variance of z[0] by brute force: z[1] takes its most probable value on a fine grid of its own.
 Eigen::Vector2d brute_force(const Values& h, const Eigen::VectorXd& y, double prior_std, double nuisance_std) {
   Eigen::Vector3d sums = Eigen::Vector3d::Zero();
   double least = 1e300;
@@ -70,7 +70,8 @@ TEST(InputPosterior, IsNormalForLinearRows) {
   EXPECT_LT((p.covariance(moments.mean.normal) + moments.beyond_linear - information.inverse()).norm(), 0.02);
 }
 
-// The phase of a swing determines w up to a multiple of a period: many maxima, each far narrower than the posterior.
+// The phase of a swing determines w up to a multiple of a period. So there are many maxima, each far narrower than the
+// posterior.
 TEST(InputPosterior, SumsOverTheMaximaOfAComb) {
   const Values h = [](const Eigen::VectorXd& z) {
     return Eigen::Vector3d(5.0 * (z[0] + z[1]), 3.0 * std::sin(12.0 * z[0]), z[1]);
@@ -85,8 +86,8 @@ TEST(InputPosterior, SumsOverTheMaximaOfAComb) {
   EXPECT_GT(variance, 16.0 * p.covariance(p.mode(Eigen::VectorXd::Constant(1, 0.01)).normal)(0, 0));
 }
 
-// A load's gain and the modulus make up for each other, far along a bent valley. Off the valley errors are so large that
-// robust weights drop most of their rows: costs are those at the valley's floor.
+// A load's gain and the modulus compensate each other, far along a bent valley. Off the valley errors are so large that
+// robust weights drop most of their rows. So the costs are those at the valley's floor.
 TEST(InputPosterior, FollowsAValleyWhoseSidesAreRobust) {
   const Eigen::VectorXd load = Eigen::VectorXd::LinSpaced(40, -30.0, 30.0);
   const Values h = [&](const Eigen::VectorXd& z) -> Eigen::VectorXd { return load * (1.0 - 0.3 * z[1]) * std::exp(-z[0]); };

@@ -1,4 +1,4 @@
-// Errors of loads, poses and constants: found where the data tell them, and in the interval where they do not.
+// Errors of loads, poses and constants are found where the data tell them, and are in the interval where they do not.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,7 +27,7 @@ LoadSample wrench(double time) {
   return sample;
 }
 
-// The estimate after 60 frames of a bar, whose wrench is recorded with `error`.
+// Returns the estimate after 60 frames of a bar whose wrench is recorded with `error`.
 StepResult estimated(const ModelSettings& model, const Change& error) {
   const TetMesh mesh = bar_mesh();
   ModelSettings truth = model;
@@ -66,8 +66,8 @@ TEST(InputStudy, HoldsTheTruthWhateverTheWrenchDoesWithinItsTolerance) {
   }
 }
 
-// A stiff undamped bar that its load moves slowly: E is proportional to the gain, and small fast swings, whose phases
-// depend on E alone, tell them apart; the density's tolerance then is most of what is left.
+// A load moves a stiff undamped bar slowly, so E is proportional to the gain. Small fast swings, whose phases depend on E
+// alone, tell them apart. The density's tolerance then is most of what is left.
 TEST(InputStudy, FindsTheModulusBesideAWrongGain) {
   constexpr double kStiff = 200e3, kGain = 1.15;
   ModelSettings model =
@@ -138,7 +138,7 @@ TEST(InputStudy, WithExactInputsAddsNothing) {
   EXPECT_TRUE(holds(last.estimate.parameters.front(), kTruth));
 }
 
-// Two tolerances of 0.01 would reach beyond one half, where no body is.
+// Two tolerances of 0.01 would reach beyond one half, where no body is possible.
 TEST(InputStudy, ARatioNearItsBoundDoesNotMoveTheEstimate) {
   std::vector<std::string> effects = bar_under_gravity(prior(30e3, 3));
   effects[1] = "elasticity: {law: linear, poisson_ratio: 0.495, young_modulus: " + prior(30e3, 3) + "}";

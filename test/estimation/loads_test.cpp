@@ -1,4 +1,4 @@
-// Measured loads: whatever order they arrive in, the body feels them at their own time.
+// Measured loads may arrive in any order: the body feels them at their own time.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ constexpr double kTruth = 30e3;
 const std::vector<std::string> kPushed{"inertia: {density: 1000}", modulus(prior(60e3, 3)), "fixed: {region: clamp}",
                                        "traction: {region: tip, topic: /wrench}"};
 
-// Samples every 7 ms, beside the frames' instants.
+// Returns samples every 7 ms, not at the frames' instants.
 std::vector<LoadSample> wrenches() {
   std::vector<LoadSample> samples;
   for (int k = 0; k < 70; ++k) {
@@ -55,7 +55,7 @@ TEST(Loads, OutOfOrderGiveTheSameResult) {
   Estimator estimator(box_settings(kPushed), bar_mesh());
   estimator.set_first_stamp(0.0);
   for (const LoadSample& sample : samples) estimator.add_load(sample);
-  estimator.add_load(samples.front());  // and one twice
+  estimator.add_load(samples.front());  // and one sample twice
   step_through(estimator, frames);
   EXPECT_TRUE(bytes(estimator) == in_order(frames));
 }
@@ -68,7 +68,7 @@ TEST(Loads, AsLateAsTheFrameThatNeedsThemGiveTheSameResult) {
   auto fed = samples.begin();
   for (const Frame& frame : frames) {
     auto end = std::find_if(fed, samples.end(), [&](const LoadSample& sample) { return sample.time >= frame.time; });
-    if (end != samples.end()) ++end;  // the one behind the frame, to interpolate
+    if (end != samples.end()) ++end;  // the sample behind the frame, to interpolate
     std::for_each(std::make_reverse_iterator(end), std::make_reverse_iterator(fed),
                   [&](const LoadSample& sample) { estimator.add_load(sample); });
     fed = end;
@@ -104,7 +104,7 @@ TEST(Loads, ThatAreNoneAreRefusedAndChangeNothing) {
   EXPECT_TRUE(bytes(estimator) == in_order(frames));
 }
 
-// A spike of a broken force sensor, a million times too large: no free run gets past it.
+// A broken force sensor gives a spike, a million times too large, and no free run gets past it.
 TEST(Loads, ThatTheModelCannotFollowAreReportedAndSurvived) {
   std::vector<std::string> effects = kPushed;
   effects[1] = "elasticity: {law: neo_hookean, poisson_ratio: 0.4, young_modulus: " + prior(20e3, 1.5) + "}";

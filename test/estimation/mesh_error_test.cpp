@@ -1,4 +1,4 @@
-// A coarse mesh against recordings from a fine one: the interval must carry what the mesh does.
+// A coarse mesh is used on recordings from a fine one: the interval must carry what the mesh does.
 #include "tissue_stiffness/estimation/mesh_error.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ TetMesh coarse() {
   return bar_mesh(8, 2, 2);
 }
 
-// Filmed on a mesh three times as fine, seen at the coarse one's vertices.
+// Films on a mesh three times as fine, seen at the coarse one's vertices.
 std::vector<Frame> recording(int count) {
   const Experiment bar(settings(false), bar_mesh(24, 6, 6), {kTruth});
   std::mt19937 engine(1);
@@ -90,13 +90,13 @@ TEST(MeshError, IsTheSameOfAReplay) {
   }
 }
 
-// Models of the same body, at their own prior, save work and nothing else.
+// Models of one body that are reused, at their own prior, save work and change nothing else.
 TEST(MeshError, IsTheSameBesideRelatives) {
   const ModelSettings model = settings(true);
   const std::vector<Frame> frames = recording(40);
   const Model own(settings(false), coarse());
-  const TetMesh refined = finer(own.mesh(), model.mesh);
-  const Model fine(settings(false), refined, refine(own.regions(), own.mesh(), refined));
+  const TetMesh refined = refined_mesh(own.mesh(), model.mesh);
+  const Model fine(settings(false), refined, refine_regions(own.regions(), own.mesh(), refined));
   BasisOptions keeping, beside = basis_beside(own.mesh(), refined);
   keeping.keep_root = beside.keep_root = true;
   const ReducedModel own_runs(own, keeping), fine_runs(fine, beside);
@@ -109,7 +109,7 @@ TEST(MeshError, IsTheSameBesideRelatives) {
   EXPECT_NEAR(a.std, b.std, 0.01 * a.std);
 }
 
-// Under a load so small that both laws mean the same body.
+// The load is so small that both laws describe one body.
 TEST(MeshError, OfAFiniteStrainModelIsInTheInterval) {
   std::vector<std::string> effects = bar_under_gravity(prior(50e3, 3));
   effects[1] = "elasticity: {law: neo_hookean, poisson_ratio: 0.45, young_modulus: " + prior(50e3, 3) + "}";
@@ -129,7 +129,7 @@ TEST(MeshError, OfAFiniteStrainModelIsInTheInterval) {
   std::printf("finite strain: E %+.2f %% off, 95 %% %+.2f..%+.2f %%\n", 100.0 * (p.mean / kTruth - 1.0),
               100.0 * (p.lower95 / kTruth - 1.0), 100.0 * (p.upper95 / kTruth - 1.0));
   EXPECT_TRUE(holds(p, kTruth));
-  EXPECT_LT(p.upper95 / p.lower95, 2.0) << estimator.estimate().state_reason;  // beside a misfit of several sigma
+  EXPECT_LT(p.upper95 / p.lower95, 2.0) << estimator.estimate().state_reason;  // despite a misfit of several sigma
   EXPECT_NE(estimator.description().back().find("linear form"), std::string::npos);
 }
 

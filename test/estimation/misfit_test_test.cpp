@@ -1,4 +1,4 @@
-// The posterior predictive test of a residual, on noise whose structure is known.
+// The posterior predictive test of a residual is checked on noise whose structure is known.
 #include "tissue_stiffness/estimation/misfit_test.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kFrames = 200, kRows = 100, kModes = 4;
 
-// White noise of these levels along the first rows, which the modes see, and across them.
+// Tests white noise of these levels along the first rows, which the modes see, and across them.
 MisfitTest test_of(double along, double across) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
@@ -44,7 +44,7 @@ TEST(MisfitTest, SeesWhatTheModesHaveBeyondTheRest) {
   EXPECT_TRUE(allowed.passes());
 }
 
-// Noise that another model has shown not to be there is a misfit, where the modes see it and where they do not.
+// Noise that another model has shown not to be there is a misfit, both where the modes see it and where they do not.
 TEST(MisfitTest, KnowsTheNoiseFromAnotherModel) {
   MisfitTest test = test_of(1.0, 4.0);
   EXPECT_TRUE(test.passes());

@@ -1,4 +1,4 @@
-// Patches of a body, and the prior over them.
+// A body is divided into patches, with a prior over them.
 #include "tissue_stiffness/estimation/patches.hpp"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ TEST(Patches, HoldEachTetrahedronOnceAtEveryLevel) {
   const TetMesh mesh = bar_mesh(8, 2, 2);
   std::vector<Patch> patches{all_of(mesh)};
   for (const int count : {2, 4, 8, 13, 24}) {
-    const Division finer = split(mesh, patches, count);
+    const Division finer = divide_patches(mesh, patches, count);
     ASSERT_EQ(finer.patches.size(), static_cast<std::size_t>(count));
     std::vector<int> times(static_cast<std::size_t>(mesh.tet_count()), 0);
     for (std::size_t r = 0; r < finer.patches.size(); ++r) {
@@ -45,7 +45,7 @@ TEST(Patches, HoldEachTetrahedronOnceAtEveryLevel) {
 
 TEST(Patches, AreOfLikeSizeAndCutAcrossTheLength) {
   const TetMesh mesh = bar_mesh(8, 2, 2);
-  const Division quarters = split(mesh, {all_of(mesh)}, 4);
+  const Division quarters = divide_patches(mesh, {all_of(mesh)}, 4);
   Eigen::Matrix3Xd middles = centers(mesh, quarters.patches);
   std::vector<double> x(middles.cols());
   Eigen::Map<Eigen::RowVectorXd>(x.data(), middles.cols()) = middles.row(0);
@@ -58,12 +58,12 @@ TEST(Patches, AreOfLikeSizeAndCutAcrossTheLength) {
 
 TEST(Patches, EndAtSingleTetrahedra) {
   const TetMesh mesh = bar_mesh(1);
-  EXPECT_EQ(split(mesh, {all_of(mesh)}, 1000).patches.size(), static_cast<std::size_t>(mesh.tet_count()));
+  EXPECT_EQ(divide_patches(mesh, {all_of(mesh)}, 1000).patches.size(), static_cast<std::size_t>(mesh.tet_count()));
 }
 
 TEST(SmoothPrior, IsPositiveDefiniteAndFallsWithDistance) {
   const TetMesh mesh = bar_mesh(8, 2, 2);
-  const Eigen::Matrix3Xd places = centers(mesh, split(mesh, {all_of(mesh)}, 40).patches);
+  const Eigen::Matrix3Xd places = centers(mesh, divide_patches(mesh, {all_of(mesh)}, 40).patches);
   const Eigen::MatrixXd near = smooth_covariance(places, 0.05, std::log(2.0));
   EXPECT_TRUE(near.isApprox(near.transpose()));
   EXPECT_EQ(near.llt().info(), Eigen::Success);
@@ -107,7 +107,7 @@ TEST(PatchModel, IsTheSameModelWhileThePatchesAgree) {
   const TetMesh mesh = bar_mesh(4, 2, 2);
   const Model whole(box_settings({"inertia: {density: 1000}", solid("{prior: 30e3, factor: 3}"), "fixed: {region: clamp}"}),
                     mesh);
-  const Division quarters = split(mesh, {mapped_tets(whole)}, 4);
+  const Division quarters = divide_patches(mesh, {mapped_tets(whole)}, 4);
   const PatchModel patched = with_patches(whole, quarters.patches, Eigen::VectorXd::Constant(4, std::log(30e3)));
   const Model parts(patched.settings, mesh, patched.regions);
   const SparseMatrix k = whole.stiffness(whole.theta(whole.prior_mean()));

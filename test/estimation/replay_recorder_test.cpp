@@ -53,7 +53,7 @@ TEST(ThinSurface, TakesTheMisfitWhereThereIsOne) {
   EXPECT_EQ(seen.array().isFinite().count(), 1);
 }
 
-/// Frame k of a long run in which everything moves with k; vertex 3 is lost in frame 2.
+/// The long run gives frame k, in which everything moves with k; vertex 3 is lost in frame 2.
 class LongRun {
  public:
   explicit LongRun(const TetMesh& mesh) : mesh_(mesh) {}
@@ -116,7 +116,7 @@ TEST(ReplayRecorder, ThinsALongOneAndKeepsItsListsInStep) {
 
 TEST(ReplayRecorder, FollowsTheEdgesOfAnOutlineWhereTheModelHasThem) {
   const TetMesh mesh = bar_mesh();
-  constexpr double scale = 1e-3;  // metres a pixel
+  constexpr double scale = 1e-3;  // metres per pixel
   auto contour = std::make_shared<Contour>();
   contour->points.resize(2, 4);
   contour->points << 10, 50, 30, 30, 20, 20, 5, 90;

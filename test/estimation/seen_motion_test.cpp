@@ -1,10 +1,10 @@
-// Effects of the observation: what sensors make of a motion.
+// Effects of the observation change what sensors make of a motion.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "../box_model.hpp"
-#include "tissue_stiffness/estimation/ensemble.hpp"
+#include "tissue_stiffness/fit/ensemble.hpp"
 #include "tissue_stiffness/forward/reduced_model.hpp"
 
 namespace tissue_stiffness {
@@ -16,7 +16,7 @@ const std::vector<std::string> kBar{"inertia: {density: 1000}",
 const std::string kSensors = "[{vertices: {topic: /vertices, noise: 1.0e-4}}, {points: {topic: /points, noise: 1.0e-4}}]";
 constexpr double kLate = 0.1;  // [s]
 
-// Two corners of the bar and a point above its top, seen at one instant.
+// Returns two corners of the bar and a point above its top, seen at one instant.
 Frame frame(const TetMesh& mesh) {
   Frame f;
   f.time = kLate;

@@ -1,11 +1,11 @@
-// Every kind of sensor finds the modulus on a small scene; and what happens to a model that is no model.
+// Every kind of sensor finds the modulus on a small scene, and incomplete models are refused.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 
 #include "bar.hpp"
-#include "tissue_stiffness/forward/closest_point.hpp"
-#include "tissue_stiffness/forward/observation_operator.hpp"
+#include "tissue_stiffness/observation/closest_point.hpp"
+#include "tissue_stiffness/observation/observation_operator.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -84,7 +84,7 @@ TEST_F(Sensors, PointsWithoutIdentity) {
   expect_found("points", frames);
 }
 
-// The model's own outline, a point in the middle of each piece, off along its normal.
+// Returns the model's own outline: a point in the middle of each piece, shifted by noise along its normal.
 std::vector<Frame> outlines(const ObservationOperator& sensor, const std::vector<Experiment::Moment>& moments,
                             const std::shared_ptr<const Camera>& camera, double sigma, std::mt19937& engine) {
   std::normal_distribution<double> noise(0.0, sigma);

@@ -1,4 +1,5 @@
-// From far starts to the truth: one modulus, several, damping, a velocity read from the frames, the paper's own scheme.
+// Estimates reach the truth from far starts: one modulus, several, damping, a velocity read from the frames, the paper's
+// own scheme.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,8 +30,8 @@ TEST(Starts, TenTimesOffReachesFivePercentWithinThirtyFrames) {
   }
 }
 
-// A replay that begins where another fit ended comes to the same estimate, and one that begins a few standard deviations
-// beside it does, too.
+// A replay that begins where another fit ended comes to that fit's estimate. One that begins a few standard deviations off
+// does, too.
 TEST(Starts, AReplayNearAnEstimateEndsWhereAPlainOneDoes) {
   const TetMesh mesh = bar_mesh();
   const auto model = box_settings(bar_under_gravity(prior(50e3, 3)));
@@ -59,7 +60,7 @@ TEST(Starts, TwoRegionsGetTheirOwnModulus) {
   const std::vector<double> truth{20e3, 45e3};
   const Experiment bar(model(truth[0], truth[1]), mesh, truth);
   Estimator estimator(model(50e3, 15e3), mesh);
-  // The basis follows the start's ratio of moduli: noise well above what it leaves out.
+  // The basis follows the start's ratio of moduli, so the noise is well above what it leaves out.
   const StepResult last = step_through(estimator, see_all(bar, bar.film(0.0, kFilmed, 40), kNoise, 2));
   for (std::size_t i = 0; i < 2; ++i) {
     const ParameterEstimate& p = last.estimate.parameters[i];
@@ -68,7 +69,7 @@ TEST(Starts, TwoRegionsGetTheirOwnModulus) {
   }
   EXPECT_NE(last.estimate.parameters[0].name, last.estimate.parameters[1].name);
   EXPECT_EQ(last.estimate.covariance.rows(), 2);
-  // A stiffer half makes up for a softer one.
+  // A stiffer half compensates for a softer one.
   EXPECT_LT(last.estimate.covariance(0, 1), 0.0);
 }
 
@@ -106,7 +107,7 @@ TEST(Starts, TheInitialVelocityIsReadFromTheFrames) {
   EXPECT_NEAR(value(estimator) / 40e3, 1.0, 0.05);
 }
 
-// Quasi-static loading between frames: the paper's differences (eq. 24, 25) are then good to second order.
+// The loading is quasi-static between frames, so the paper's differences (eq. 24, 25) are good to second order.
 TEST(Starts, ThePapersSchemeConvergesUnderASlowLoad) {
   const TetMesh mesh = bar_mesh(3);
   const auto model = [](double young) {

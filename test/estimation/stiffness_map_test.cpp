@@ -1,8 +1,9 @@
-// The modulus from place to place, on bodies filmed on a finer mesh than the estimator's.
+// The modulus is mapped on bodies filmed on a finer mesh than the estimator's.
 #include <gtest/gtest.h>
 
 #include "bar.hpp"
 #include "tissue_stiffness/estimation/map_stiffness.hpp"
+#include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -18,20 +19,20 @@ ModelSettings bar_settings(const std::vector<std::string>& moduli, const std::st
   ModelSettings settings =
       box_settings(effects, "[{vertices: {topic: /vertices, noise: 1.0e-4}}]", "map: {cells: 4, length: 0.03, factor: 2}");
   for (RegionSettings& region : settings.regions) {
-    // The nodes in the middle, whatever their last digit.
+    // The box includes the nodes in the middle, whatever their last digit.
     if (region.name == "near") std::get<BoxShape>(region.shape).max.x() += 1e-6;
   }
   return settings;
 }
 
-// One modulus, and the error of the mesh looked for.
+// Returns a model with one unknown modulus, whose mesh error is studied.
 ModelSettings unknown(const std::string& fixed = "clamp") {
   ModelSettings settings = bar_settings({modulus(prior(50e3, 3))}, fixed);
   settings.mesh.discretisation_error = true;
   return settings;
 }
 
-// Filmed on a mesh three times as fine, seen at the coarse one's vertices.
+// Films on a mesh three times as fine, seen at the coarse one's vertices.
 std::vector<Frame> recording(const ModelSettings& truth, int count) {
   const Experiment bar(truth, bar_mesh(24, 6, 6), {});
   std::mt19937 engine(1);

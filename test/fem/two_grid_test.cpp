@@ -21,7 +21,7 @@ struct Body {
   SparseMatrix stiffness;
 
   Body(int order, double poisson_ratio, double held_to = 0.0)
-      : coarse(distorted_box(kSize, 3, order)), fine(refine(coarse)), fixed(clamped_dofs(fine)) {
+      : coarse(distorted_box(kSize, 3, order)), fine(refine_mesh(coarse)), fixed(clamped_dofs(fine)) {
     for (int i = 0; i < fine.node_count(); ++i) {
       if (fine.nodes(0, i) < held_to) std::fill_n(fixed.begin() + 3 * i, 3, char{1});
     }

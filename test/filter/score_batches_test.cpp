@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "tissue_stiffness/filter/anchored_filter.hpp"
+#include "tissue_stiffness/filter/posterior_linearization_filter.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -23,7 +23,7 @@ Covered coverage(double memory) {
   for (unsigned seed = 0; seed < kSeeds; ++seed) {
     std::mt19937 engine(seed);
     std::normal_distribution<double> normal;
-    AnchoredFilter filter(Eigen::VectorXd::Constant(1, 2.0), Eigen::MatrixXd::Constant(1, 1, 100.0));
+    PosteriorLinearizationFilter filter(Eigen::VectorXd::Constant(1, 2.0), Eigen::MatrixXd::Constant(1, 1, 100.0));
     double shared = normal(engine);
     for (int k = 0; k < kFrames; ++k) {
       shared = memory * shared + std::sqrt(1.0 - memory * memory) * normal(engine);

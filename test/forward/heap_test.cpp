@@ -41,7 +41,7 @@ class HeapInSteps : public testing::TestWithParam<Case> {
       systems_.push_back(std::make_unique<ModelSystem>(model_, model_.theta(Eigen::VectorXd::Constant(1, w))));
       views.push_back(systems_.back().get());
     }
-    newmark_ = std::make_unique<Newmark>(views, 0.9, 1e-7);
+    newmark_ = std::make_unique<GeneralizedAlpha>(views, 0.9, 1e-7);
     DynamicState rest;
     rest.displacement = rest.velocity = Eigen::VectorXd::Zero(model_.fem().dof_count());
     states_.assign(systems_.size(), rest);
@@ -71,7 +71,7 @@ class HeapInSteps : public testing::TestWithParam<Case> {
 
   Model model_;
   std::vector<std::unique_ptr<ModelSystem>> systems_;
-  std::unique_ptr<Newmark> newmark_;
+  std::unique_ptr<GeneralizedAlpha> newmark_;
   std::vector<DynamicState> states_;
   int watched_ = 0;
   double moved_ = 0.0;

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "../box_model.hpp"
+#include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/forward/full_model.hpp"
 #include "tissue_stiffness/forward/reduced_model.hpp"
 #include "tissue_stiffness/forward/reduced_trajectory.hpp"

@@ -273,7 +273,7 @@ TEST(ReducedModel, ShowsManyInstantsAsItShowsEach) {
   FirstOrderModel first_order(model);
   for (ForwardModel* forward : std::initializer_list<ForwardModel*>{&reduced, &first_order}) {
     for (const std::vector<int>& nodes : {std::vector<int>{}, std::vector<int>{3, 7, mesh.node_count() - 1}}) {
-      forward->focus(nodes);
+      forward->restrict_output_to(nodes);
       const auto run = forward->start(theta, 0.0), step = forward->start(theta, 0.0);
       std::size_t shown = 0;
       forward->advance_through(*run, times, [&](std::size_t k, const Eigen::Ref<const Eigen::VectorXd>& u) {
@@ -377,7 +377,7 @@ TEST(ReducedModel, ModesAreOrthonormalInMassAndDiagonalInStiffness) {
 
 // What the mesh does to a body's frequencies is found without a factor.
 TEST(ReducedModel, NeedsNoFactorBesideTheMeshThatItsOwnWasRefinedFrom) {
-  const TetMesh coarse = bar_mesh(8, 2, 2), fine = refine(coarse);
+  const TetMesh coarse = bar_mesh(8, 2, 2), fine = refine_mesh(coarse);
   BasisOptions between;
   between.coarser = std::make_shared<const Prolongation>(prolongation(coarse, fine));
   const std::vector<std::string> known = {kInertia, elastic("{prior: 3.0e4, factor: 2}"), kFixed, kGravity};

@@ -43,7 +43,7 @@ TEST(BoxMesh, FacetsCloseAndPointOutwards) {
 TEST(Elevate, PutsSharedNodesInTheMiddleOfEdges) {
   TetMesh mesh = make_box_mesh({1.0, 1.0, 1.0}, 1, 1, 1, 1);
   const TetMesh linear = mesh;
-  elevate(mesh);
+  elevate_to_quadratic(mesh);
   EXPECT_EQ(mesh.node_count(), 8 + 19);  // a Kuhn cube has 12 + 6 + 1 edges
   for (int tet = 0; tet < mesh.tet_count(); ++tet) {
     for (int edge = 0; edge < 6; ++edge) {

@@ -5,6 +5,7 @@
 #include "mesh_checks.hpp"
 #include "tissue_stiffness/meshing/box_mesh.hpp"
 #include "tissue_stiffness/meshing/elevate.hpp"
+#include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -20,7 +21,7 @@ TetMesh one_tet(const Eigen::Vector3d& apex) {
 
 TEST(MeshQuality, OfARegularTetrahedronIsOne) {
   TetMesh mesh = one_tet({0.5, std::sqrt(0.75) / 3.0, std::sqrt(2.0 / 3.0)});
-  elevate(mesh);
+  elevate_to_quadratic(mesh);
   const MeshQuality quality = measure_quality(mesh);
   EXPECT_NEAR(quality.least_radius_ratio, 1.0, 1e-12);
   EXPECT_NEAR(quality.least_dihedral_angle, std::acos(1.0 / 3.0), 1e-12);
@@ -39,7 +40,7 @@ TEST(MeshQuality, OfAFlatTetrahedronIsSmall) {
 
 TEST(MeshQuality, IsToldInOneLine) {
   const TetMesh mesh = make_box_mesh({0.1, 0.1, 0.1}, 1, 1, 1, 2);
-  const std::string line = describe(mesh, measure_quality(mesh));
+  const std::string line = describe_quality(mesh, measure_quality(mesh));
   expect_contains(line, "6 10-node tetrahedra, 27 nodes");
   expect_contains(line, "least dihedral angle 45 deg");
   EXPECT_EQ(line.find('\n'), std::string::npos);

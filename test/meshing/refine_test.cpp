@@ -12,7 +12,7 @@ namespace {
 TEST(Refine, CutsEachTetrahedronIntoEightOfTheSameVolume) {
   for (const int order : {1, 2}) {
     const TetMesh coarse = make_box_mesh({0.1, 0.02, 0.03}, 3, 2, 2, order);
-    const TetMesh fine = refine(coarse);
+    const TetMesh fine = refine_mesh(coarse);
     ASSERT_EQ(fine.tet_count(), 8 * coarse.tet_count());
     EXPECT_EQ(fine.facet_count(), 4 * coarse.facet_count());
     EXPECT_EQ(fine.quadratic(), coarse.quadratic());
@@ -24,7 +24,7 @@ TEST(Refine, CutsEachTetrahedronIntoEightOfTheSameVolume) {
 
 TEST(Refine, KeepsTheNumbersOfAllNodes) {
   const TetMesh coarse = make_box_mesh({1.0, 1.0, 1.0}, 2, 2, 2, 2);
-  const TetMesh fine = refine(coarse);
+  const TetMesh fine = refine_mesh(coarse);
   EXPECT_EQ(fine.corner_count, coarse.node_count());
   EXPECT_EQ(fine.nodes.leftCols(coarse.node_count()), coarse.nodes);
 }
@@ -33,7 +33,7 @@ TEST(Refine, FollowsCurvedEdges) {
   TetMesh coarse = make_box_mesh({1.0, 1.0, 1.0}, 2, 1, 1, 2);
   const auto bend = [](const Eigen::Vector3d& x) { return Eigen::Vector3d(x.x(), x.y(), x.z() + 0.1 * x.x() * x.x()); };
   for (int i = 0; i < coarse.node_count(); ++i) coarse.nodes.col(i) = bend(coarse.nodes.col(i));
-  const TetMesh fine = refine(coarse);
+  const TetMesh fine = refine_mesh(coarse);
   for (int i = 0; i < fine.node_count(); ++i) {  // a quadratic map is exact on a quadratic mesh
     const Eigen::Vector3d x = fine.nodes.col(i);
     const double rest = x.z() - 0.1 * x.x() * x.x();
@@ -44,11 +44,11 @@ TEST(Refine, FollowsCurvedEdges) {
 TEST(Refine, KeepsRegionsWhateverShapeTheyHad) {
   for (const int order : {1, 2}) {
     const TetMesh coarse = make_box_mesh({0.1, 0.02, 0.02}, 4, 1, 1, order);
-    const TetMesh fine = refine(coarse);
+    const TetMesh fine = refine_mesh(coarse);
     const RegionSettings clamp{"clamp", BoxShape{{-1, -1, -1}, {1e-6, 1, 1}}};
     const RegionSettings near{"near", BoxShape{{-1, -1, -1}, {0.0500001, 1, 1}}};
     const auto regions = resolve_regions({clamp, near}, coarse), wanted = resolve_regions({clamp, near}, fine);
-    const auto found = refine(regions, coarse, fine);
+    const auto found = refine_regions(regions, coarse, fine);
     for (const std::string name : {"clamp", "near"}) {
       EXPECT_EQ(found.at(name).nodes, wanted.at(name).nodes) << name;
       EXPECT_EQ(found.at(name).facets, wanted.at(name).facets) << name;
@@ -61,7 +61,7 @@ TEST(Refine, KeepsRegionsWhateverShapeTheyHad) {
 TEST(Refine, ProlongsWhatTheMeshHolds) {
   for (const int order : {1, 2}) {
     const TetMesh coarse = make_box_mesh({1.0, 1.0, 1.0}, 2, 3, 2, order);
-    const TetMesh fine = refine(coarse);
+    const TetMesh fine = refine_mesh(coarse);
     const auto held = [order](const TetMesh& mesh) {
       const Eigen::ArrayXd x = mesh.nodes.row(0), y = mesh.nodes.row(1), z = mesh.nodes.row(2);
       const Eigen::ArrayXd bent = x * x - 0.7 * x * y + 1.3 * y * z - z * z;

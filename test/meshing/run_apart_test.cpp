@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstdlib>
 
+#include "tissue_stiffness/types/error.hpp"
 #include "tissue_stiffness/types/stop_request.hpp"
 
 namespace tissue_stiffness {

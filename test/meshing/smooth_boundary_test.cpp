@@ -21,7 +21,7 @@ TetMesh faceted_ball(int cells) {
     const double reach = x.cwiseAbs().maxCoeff();
     mesh.nodes.col(i) = reach > 0.0 ? Eigen::Vector3d(x.normalized() * reach) : x;
   }
-  elevate(mesh);
+  elevate_to_quadratic(mesh);
   return mesh;
 }
 

@@ -237,7 +237,7 @@ TEST(ReportHtml, LongRunsStaySmallAndKeepTheirPeaks) {
 
 Diagnosis example_diagnosis() {
   Diagnosis d;
-  d.verdict = "missing";
+  d.verdict = Verdict::missing;
   d.set = {"viscous_damping", "mass_damping"};
   d.best = {{"viscous_damping"}, 0.91, 1.1e-4};
   MissingEffect best;
@@ -257,7 +257,7 @@ Diagnosis example_diagnosis() {
   d.next_experiment = "excite two modes";
   d.steps = {{{}, {{"elasticity.young_modulus", 19e3}}, 3e-4, 3.1e-4, 1e-4},
              {{"viscous_damping"}, {{"elasticity.young_modulus", 12e3}}, 1e-4, 1.1e-4, 1e-4}};
-  d.final_verdict = "adequate";
+  d.final_verdict = Verdict::adequate;
   d.final_effects = {"viscous_damping"};
   d.candidates.front().probability = 0.94;
   d.candidates.front().z = 1.2;
@@ -331,7 +331,7 @@ TEST(Interrupted, ADiagnosisSaysWhatIsNotKnown) {
   EXPECT_EQ(own_part(empty).find("id=\"fails\""), std::string::npos);
   Diagnosis fitted = example_diagnosis();
   fitted.interrupted = "refit with added_mass";
-  fitted.verdict = fitted.final_verdict = "unfinished";
+  fitted.verdict = fitted.final_verdict = Verdict::unfinished;
   const std::string page = diagnosis_html(fitted, {}, {});
   for (const std::string words :
        {"no verdict yet", "There is no verdict yet", "not known yet whether something is missing"}) {

@@ -10,9 +10,9 @@ namespace {
 const EffectEntry kFibres{"fibres",
                           {{"region", "tip"},
                            {"direction", Eigen::Vector3d(0.0, 1.0, -1.0 / 3.0)},
-                           {"angle", normal(-0.7853981634, 0.3)},
-                           {"modulus", log_normal(15e3, 3.0)},
-                           {"force", normal(Eigen::Vector3d(1.0, 2e-9, 0.0), 0.1)},
+                           {"angle", normal_prior(-0.7853981634, 0.3)},
+                           {"modulus", log_normal_prior(15e3, 3.0)},
+                           {"force", normal_prior(Eigen::Vector3d(1.0, 2e-9, 0.0), 0.1)},
                            {"tau", 1.0 / 3.0}}};
 
 TEST(EffectEntry, IsWrittenAsInAModelFile) {

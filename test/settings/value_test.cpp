@@ -167,10 +167,10 @@ TEST(Yaml, WrongTextIsRefusedWithItsLine) {
 }
 
 TEST(Suggestion, OnlyNearWordsAreSuggested) {
-  EXPECT_EQ(closest("elastcity", {"inertia", "elasticity"}), "elasticity");
-  EXPECT_EQ(closest("gravtiy", {"gravity", "traction"}), "gravity");
-  EXPECT_EQ(closest("pressure", {"inertia", "fixed"}), "");
-  EXPECT_EQ(join({}), "nothing");
+  EXPECT_EQ(closest_word("elastcity", {"inertia", "elasticity"}), "elasticity");
+  EXPECT_EQ(closest_word("gravtiy", {"gravity", "traction"}), "gravity");
+  EXPECT_EQ(closest_word("pressure", {"inertia", "fixed"}), "");
+  EXPECT_EQ(join_words({}), "nothing");
 }
 
 }  // namespace

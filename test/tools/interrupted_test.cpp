@@ -8,6 +8,7 @@
 #include "tissue_stiffness/tools/estimate_recording.hpp"
 #include "tissue_stiffness/tools/exit_code.hpp"
 #include "tissue_stiffness/tools/simulate_scene.hpp"
+#include "tissue_stiffness/types/error.hpp"
 #include "workbench.hpp"
 
 namespace tissue_stiffness {
@@ -45,13 +46,13 @@ TEST(ExitCode, OfEveryState) {
 
 TEST(ExitCode, OfEveryVerdict) {
   Diagnosis diagnosis;
-  diagnosis.verdict = "unexplained";  // of the given model; what counts is what became of it
-  for (const auto& [verdict, code] : {std::pair{"adequate", ExitCode::answered},
-                                      {"missing", ExitCode::answered},
-                                      {"numerics", ExitCode::answered},
-                                      {"unexplained", ExitCode::not_to_be_used}}) {
+  diagnosis.verdict = Verdict::unexplained;  // of the given model; what counts is what became of it
+  for (const auto& [verdict, code] : {std::pair{Verdict::adequate, ExitCode::answered},
+                                      {Verdict::missing, ExitCode::answered},
+                                      {Verdict::numerics, ExitCode::answered},
+                                      {Verdict::unexplained, ExitCode::not_to_be_used}}) {
     diagnosis.final_verdict = verdict;
-    EXPECT_EQ(exit_code(diagnosis), code) << verdict;
+    EXPECT_EQ(exit_code(diagnosis), code) << to_string(verdict);
   }
   diagnosis.interrupted = "refit with added_mass";
   EXPECT_EQ(exit_code(diagnosis), ExitCode::interrupted);

@@ -9,7 +9,7 @@
 
 namespace tissue_stiffness {
 
-/// Images of one silhouette whose body is darker than its background in more than half of them (see shows_dark_body).
+/// Finds images of a silhouette whose body is darker than its background in more than half of them (see shows_dark_body).
 SetupFindings check_images(const ObservationSettings& observation, const std::vector<cv::Mat>& images);
 
 }  // namespace tissue_stiffness

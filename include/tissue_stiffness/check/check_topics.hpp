@@ -15,35 +15,36 @@ struct Topic {
   std::string name, type;
 };
 
-/// A topic that the model file asks for.
+/// A topic that the model file requires.
 struct NeededTopic {
-  std::string key;  ///< that names it
+  std::string key;  ///< key that names the topic
   Topic topic;
 };
 
-/// Topics of observations and loads, each once.
+/// Returns the topics of observations and loads, each once.
 std::vector<NeededTopic> needed_topics(const ModelSettings& settings);
 
-/// Needed topics that are not among those there are, or are of another type. Suggests the one of the most similar name, and
-/// those of the same type. `lack`: what lacks it, "the recording lacks" or "no node publishes".
+/// Finds needed topics that are not in `there`, or have another type. Suggests the one with the most similar name, and
+/// those with this type. `lack`: what lacks the topic, "the recording lacks" or "no node publishes".
 SetupFindings check_topics(const std::vector<NeededTopic>& needed, const std::vector<Topic>& there,
                            const std::string& lack);
 
-/// When a topic's messages were stamped and when they were recorded [s], in the order in which they were recorded.
+/// Stamps of a topic's messages and the times at which they were recorded [s], in the order of recording.
 struct TopicTimes {
   std::string topic;
   std::vector<double> stamps, arrivals;
 };
 
-/// Topics that stopped before the last of the others did: for more than ten times their longest gap until then, and for
-/// more than a tenth of the recording.
+/// Finds topics that stopped before the last of the others did. They were silent for more than ten times their longest gap
+/// until then, and for more than a tenth of the recording.
 SetupFindings check_stops(const std::vector<TopicTimes>& topics);
 
-/// Clocks that are apart. Stamps of a topic that share no instant with those of the first one, or whose median lead over
-/// the record time differs from the first one's by more than 0.5 s, for which the reader does not wait.
+/// Finds clocks that differ. Either a topic's stamps share no instant with those of the first one, or its median lead over
+/// the record time differs from the first one's by more than 0.5 s. The reader does not wait longer than that.
 SetupFindings check_clocks(const std::vector<TopicTimes>& topics);
 
-/// Frames of messages (by topic) that no chain of transforms joins with the model's. `transforms`: parent and child.
+/// Finds frames of messages (by topic) that no chain of transforms connects with the model's. `transforms`: parent and
+/// child.
 SetupFindings check_frames(const std::map<std::string, std::string>& frames,
                            const std::vector<std::pair<std::string, std::string>>& transforms,
                            const std::string& model_frame);

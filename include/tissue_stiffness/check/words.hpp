@@ -6,7 +6,7 @@
 
 namespace tissue_stiffness {
 
-/// A number for a sentence: at most `digits` significant digits, no zeros at the end of its decimals.
+/// Formats a number for a sentence: at most `digits` significant digits, without trailing zeros in its decimals.
 inline std::string plain_number(double value, int digits = 3) {
   std::string text = short_number(value, digits);
   if (text.find('.') == std::string::npos || text.find('e') != std::string::npos) return text;

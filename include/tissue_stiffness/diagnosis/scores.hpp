@@ -5,47 +5,48 @@
 
 namespace tissue_stiffness {
 
-/// A missing effect as the residual sees it: one column a component of its amplitude.
+/// A tangent is a missing effect as the residual sees it, with one column for each component of its amplitude.
 struct Tangent {
   Eigen::MatrixXd columns;  ///< N x components: d rows / d amplitude, in sigmas per unit
   Eigen::VectorXd prior_std;
 };
 
-/// What the residual says of one tangent.
+/// A score is what the residual says of one tangent.
 struct Score {
   Eigen::VectorXd amplitude;      ///< least squares, (x^T x)^-1 x^T e
-  double log_bayes_factor = 0.0;  ///< of adding it with its prior
+  double log_bayes_factor = 0.0;  ///< for adding it with its prior
   double explained = 0.0;         ///< sum of squares that it takes off the residual [sigma^2]
   double cosine_with(const Score& other) const;
   Eigen::VectorXd direction;  ///< N: what it explains, unit length; zero when nothing is left of it
 };
 
-/// Scores on the residual e, after what `known` (N x p) explains is projected off residual and tangents alike, where each
-/// row's error has the `variance` s [sigma^2]:
+/// The scorer works on the residual e, where each row's error has the `variance` s [sigma^2]. What `nuisance_tangents` (N x
+/// p) explains is first projected off residual and tangents alike:
 ///   log BF = 1/2 b^T (I + G)^-1 b - 1/2 log |I + G|,  G = D x^T x D / s, b = D x^T e / s, D = diag(prior_std)
 class Scorer {
  public:
-  Scorer(const Eigen::VectorXd& residual, const Eigen::MatrixXd& known, double variance);
+  Scorer(const Eigen::VectorXd& residual, const Eigen::MatrixXd& nuisance_tangents, double variance);
 
   Score score(const Tangent& tangent) const;
 
  private:
   Eigen::MatrixXd project(const Eigen::MatrixXd& x) const;
 
-  Eigen::MatrixXd basis_;  ///< orthonormal, of `known`
+  Eigen::MatrixXd basis_;  ///< orthonormal, spans `nuisance_tangents`
   Eigen::VectorXd residual_;
   double variance_;
 };
 
-/// log of the mean of exp(values), without overflow.
+/// Returns the log of the mean of exp(values), without overflow.
 double log_mean_exp(const std::vector<double>& values);
 
-/// P(chi^2 >= `gain`) with so many degrees of freedom: the p-value of a likelihood ratio of exp(gain / 2) (Wilks 1938).
+/// Returns P(chi^2 >= `gain`) with so many degrees of freedom: the p-value of a likelihood ratio of exp(gain / 2) (Wilks
+/// 1938).
 double likelihood_ratio_p_value(double gain, double parameters);
 
-/// The largest log Bayes factor against a hypothesis whose test lies z standard deviations above its mean, over all
-/// alternatives under which that is likelier the larger z is: -log(-e p log p), p = P(Z >= z); 0 where p > 1/e (Sellke,
-/// Bayarri & Berger 2001, eq. 2).
+/// Returns the largest log Bayes factor against a hypothesis whose test lies z standard deviations above its mean. It is
+/// taken over all alternatives that become likelier as z grows: -log(-e p log p), p = P(Z >= z). It is 0 where p > 1/e
+/// (Sellke, Bayarri & Berger 2001, eq. 2).
 double log_bayes_factor_bound(double z);
 
 }  // namespace tissue_stiffness

@@ -16,7 +16,7 @@
 
 namespace tissue_stiffness {
 
-/// One number of an effect: from it follow the YAML key, the filter's layout and the documentation.
+/// One number of an effect. The YAML key, the filter's layout and the documentation follow from it.
 struct ParameterSpec {
   std::string name;
   std::string symbol;
@@ -24,98 +24,99 @@ struct ParameterSpec {
   double lower = 0.0;  ///< smallest value allowed
   double upper = 0.0;  ///< largest value allowed
   enum class Default { required, optional } presence = Default::required;
-  double value = 0.0;   ///< when the key is absent and optional
-  double absent = 0.0;  ///< value at which the model without the effect comes back; NaN where there is none
-  int components = 1;   ///< 3: a vector [x, y, z], parameters name_x, name_y, name_z
-  /// 1 sigma by which a declared number may be off where the model file says nothing of it; of a share: of its size.
+  double value = 0.0;   ///< default of an optional key
+  double absent = 0.0;  ///< value at which the model is that without the effect; NaN where there is none
+  int components = 1;   ///< 3: a vector [x, y, z] with parameters name_x, name_y, name_z
+  /// Default tolerance (1 sigma) of a declared number. The share is relative to the number's size.
   double tolerance = 0.0, tolerance_share = 0.0;
 };
 
-/// What an effect is, in words and numbers.
+/// Description of an effect in words and numbers.
 struct EffectSpec {
   std::string name;
   std::string summary;
   std::string formula;
   std::string source;
   std::vector<ParameterSpec> parameters;
-  std::vector<std::pair<std::string, std::string>> keys;  ///< further keys and what they take
-  Proposer proposals = nullptr;                           ///< null: its absence is nothing to look for
-  bool of_simulation = false;                             ///< no physics, but what a simulated recording has of its making
+  std::vector<std::pair<std::string, std::string>> keys;  ///< further keys and their values
+  Proposer proposals = nullptr;                           ///< null: its absence is not searched for
+  bool of_simulation = false;                             ///< not physics, but a property of simulated recordings
 };
 
-/// What an effect may look at while it is built.
+/// What is available to an effect while it is built.
 struct EffectContext {
   const TetMesh& mesh;
   const Discretisation& fem;
   const std::map<std::string, Region>& regions;
-  const ModelSettings& settings;         ///< the whole model file
+  const ModelSettings& settings;         ///< settings of the whole model file
   std::vector<std::vector<int>> solids;  ///< tetrahedra of each elasticity, in order
-  double young_modulus;                  ///< prior median [Pa], a scale for penalties
+  double young_modulus;                  ///< prior median [Pa], a scale for penalty stiffnesses
   CourseTable& courses;                  ///< time courses by topic
   std::vector<LoadInput>& inputs;
 
-  /// Throws InputError naming the key and the regions there are.
+  /// Returns the region. Throws InputError naming the key and the existing regions.
   const Region& region(const Value& name) const;
 };
 
-/// Instant at which a nonlinear effect is evaluated.
+/// State of the motion at which a nonlinear effect is evaluated.
 struct Motion {
   double time;
   const Eigen::VectorXd& displacement;  ///< 3n [m]
   const Eigen::VectorXd& velocity;      ///< 3n [m/s]
-  double finite_share = 0.0;            ///< of finite strain, 0 to 1
-  double load_factor = 1.0;             ///< of every measured load
-  double since = 0.0;                   ///< the recording's first stamp [s]
+  double finite_share = 0.0;            ///< share of finite strain, 0 to 1
+  double load_factor = 1.0;             ///< factor of every measured load
+  double since = 0.0;                   ///< time since the recording's first stamp [s]
 };
 
-/// What a sensor makes of the motion. Effects of the observation change it in place, in the order of the model file.
+/// The motion as a sensor observes it. Effects of the observation change it in place, in the order of the model file.
 struct ObservedMotion {
   const TetMesh& mesh;
   double time;                   ///< since the model's start [s]
-  Eigen::VectorXd displacement;  ///< apparent, 3n [m]
-  double outward = 0.0;          ///< of outlines and surface points, along their outward normal [m]
+  Eigen::VectorXd displacement;  ///< apparent displacement, 3n [m]
+  double outward = 0.0;          ///< shift of outlines and surface points along their outward normal [m]
 };
 
-/// One physical effect of the model. Hooks are const and default to nothing.
+/// One physical effect of the model. Its functions are const and do nothing by default.
 class Effect {
  public:
   virtual ~Effect() = default;
 
-  /// It follows from its own entry, the mesh and its regions alone, and nothing changes it: models of one body may share
-  /// it.
+  /// Returns whether the effect depends only on its own entry, the mesh and its regions, and never changes. Then models of
+  /// one body may share it.
   virtual bool shareable() const { return false; }
 
   virtual void linear_terms(LinearTerms&) const {}
-  /// Its parameters are followed by those of the model's elasticities.
+  /// Returns whether the parameters of the model's elasticities follow the effect's own.
   virtual bool needs_elasticity() const { return false; }
-  /// Nodes held at rest, and nodes of other effects that it lets go while releases() holds.
+  /// Nodes held at rest, and nodes of other effects that it releases while is_compliant() is true.
   virtual std::vector<int> fixed_nodes() const { return {}; }
-  virtual std::vector<int> released_nodes() const { return {}; }
-  virtual bool releases(const Parameters&) const { return false; }
+  virtual std::vector<int> compliant_nodes() const { return {}; }
+  virtual bool is_compliant(const Parameters&) const { return false; }
 
-  /// True when the two below replace the linear stiffness and loads under finite strain.
+  /// Returns whether the two functions below replace the linear stiffness and loads under finite strain.
   virtual bool has_finite_form() const { return false; }
-  /// Elasticity only: its law asks for finite strain.
+  /// Only for elasticity: returns whether its law requires finite strain.
   virtual bool always_finite() const { return false; }
   virtual void add_finite_force(const Motion&, const Parameters&, Eigen::VectorXd&) const {}
   virtual void add_finite_stiffness(const Motion&, const Parameters&, SparseMatrix&) const {}
 
-  /// True when the force below is not zero: the model is then integrated in full.
+  /// Returns whether the force below is not zero. The model is then integrated in full.
   virtual bool nonlinear() const { return false; }
-  /// Adds the force [N] (external minus internal) that is no linear term.
+  /// Adds the force [N] (external minus internal) that is not a linear term.
   virtual void add_force(const Motion&, const Parameters&, Eigen::VectorXd&) const {}
-  /// Adds -d force / d displacement [N/m]; symmetric, pattern of the discretisation.
+  /// Adds -d force / d displacement [N/m], which is symmetric and has the pattern of the discretisation.
   virtual void add_stiffness(const Motion&, const Parameters&, SparseMatrix&) const {}
-  /// The force depends on the velocity: then adds -d force / d velocity [N s/m], symmetric, the same pattern.
-  virtual bool rubs(const Parameters&) const { return false; }
-  virtual void add_friction(const Motion&, const Parameters&, SparseMatrix&) const {}
-  /// Stored energy [J], where the effect has one.
+  /// If the force depends on the velocity, adds -d force / d velocity [N s/m], which is symmetric and has the
+  /// discretisation's pattern.
+  virtual bool has_velocity_tangent(const Parameters&) const { return false; }
+  virtual void add_velocity_tangent(const Motion&, const Parameters&, SparseMatrix&) const {}
+  /// Returns the stored energy [J], if the effect has one.
   virtual double energy(const Motion&, const Parameters&) const { return 0.0; }
 
-  /// True when the two below do something.
+  /// Returns whether the two functions below do something.
   virtual bool observes() const { return false; }
   virtual void observe(const Parameters&, ObservedMotion&) const {}
-  /// How late measurements are stamped [s].
+  /// Returns the delay of the measurements' stamps [s].
   virtual double delay(const Parameters&) const { return 0.0; }
 };
 

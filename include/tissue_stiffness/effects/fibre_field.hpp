@@ -9,30 +9,30 @@
 
 namespace tissue_stiffness {
 
-/// Straight line about which fibres wind.
+/// Straight line around which fibres are wound.
 struct Axis {
   Eigen::Vector3d point, direction;
 };
 
-/// Through the body's centroid, along the principal axis that differs most from the other two: the axis of a body of
-/// revolution, the length of a bar. z where no axis stands out.
+/// Returns the axis through the body's centroid along the principal axis that differs most from the other two. This is the
+/// axis of a body of revolution, or the length of a bar. It is z where no axis differs clearly.
 Axis principal_axis(const TetMesh& mesh);
 
-/// Unit directions of fibres at the quadrature points, from the keys `direction` ([x, y, z], circumferential, longitudinal
-/// or radial), `axis` and `center`, and two angles: a = cos(tilt) (cos(angle) e1 + sin(angle) e2) + sin(tilt) e3. e1 is the
-/// direction asked for; about an axis e2 leads from circumferential to longitudinal (or back) and e3 is radial, so that
-/// `angle` is the helix angle.
+/// Unit directions of fibres at the quadrature points. They come from the keys `direction` ([x, y, z], circumferential,
+/// longitudinal or radial), `axis` and `center`, and from two angles: a = cos(tilt) (cos(angle) e1 + sin(angle) e2) +
+/// sin(tilt) e3. The requested direction is e1. For directions about an axis e2 leads from circumferential to longitudinal
+/// (or back) and e3 is radial, so that `angle` is the helix angle.
 class FibreField {
  public:
-  /// Throws InputError for a direction that is none.
+  /// Reads the keys. Throws InputError for a direction that is zero.
   FibreField(const Value& arguments, const EffectContext& context);
 
   Eigen::Vector3d direction(int e, int q, double angle, double tilt) const;
 
-  /// The keys, for an effect's spec, and its parameters `angle` and `tilt`.
+  /// These return the keys for an effect's spec, and its parameters `angle` and `tilt`.
   static std::vector<std::pair<std::string, std::string>> keys();
   static std::vector<ParameterSpec> angles();
-  /// Directions worth trying on a body: the argument `direction` and an angle [rad] each.
+  /// Directions worth trying on a body, each as the argument `direction` and an angle [rad].
   struct Trial {
     Argument direction;
     double angle;
@@ -49,16 +49,16 @@ class FibreField {
   Axis axis_;
 };
 
-/// Tension along the fibres [Pa] (second Piola-Kirchhoff) and its derivative, for the Green strain along them.
+/// Tension along the fibres [Pa] (second Piola-Kirchhoff) and its derivative with respect to the Green strain along them.
 struct FibreTension {
   double value, slope;
 };
 using FibreLaw = std::function<FibreTension(double strain)>;
-/// Direction at a quadrature point.
+/// Returns the direction at a quadrature point.
 using FibreDirections = std::function<Eigen::Vector3d(int e, int q)>;
 
-/// Fibres under finite strain: subtracts the internal force int S (F a) (a . grad N) dV, S = tension((|F a|^2 - 1) / 2),
-/// and adds its derivative (Holzapfel 2000, sec. 6.7).
+/// Fibres under finite strain. The first subtracts the internal force int S (F a) (a . grad N) dV with S = tension((|F a|^2
+/// - 1) / 2). The second adds its derivative (Holzapfel 2000, sec. 6.7).
 void add_fibre_force(const Discretisation& fem, const FibreDirections& directions, const FibreLaw& law,
                      const Eigen::VectorXd& u, Eigen::VectorXd& force);
 void add_fibre_stiffness(const Discretisation& fem, const FibreDirections& directions, const FibreLaw& law,

@@ -10,48 +10,49 @@
 
 namespace tissue_stiffness {
 
-/// What the sensor of a load may do wrong, each as a standard deviation. A negative `bias`, `noise` or `hysteresis` is a
-/// share of the largest load in the recording: -0.1 is 10 % of it.
+/// Errors of a load's sensor, each as a standard deviation. A negative `bias`, `noise` or `hysteresis` is a share of the
+/// largest load in the recording: -0.1 is 10 % of it.
 struct LoadTolerance {
   double gain = 0.1;              ///< relative error of the scale [-]
   double bias = -0.1;             ///< constant offset of each component [N or Pa]
   double noise = -0.02;           ///< slow noise of each component [N or Pa]
-  double correlation_time = 0.5;  ///< of that noise: its autocorrelation is exp(-|t| / correlation_time) [s]
-  double delay = 0.01;            ///< how late the load is stamped [s]
-  double hysteresis = -0.03;      ///< of each component, along the sign of its rate of change [N or Pa]
+  double correlation_time = 0.5;  ///< of this noise, whose autocorrelation is exp(-|t| / correlation_time) [s]
+  double delay = 0.01;            ///< delay of the load's stamp [s]
+  double hysteresis = -0.03;      ///< error of each component along the sign of its rate of change [N or Pa]
   double direction = 0.05;        ///< rotation of the sensor about each axis [rad]; a pressure has none
 
-  /// True when the load is taken as exact.
+  /// Returns whether the load is taken as exact.
   bool exact() const;
 };
 
-/// Keys of a load that its tolerance is read from, with what each takes; `unit`: N or Pa.
+/// Returns the keys of a load from which its tolerance is read, and the values they take. `unit`: N or Pa.
 std::vector<std::pair<std::string, std::string>> load_error_keys(const std::string& unit, bool has_direction);
-/// Reads them from a load's entry. A `scale` that is estimated takes the place of the gain. Throws InputError for a value
-/// that is not >= 0.
+/// Reads the tolerance from a load's entry. An estimated `scale` replaces the gain. Throws InputError for a value that is
+/// not >= 0.
 LoadTolerance read_load_tolerance(const Value& arguments, bool has_direction);
 
 /// Linear model of a load's error: measured(t) = true(t) + B(t) eta with eta ~ N(0, I). The columns of B are the measured
-/// load (gain), unit loads (bias), its rate (delay), the sign of its rate (hysteresis), its turn about each axis
-/// (direction), and hat functions whose covariance at their knots is that of an Ornstein-Uhlenbeck process (noise).
+/// load (gain), unit loads (bias), the load's rate (delay), the sign of its rate (hysteresis), and its rotation about each
+/// axis (direction). Further columns are hat functions whose covariance at their knots is that of an Ornstein-Uhlenbeck
+/// process (noise).
 class LoadErrorBasis {
  public:
   using Load = std::function<Eigen::VectorXd(double)>;  ///< components at a time [s]
 
   LoadErrorBasis() = default;
-  /// `measured`: 1 (pressure) or 3 (force) components; `begin`, `end`: the recording's span [s].
+  /// `measured`: 1 (pressure) or 3 (force) components; `begin`, `end`: time span of the recording [s].
   LoadErrorBasis(const LoadTolerance& tolerance, const Load& measured, int components, double begin, double end);
 
   int size() const { return size_; }
   int components() const { return components_; }
-  /// B(t), components x size [N or Pa].
+  /// Returns B(t), components x size [N or Pa].
   Eigen::MatrixXd value(const Load& measured, double time) const;
 
   /// Columns of one kind of error: "gain", "bias", "delay", "hysteresis", "direction" or "noise".
   struct Group {
     std::string name;
     int first = 0, count = 0;
-    double std = 0.0;  ///< of one component [unit]
+    double std = 0.0;  ///< 1 sigma of one component [unit]
     std::string unit;  ///< "-", "s", "rad"; empty: that of the load
   };
   const std::vector<Group>& groups() const { return groups_; }
@@ -60,7 +61,7 @@ class LoadErrorBasis {
   void add(const std::string& name, int count, double std, const std::string& unit);
   Eigen::RowVectorXd hats(double time) const;
 
-  LoadTolerance tolerance_;  ///< resolved: absolute values alone
+  LoadTolerance tolerance_;  ///< with absolute values only
   int components_ = 0, size_ = 0;
   double begin_ = 0.0, spacing_ = 1.0, rate_ = 0.0;
   Eigen::MatrixXd knots_;  ///< square root of the noise's covariance at the knots

@@ -8,18 +8,18 @@
 
 namespace tissue_stiffness::effects {
 
-/// A surface under a pressure p that pushes on the tissue: the nodal forces -p int N_a n dA (Bonet & Wood 2008,
-/// sec. 8.5.2), n the outward normal.
+/// A surface under a pressure p that acts on the tissue. Its nodal forces are -p int N_a n dA, where n is the outward
+/// normal (Bonet & Wood 2008, sec. 8.5.2).
 class PressedSurface {
  public:
-  /// `region`: facets of the mesh. Throws InputError where it is none.
+  /// `region`: facets of the mesh. Throws InputError for a region without facets.
   PressedSurface(const Value& region, const EffectContext& context);
 
-  /// Adds the force [N] of `pressure` [Pa] on the surface at rest, or displaced by u [m], where that is not null.
+  /// Adds the force [N] of `pressure` [Pa] on the surface at rest, or displaced by u [m] if u is not null.
   void add_force(const Eigen::VectorXd* u, double pressure, Eigen::VectorXd& force) const;
-  /// Adds -d force / d u, its symmetric part: exact but for the edge of the surface.
+  /// Adds the symmetric part of -d force / d u, which is exact except at the edge of the surface.
   void add_stiffness(const Eigen::VectorXd& u, double pressure, SparseMatrix& stiffness) const;
-  /// The force of a unit pressure on the surface at rest [N/Pa].
+  /// Returns the force of a unit pressure on the surface at rest [N/Pa].
   Eigen::VectorXd unit_force() const;
 
  private:

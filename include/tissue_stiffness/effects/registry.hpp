@@ -18,31 +18,32 @@ namespace effects {
 #undef EFFECT
 }  // namespace effects
 
-/// Time course of a measured load from the keys `topic` or `course: {file}`. Registers the topic in context.inputs.
+/// Returns the time course of a measured load from the keys `topic` or `course: {file}`. Registers the topic in
+/// context.inputs.
 std::shared_ptr<Course> load_course(const Value& arguments, LoadInput::Kind kind, const EffectContext& context);
 
-/// A course from {file: ...}, looked up in the model file's folder. Times count from the recording's first stamp.
+/// Returns a course from {file: ...}, relative to the model file's folder. Times count from the recording's first stamp.
 std::shared_ptr<Course> load_csv(const Value& course, int components, const EffectContext& context);
 
-/// The library: every effect's spec, in the order of effects.def.
+/// Returns the library: every effect's spec, in the order of effects.def.
 const std::vector<EffectSpec>& effect_specs();
 
-/// Throws InputError naming the effects there are.
+/// Returns the spec of an entry's effect. Throws InputError naming the existing effects.
 const EffectSpec& effect_spec(const EffectSettings& settings);
 
-/// Tetrahedra that an elasticity fills. Throws InputError for a region without any.
+/// Returns the tetrahedra that an elasticity fills. Throws InputError for a region without any.
 std::vector<int> solid_elements(const Value& arguments, int element_count, const std::map<std::string, Region>& regions);
 
-/// Throws InputError naming the key and the regions there are.
+/// Returns the region. Throws InputError naming the key and the existing regions.
 const Region& find_region(const Value& name, const std::map<std::string, Region>& regions);
-/// The same, and refuses a region without boundary facets.
+/// Returns the region as find_region does. Throws InputError, too, for a region without boundary facets.
 const Region& find_surface(const Value& name, const std::map<std::string, Region>& regions);
 
-/// Values and priors of an effect's parameters, vectors spread out, in the order of the spec. Throws InputError for a value
-/// that is missing or out of bounds.
+/// Returns values and priors of an effect's parameters in the order of the spec, with one entry for each component of a
+/// vector. Throws InputError for a value that is missing or out of bounds.
 std::vector<Quantity> read_parameters(const EffectSettings& settings);
 
-/// Builds an effect. Throws InputError for a key that is missing, wrong or unknown. read_parameters must have been called.
+/// Builds an effect. read_parameters must have been called. Throws InputError for a key that is missing, wrong or unknown.
 std::unique_ptr<Effect> make_effect(const EffectSettings& settings, const EffectContext& context);
 
 }  // namespace tissue_stiffness

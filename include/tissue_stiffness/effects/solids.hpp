@@ -7,11 +7,11 @@
 
 namespace tissue_stiffness {
 
-/// The model's elasticities as an effect sees them that alters their law and needs_elasticity(): where they are, and their
-/// parameters behind the effect's own.
+/// The model's elasticities, for an effect that alters their law and needs_elasticity(). It knows the elements of each
+/// elasticity, and finds its parameters after the effect's own.
 class Solids {
  public:
-  /// `own`: number of the effect's own parameters, vectors spread out.
+  /// `own`: number of the effect's own parameters, counting the components of vectors.
   Solids(const EffectContext& context, int own);
 
   std::size_t count() const { return solids_.size(); }

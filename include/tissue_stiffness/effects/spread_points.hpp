@@ -9,10 +9,11 @@ namespace tissue_stiffness {
 /// Places spread evenly over a body.
 struct SpreadPoints {
   Eigen::Matrix3Xd points;  ///< [m]
-  double distance;          ///< typical, between neighbours [m]
+  double distance;          ///< typical distance between neighbours [m]
 };
 
-/// Centres of a k-means partition of the volume (Lloyd 1982) from a farthest-point start: the same for the same mesh.
+/// Returns the centres of a k-means partition of the volume (Lloyd 1982), started from a farthest-point selection. The
+/// result depends only on the mesh.
 SpreadPoints spread_points(const TetMesh& mesh, int count);
 
 }  // namespace tissue_stiffness

@@ -11,19 +11,19 @@
 
 namespace tissue_stiffness {
 
-/// The effect's own parameter values, in the order of its spec, vectors spread out; behind them, for an effect that
-/// needs_elasticity(), modulus and Poisson's ratio of every elasticity of the model in turn.
+/// Values of the effect's own parameters, in the order of its spec, with the components of vectors. For an effect that
+/// needs_elasticity(), modulus and Poisson's ratio of every elasticity of the model follow.
 using Parameters = Eigen::Ref<const Eigen::VectorXd>;
 using Coefficient = std::function<double(const Parameters&)>;
 
-/// Contributions that are linear in displacement and velocity: coefficient(parameters) times a constant.
+/// A contribution that is linear in displacement and velocity: coefficient(parameters) times a constant matrix.
 struct MatrixTerm {
-  std::shared_ptr<const SparseMatrix> matrix;  ///< 3n x 3n, the effect's; a local term stores its own non-zeros only
+  std::shared_ptr<const SparseMatrix> matrix;  ///< 3n x 3n; a local term stores only its own non-zeros
   Coefficient coefficient;
 };
 
 /// Stiffness coefficient(p) int B^T R R^T B dV, whose integrand may depend on parameters (a place, an angle). It is never
-/// stored in full: a reduced basis projects it anew for each p.
+/// stored in full: a reduced basis projects it again for each p.
 struct StrainTerm {
   std::function<StrainFactor(int e, int q, const Parameters&)> factor;
   Coefficient coefficient;
@@ -39,19 +39,19 @@ struct LoadTerm {
   Eigen::VectorXd pattern;  ///< nodal forces of a unit load, 3n
   Coefficient coefficient;
   std::shared_ptr<const Course> course;                         ///< a measured load; null: none
-  int component = 0;                                            ///< of the course
-  std::function<double(double, const Parameters&)> activation;  ///< of the time since the first stamp; null: 1
-  std::function<Eigen::VectorXd(const Parameters&)> shaped;     ///< pattern for parameters; null: constant
-  std::vector<int> shape;                                       ///< parameters that `shaped` depends on
+  int component = 0;                                            ///< component of the course
+  std::function<double(double, const Parameters&)> activation;  ///< function of the time since the first stamp; null: 1
+  std::function<Eigen::VectorXd(const Parameters&)> shaped;     ///< pattern for given parameters; null: it is constant
+  std::vector<int> shape;                                       ///< indices of the parameters that `shaped` depends on
 
-  /// `now` is absolute, `since` counts from the recording's first stamp [s].
+  /// Returns the load's value. `now` is absolute, `since` counts from the recording's first stamp [s].
   double value(double now, double since, const Parameters& p) const {
     if (course) return course->value(now, component);
     return activation ? activation(since, p) : 1.0;
   }
 };
 
-/// A branch of the standard linear solid on the whole stiffness at rest.
+/// A branch of the standard linear solid that acts on the whole stiffness at rest.
 struct RelaxationTerm {
   Coefficient modulus;
   Coefficient time_constant;
@@ -65,11 +65,11 @@ struct LinearTerms {
   std::vector<Coefficient> acceleration[3];    ///< body acceleration [m/s^2]; its force is the whole mass matrix times it
   std::vector<Coefficient> mass_damping;       ///< alpha [1/s]
   std::vector<Coefficient> stiffness_damping;  ///< beta [s]
-  std::vector<Coefficient> stiffness_inertia;  ///< of a mass proportional to the stiffness at rest [s^2]
+  std::vector<Coefficient> stiffness_inertia;  ///< factor of a mass proportional to the stiffness at rest [s^2]
   std::vector<RelaxationTerm> relaxation;
-  std::vector<Coefficient> mass_factor;   ///< multiplies every mass
-  std::vector<Coefficient> load_factor;   ///< multiplies every measured load
-  std::vector<Coefficient> finite_share;  ///< of finite strain, 0 to 1; the rest is small strain
+  std::vector<Coefficient> mass_factor;   ///< factors of every mass
+  std::vector<Coefficient> load_factor;   ///< factors of every measured load
+  std::vector<Coefficient> finite_share;  ///< share of finite strain, 0 to 1; the rest is small strain
 };
 
 }  // namespace tissue_stiffness

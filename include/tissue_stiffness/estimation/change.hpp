@@ -4,33 +4,34 @@
 #include <optional>
 #include <vector>
 
-#include "tissue_stiffness/estimation/fit_problem.hpp"
+#include "tissue_stiffness/fit/fit_problem.hpp"
 
 namespace tissue_stiffness {
 
-/// Parameters that changed while the body moved.
+/// A change says when the parameters changed while the body moved, and to what.
 struct Change {
-  RunStart from;          ///< when, and how the body moved then
-  Eigen::VectorXd w;      ///< after it, filter coordinates
-  Eigen::VectorXd doubt;  ///< of them, about 1 sigma, because of what is not known of the instant and of what was before
-  std::size_t first = 0;  ///< frame after it
+  RunStart from;                ///< instant of the change, and the body's motion then
+  Eigen::VectorXd w;            ///< parameters after it, filter coordinates
+  Eigen::VectorXd discrepancy;  ///< of w, about 1 sigma: the instant and the parameters before it are uncertain
+  std::size_t first = 0;        ///< first frame after it
 };
 
-/// What is known before a change.
+/// A question holds what is known before a change.
 struct ChangeQuestion {
   Eigen::VectorXd w;           ///< parameters before it, filter coordinates
-  Eigen::MatrixXd covariance;  ///< their posterior then
+  Eigen::MatrixXd covariance;  ///< their posterior at that time
   double misfit = 1.0;         ///< mean square error over sigma before it
-  std::optional<double> near;  ///< about when [s]; empty: somewhen in the last frames
+  std::optional<double> near;  ///< approximate instant [s]; empty: any time in the last frames
 };
 
-/// How far the parameters may have drifted over `span` [s], variance of each; of a second at least.
+/// Returns the variance by which each parameter may have drifted over `span` [s], or over a second if that is longer.
 Eigen::VectorXd drifted(const Model& model, double span);
 
-/// The change that explains the last frames: looks back from the newest over instants and, at each, along every
-/// drifting coordinate, for where the sum of squared errors over sigma and of the change over its own standard deviation is
-/// least; then closer around the best. Empty where that is not clearly less than without a change (by 20 and by four fifths
-/// of what the misfit exceeds the one before), as it is for physics that the model lacks. Throws NumericalError as runs do.
+/// Searches for the change that explains the last frames. It goes back from the newest over several instants and scans
+/// every drifting coordinate at each, then searches closer around the best. The cost is the sum of squared errors over
+/// sigma, plus that of the change over its own standard deviation. Returns nothing where the lowest cost is not clearly
+/// less than without a change, as for physics that the model lacks. It has to fall by 20, and by four fifths of the
+/// misfit's excess over the one before. Throws NumericalError as runs do.
 std::optional<Change> find_change(const FitProblem& problem, const ChangeQuestion& question);
 
 }  // namespace tissue_stiffness

@@ -3,25 +3,26 @@
 #include <optional>
 
 #include "tissue_stiffness/estimation/change.hpp"
-#include "tissue_stiffness/filter/anchored_filter.hpp"
+#include "tissue_stiffness/filter/posterior_linearization_filter.hpp"
 
 namespace tissue_stiffness {
 
-/// Watches the misfit for a rise above what it was at its best, which says that a drifting parameter may have changed.
+/// The watch waits for a rise of the misfit above its best level. Such a rise says that a drifting parameter may have
+/// changed.
 class ChangeWatch {
  public:
-  /// drifts: some parameter does; otherwise nothing is ever suspected.
+  /// `drifts` says whether some parameter drifts; otherwise nothing is ever suspected.
   explicit ChangeWatch(bool drifts) : drifts_(drifts) {}
 
-  /// Mean square error over sigma of a frame, and the filter after it.
-  void add(double square, const AnchoredFilter& filter);
+  /// Takes a frame's mean square error over sigma, and the filter after it.
+  void add(double square, const PosteriorLinearizationFilter& filter);
   bool suspicious() const { return suspicious_ > 0; }
-  /// A change would have been found by now, if it were one.
+  /// If a change were the cause, a search would have found it by now.
   bool searched() const { return suspicious_ > kSearchedFirst; }
-  /// What to search with, now and then while it is suspicious.
+  /// Returns what to search with, from time to time while the misfit is suspicious.
   std::optional<ChangeQuestion> due();
   void restart();
-  /// After a change: the misfit at its best is still known.
+  /// Starts anew after a change, but keeps the misfit's best level.
   void go_on();
 
  private:
@@ -32,9 +33,9 @@ class ChangeWatch {
   bool drifts_;
   int frames_ = 0;
   double recent_ = 0.0, average_ = 0.0;  ///< of the misfit, over a few frames and over more
-  double least_ = 0.0;                   ///< that the latter was
+  double least_ = 0.0;                   ///< lowest value of average_
   std::optional<ChangeQuestion> steady_;
-  int suspicious_ = 0;  ///< frames since it rose
+  int suspicious_ = 0;  ///< frames since the misfit rose
   int next_ = kSearchEvery;
 };
 

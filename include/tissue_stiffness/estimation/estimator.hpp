@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "tissue_stiffness/estimation/free_run.hpp"
-#include "tissue_stiffness/estimation/relatives.hpp"
+#include "tissue_stiffness/estimation/reuse_sources.hpp"
+#include "tissue_stiffness/fit/free_run.hpp"
 #include "tissue_stiffness/settings/model_settings.hpp"
 #include "tissue_stiffness/types/estimate.hpp"
 #include "tissue_stiffness/types/load_sample.hpp"
@@ -19,81 +19,82 @@
 
 namespace tissue_stiffness {
 
-/// What one step of the estimator gives.
+/// A step of the estimator gives this result.
 struct StepResult {
-  bool used = false;  ///< false: the frame was skipped, `reason` says why, the estimate is unchanged
+  bool used = false;  ///< false: the frame was skipped for `reason`, and the estimate is unchanged
   std::string reason;
   Estimate estimate;
   Misfit misfit;
-  std::map<std::string, double> seconds;  ///< wall time of each stage: predict, observe, update, revisit
+  std::map<std::string, double> seconds;  ///< wall time of each stage [s]: predict, observe, update, revisit, ...
 };
 
-/// Whether the data determine a parameter, and why.
+/// It tells whether the data determine a parameter, and why.
 struct Identifiability {
   std::string verdict;  ///< "absolute", "ratio_only" or "none"
   std::string reason;
 };
 
-/// The online estimator: frames in order of time go in, the posterior of the model's unknown parameters comes out.
-/// Not thread safe; one instance serves one stream.
+/// The online estimator takes frames in order of time and returns the posterior of the model's unknown parameters. It is
+/// not thread safe; one instance serves one stream.
 class Estimator {
  public:
   /// Throws InputError for a model that does not fit the mesh or the effects' specs.
-  Estimator(const ModelSettings& settings, const TetMesh& mesh, const Relatives& relatives = {});
+  Estimator(const ModelSettings& settings, const TetMesh& mesh, const ReuseSources& relatives = {});
   ~Estimator();
   Estimator(Estimator&&) noexcept;
 
-  /// Topics of the measured loads (pressure, wrench) that the model's effects ask for.
+  /// Returns the topics of the measured loads (pressure, wrench) that the model's effects ask for.
   const std::vector<LoadInput>& load_inputs() const;
 
-  /// Instant at which the body was at rest [s]: `time.start` counts from the recording's first stamp, which the caller
-  /// knows. Without this call the first frame's or load's time is taken as the first stamp.
+  /// Sets the recording's first stamp [s], which only the caller knows; the body was at rest `time.start` after it. Without
+  /// this call the first frame's or load's time is taken as the first stamp.
   void set_first_stamp(double time);
 
-  /// Lets what takes long (another look at all frames so far, the study of the mesh's error) run beside the frames instead
-  /// of holding one up; which frame first sees its result then depends on timing.
+  /// Moves long work (the reprocessing of all frames so far, the study of the mesh's error) into the background, so that no
+  /// frame waits for it. Which frame first sees a result then depends on timing.
   void work_in_background();
 
-  /// Feeds a load. Samples may come in any order up to the frame that needs them; between samples loads are linear in time,
+  /// Feeds a load. Samples may come in any order up to the frame that needs them. Between samples loads are linear in time;
   /// outside they are held.
   void add_load(const LoadSample& sample);
 
-  /// Predict, observe, update. A frame that is late, empty or makes the model diverge is skipped with the reason; never
-  /// throws on data.
+  /// Predicts, observes and updates. A frame that is late, empty or makes the model diverge is skipped with the reason. It
+  /// never throws on data.
   StepResult step(const Frame& frame);
 
-  /// What a look that ended after the last frame makes of that frame; empty when there is nothing new. For whoever works in
-  /// the background and has no frame to step with: never throws on data.
+  /// Returns what a reprocessing that ended after the last frame makes of that frame; empty when there is nothing new. A
+  /// caller that works in the background and has no frame to step with uses it. It never throws on data.
   std::optional<StepResult> catch_up();
-  /// Such a look is under way.
-  bool looks_back() const;
+  /// Returns true while such a reprocessing is under way.
+  bool reprocesses() const;
 
-  /// Steps through frames that were measured before, waiting for every look back, and with one look at
-  /// the mesh's error, at the end; the last used one's result, or the last's. `near`: the estimate as other means have it:
-  /// the first sigma points lie there, and nothing is looked at again before the end. `checkpoint` is called before every
+  /// Steps through frames that were measured before. It waits for every reprocessing, and studies the mesh's error once, at
+  /// the end. Returns the result of the last frame that was used, or of the last one. `near` is an estimate from elsewhere:
+  /// the first sigma points lie around it, and nothing is reprocessed before the end. `checkpoint` is called before every
   /// frame; what it throws ends the replay, and the estimator must then be reset.
   StepResult replay(
       const std::vector<Frame>& frames, const Estimate* near = nullptr, const std::function<void()>& checkpoint = [] {});
 
-  /// Back to the prior; loads and frames are forgotten.
+  /// Goes back to the prior; loads and frames are forgotten.
   void reset();
 
   const TetMesh& mesh() const;
   const Estimate& estimate() const;
-  /// Displacement of every mesh node at the last frame, at the estimate [m].
+  /// Returns the displacement of every mesh node at the last frame, at the estimate [m].
   const Eigen::Matrix3Xd& displacement() const;
-  /// The last frame's measurement against the model at the estimate.
+  /// Returns the last frame's measurement with the model's prediction at the estimate.
   const Prediction& prediction() const;
-  /// By parameter name.
+  /// Returns the verdicts by parameter name.
   std::map<std::string, Identifiability> identifiability() const;
-  /// What the reduced basis leaves out of the surface's motion, an upper bound (basis_error.hpp): rms of the worst frame
-  /// [m]. None for a model that is integrated in full, and before a few frames.
+  /// Returns what the reduced basis leaves out of the surface's motion, an upper bound (basis_error.hpp): rms of the worst
+  /// frame [m]. There is none for a model that is integrated in full, and before a few frames.
   std::optional<double> basis_error() const;
-  /// What the estimator chose by itself, one line each (engine, time step, basis size, nodes), for logs and reports.
+  /// Returns what the estimator chose by itself, one line each (engine, time step, basis size, nodes), for logs and
+  /// reports.
   std::vector<std::string> description() const;
 
-  /// The free run from rest to the last frame at the final estimate, compared with every frame kept: what rms_error,
-  /// relative_error and the reports are made of. One misfit a kept frame; `visit` sees each.
+  /// Compares the free run at the final estimate, from rest to the last frame, with every frame kept. From it come
+  /// rms_error, relative_error and the reports. Returns one misfit for each kept frame; `visit` sees each.
   std::vector<Misfit> free_run(const FreeFrameVisitor& visit = {});
 
  private:

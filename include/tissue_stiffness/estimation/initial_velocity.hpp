@@ -13,9 +13,9 @@ struct VelocityEstimate {
   double std = 0.0;                                ///< [m/s], of each component
 };
 
-/// Rigid velocity of the body over the first frames: the slope of the observed centre over time, which for two frames is
-/// eq. 24 of Yang & Lin (2016). An outline moves in the image plane only; along the line of sight the velocity is taken as
-/// 0.
+/// Returns the body's rigid velocity over the first frames: the slope of the observed centre over time. For two frames this
+/// is eq. 24 of Yang & Lin (2016). An outline moves in the image plane only; along the line of sight the velocity is taken
+/// as 0.
 VelocityEstimate velocity_from_frames(const Model& model, const std::vector<Frame>& frames);
 
 }  // namespace tissue_stiffness

@@ -9,15 +9,15 @@
 
 #include "tissue_stiffness/effects/load_error.hpp"
 #include "tissue_stiffness/estimation/mesh_error.hpp"
-#include "tissue_stiffness/forward/observation_operator.hpp"
 #include "tissue_stiffness/forward/reduced_model.hpp"
+#include "tissue_stiffness/observation/observation_operator.hpp"
 
 namespace tissue_stiffness {
 
-/// The models that a study of the inputs runs, kept from one study to the next.
+/// These models are run by a study of the inputs, and kept from one study to the next.
 struct InputModels {
   Model base;       ///< the estimator's, for its parameters
-  Model uncertain;  ///< with the constants that have a tolerance kept apart
+  Model uncertain;  ///< keeps constants that have a tolerance apart
   std::unique_ptr<ReducedModel> runs;
   std::vector<std::unique_ptr<ObservationOperator>> operators;
   std::vector<UncertainConstant> constants;
@@ -26,35 +26,35 @@ struct InputModels {
   explicit InputModels(const Model& model);
 };
 
-/// Normal equations of the rows r = y - h(z), z = [w; eta]: p parameters, then the inputs' errors in units of their
-/// tolerances and the mesh's; summed over the frames, with the noise's precision R^-1.
+/// These are the normal equations of the rows r = y - h(z), z = [w; eta]. z holds the p parameters, then the inputs' errors
+/// in units of their tolerances, then the mesh's. The sums go over the frames, with the noise's precision R^-1.
 struct NormalEquations {
   Eigen::MatrixXd information;  ///< Z^T R^-1 Z
   Eigen::VectorXd gradient;     ///< Z^T R^-1 r
-  Eigen::MatrixXd constants;    ///< Z^T R^-1 C, a column of C for one tolerance of each constant
+  Eigen::MatrixXd constants;    ///< Z^T R^-1 C; each column of C is one constant's tolerance
   double cost = 0.0;            ///< r^T R^-1 r
   double rows = 0.0;
 
   NormalEquations(Eigen::Index size, Eigen::Index constant_count);
-  /// Counts every frame so many times: it stands for those that were left out.
+  /// Multiplies all sums, because every frame stands for those that were left out.
   void repeat(double times);
 };
 
-/// A recording's rows as functions of the parameters, the loads' and poses' errors and the constants, linearised. The runs
-/// start anew for each point, from rest or the initial velocity.
+/// The linearisation gives a recording's rows as functions of the parameters, the loads' and poses' errors and the
+/// constants. The runs start anew for each point, from rest or the initial velocity.
 class InputLinearisation {
  public:
-  /// One frame. The columns of the loads' errors are `modes` times their modal amplitudes.
+  /// A row object holds the rows of one frame. The columns of the loads' errors are `modes` times their modal amplitudes.
   struct Row {
     Eigen::VectorXd error, precision;
-    Eigen::MatrixXd parameters, constants, direct;  ///< d row / d each; direct: of the poses, then of the mesh
+    Eigen::MatrixXd parameters, constants, direct;  ///< d row / d each; direct: by the poses, then by the mesh
     Eigen::MatrixXd modes;                          ///< d row / d amplitude of each mode
   };
   struct Load {
     std::string topic;
     std::shared_ptr<Course> course;
     LoadErrorBasis basis;
-    Eigen::Index first;  ///< of its columns in z
+    Eigen::Index first;  ///< first of its columns in z
   };
   struct Pose {
     int source;
@@ -64,19 +64,19 @@ class InputLinearisation {
   using Visitor = std::function<void(const Row&, const Eigen::MatrixXd& amplitudes)>;
 
   InputLinearisation(const MeshError::Question& question, InputModels& models);
-  /// Leaves the courses of the loads as they were measured.
+  /// Restores the courses of the loads as they were measured.
   ~InputLinearisation();
   InputLinearisation(const InputLinearisation&) = delete;
   InputLinearisation& operator=(const InputLinearisation&) = delete;
 
   Eigen::Index size() const { return size_; }
-  double repeated() const { return repeated_; }  ///< recorded frames for each that is used
+  double repeated() const { return repeated_; }  ///< recorded frames for each used one
   const std::vector<Load>& loads() const { return loads_; }
   const std::vector<Pose>& poses() const { return poses_; }
-  /// First of the columns that say what the mesh may change; those are the last.
+  /// Returns the first of the columns that say what the mesh may change; they are the last of z.
   Eigen::Index first_of_mesh() const { return size_ - mesh_columns_; }
 
-  /// Throws NumericalError when runs diverge.
+  /// Returns the normal equations at z. Throws NumericalError when runs diverge.
   NormalEquations at(const Eigen::VectorXd& z);
   /// Visits every used frame in the order of time.
   void each_row(const Eigen::VectorXd& z, const Visitor& visit);
@@ -96,14 +96,14 @@ class InputLinearisation {
   Eigen::Index load_columns() const { return size_ - p_ - direct_columns(); }
   const MeshError::Question& q_;
   InputModels& models_;
-  std::vector<std::size_t> frames_;  ///< indices of those that are used
+  std::vector<std::size_t> frames_;  ///< indices of the used frames
   double repeated_ = 1.0;
   Eigen::Index p_ = 0, size_ = 0, mesh_columns_ = 0;
   std::vector<Load> loads_;
   std::vector<Pose> poses_;
   Eigen::MatrixXd motions_;                            ///< the runs' basis, then the rigid motions
-  std::map<std::vector<int>, Eigen::MatrixXd> named_;  ///< rows / amplitude of each, by the named nodes that are seen
-  Eigen::MatrixXd seen_;                               ///< the same of any other frame
+  std::map<std::vector<int>, Eigen::MatrixXd> named_;  ///< rows / amplitude of each motion, by the named nodes seen
+  Eigen::MatrixXd seen_;                               ///< rows / amplitude of each motion, for any other frame
 };
 
 }  // namespace tissue_stiffness

@@ -8,8 +8,8 @@
 
 namespace tissue_stiffness {
 
-/// Posterior of z = [w; eta], parameters and nuisances, under independent normal priors and the likelihood to the power
-/// 1 / temperature (Miller & Dunson 2019):
+/// This is the posterior of z = [w; eta], parameters and nuisance parameters, under independent normal priors and the
+/// likelihood to the power 1 / temperature (Miller & Dunson 2019):
 ///   -2 log p(z) = r(z)^T R^-1 r(z) / s + (z - m)^T P^-1 (z - m),   s = temperature max(1, mean square of the best r).
 class InputPosterior {
  public:
@@ -17,47 +17,49 @@ class InputPosterior {
     Eigen::VectorXd z;
     NormalEquations normal;
   };
-  /// Mean and covariance of the posterior; `beyond_linear`: the covariance less that of the linear form at the mode.
+  /// These are the posterior's mean and covariance. `beyond_linear` is the covariance less that of the linear form at the
+  /// mode.
   struct Moments {
     Fit mean;
     Eigen::MatrixXd beyond_linear;
   };
 
   using Rows = std::function<NormalEquations(const Eigen::VectorXd& z)>;
-  /// prior_mean, prior_std: of the parameters; the nuisances have mean 0 and standard deviation `nuisance_std`.
+  /// `prior_mean` and `prior_std` are those of the parameters. The nuisances have mean 0 and standard deviation
+  /// `nuisance_std`.
   InputPosterior(Rows rows, const Eigen::VectorXd& prior_mean, const Eigen::VectorXd& prior_std,
                  const Eigen::VectorXd& nuisance_std);
 
   void set_temperature(double temperature) { temperature_ = temperature; }
   double temperature() const { return temperature_; }
-  /// Prior standard deviation of nuisance i of z.
+  /// Returns the prior standard deviation of nuisance i of z.
   double nuisance_std(Eigen::Index i) const { return nuisance_std_[i - p_]; }
   void set_nuisance_std(Eigen::Index first, Eigen::Index count, double std);
   double widest_nuisance_std(Eigen::Index first, Eigen::Index count) const;
 
-  /// z = [w; 0] as it is.
+  /// Evaluates the rows at z = [w; 0].
   Fit at(const Eigen::VectorXd& w);
-  /// Gauss-Newton from [w; 0].
+  /// Finds the mode by Gauss-Newton from [w; 0].
   Fit mode(const Eigen::VectorXd& w);
-  /// -2 log p at a fit, with `scale` for s.
+  /// Returns -2 log p at a fit, with `scale` for s.
   double cost(const Fit& fit, double scale) const;
   double scale(const NormalEquations& normal) const;
-  /// Inverse covariance of the linear form.
+  /// Returns the inverse covariance of the linear form.
   Eigen::MatrixXd information(const NormalEquations& normal) const;
   Eigen::MatrixXd covariance(const NormalEquations& normal) const;
-  /// Share of nuisance i's prior variance that the data have taken away.
+  /// Returns the share of nuisance i's prior variance that the data have taken away.
   double learnt(const Eigen::MatrixXd& covariance, Eigen::Index i) const;
 
-  /// Integrates along the direction of the parameters in which the posterior is widest against the prior. Each point of the
-  /// grid has everything else at its most probable; the grid is refined until it resolves the curvature wherever the
-  /// posterior has mass. A curvature at one maximum says nothing of the others (threshold effect; Van Trees 1968,
-  /// sec. 4.2.3).
+  /// Integrates along the direction of the parameters in which the posterior is widest against the prior. At each point of
+  /// the grid everything else takes its most probable value. The grid is refined until it resolves the curvature wherever
+  /// the posterior has mass. A curvature at one maximum says nothing of the others (threshold effect; Van Trees 1968, sec.
+  /// 4.2.3).
   Moments integrate(const Fit& mode);
 
  private:
   struct Line {
     Eigen::VectorXd direction;  ///< of w, one standard deviation of the linear form
-    Eigen::VectorXd dual;       ///< its product with w is the place along the line, from the mode's
+    Eigen::VectorXd dual;       ///< its product with w is the place along the line, from the mode's on
     double scale;
     double furthest;  ///< in standard deviations of the linear form
   };

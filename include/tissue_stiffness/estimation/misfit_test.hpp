@@ -5,42 +5,42 @@
 
 namespace tissue_stiffness {
 
-/// Posterior predictive test of a fit's residual. What physics misses moves the body along its lowest modes, which smooth
-/// sensor noise does not: the residual's weighted sum of squares is divided into the part along those modes and the rest.
-/// Without missing physics both have the same mean square a degree of freedom, whatever the noise's level; the rest's
-/// memory from frame to frame tells how many independent frames there are (Bartlett 1946).
+/// This is a posterior predictive test of a fit's residual. Missing physics moves the body along its lowest modes, which
+/// smooth sensor noise does not. So the residual's weighted sum of squares is divided into the part along those modes and
+/// the rest. Without missing physics both have the same mean square a degree of freedom, whatever the noise's level. The
+/// rest's memory from frame to frame tells how many independent frames there are (Bartlett 1946).
 class MisfitTest {
  public:
-  /// residual: m; precision: m, weight / variance; shapes: m x k, the modes as the sensors see them.
+  /// Adds a frame. residual: m; precision: m, weight / variance; shapes: m x k, the modes as the sensors see them.
   void add(const Eigen::VectorXd& residual, const Eigen::VectorXd& precision, const Eigen::MatrixXd& shapes);
 
-  /// Degrees of freedom that the fit took of the part along the modes.
+  /// Sets the degrees of freedom that the fit took of the part along the modes.
   void set_fitted(double dof) { fitted_ = dof; }
-  /// Mean square, in units of the noise's variance, that the mesh and the basis leave of each row, along the modes and
-  /// across them.
+  /// Sets the mean square that mesh and basis leave of each row, along the modes and across them, in units of the noise's
+  /// variance.
   void set_numerics(double along, double across = 0.0) { numerics_ = along, numerics_across_ = across; }
 
-  /// Level of the noise that another model of the same recording has shown. This one's residuals across the modes cannot
-  /// have more, and are tested, too.
+  /// Sets the noise level that another model of the same recording has shown. This model's residuals across the modes
+  /// cannot hold more noise, so they are tested too.
   void set_noise(double level) { known_noise_ = level; }
 
-  /// Mean square along the modes a degree of freedom beyond what noise and numerics leave [noise variances].
+  /// Returns the mean square along the modes a degree of freedom beyond what noise and numerics leave [noise variances].
   double excess() const;
-  /// Standard deviation of `excess` under noise alone.
+  /// Returns the standard deviation of `excess` under noise alone.
   double deviation() const;
-  /// (excess - tolerated) / deviation; the larger one of both parts where the noise is known.
+  /// Returns (excess - tolerated) / deviation; where the noise is known, the larger one of both parts.
   double z() const;
-  /// Passed while z <= bound.
+  /// The test passes while z <= bound.
   bool passes() const { return z() <= bound; }
-  /// Mean square of what is unexplained, over all rows, in noise variances; 0 where it is no more than chance.
+  /// Returns the mean square of what is unexplained, over all rows, in noise variances; 0 where it is no more than chance.
   double discrepancy() const;
-  /// Degrees of freedom along the modes.
+  /// Returns the degrees of freedom along the modes.
   double structured_dof() const { return along_dof_; }
-  /// Mean square of the residuals across the shapes a degree of freedom, in noise variances, between 1 and `most_noise`, or
-  /// what is known of it if that is less.
+  /// Returns the mean square of the residuals across the shapes a degree of freedom, in noise variances. It lies between 1
+  /// and `most_noise`, or is what set_noise() gave if that is less.
   double noise_level() const;
-  /// Correlation of consecutive frames' residuals across the shapes, 0 to 0.95.
-  double memory() const;
+  /// Returns the correlation of consecutive frames' residuals across the shapes, 0 to 0.95.
+  double lag1_autocorrelation() const;
   bool empty() const { return frames_ == 0; }
 
   static constexpr double most_noise = 9.0;  ///< noise variances: noise beyond three times the stated one is a misfit
@@ -49,10 +49,10 @@ class MisfitTest {
 
  private:
   double along_ = 0.0, along_dof_ = 0.0, rest_ = 0.0, rest_dof_ = 0.0;
-  double product_ = 0.0, square_ = 0.0;  ///< of successive frames' rest, for its memory
+  double product_ = 0.0, square_ = 0.0;  ///< of successive frames' rest, for its autocorrelation
   double excess_across() const;
   double z_across() const;
-  double repeated() const;  ///< frames that count as one, by the memory of the noise
+  double repeated() const;  ///< frames that count as one, by the noise's autocorrelation
 
   double fitted_ = 0.0, numerics_ = 0.0, numerics_across_ = 0.0, known_noise_ = most_noise, rows_ = 0.0;
   int frames_ = 0;

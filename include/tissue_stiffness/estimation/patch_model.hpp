@@ -10,27 +10,28 @@
 
 namespace tissue_stiffness {
 
-/// Throws InputError, naming `map`, for a model whose modulus cannot be mapped: one that is not linear, or without exactly
-/// one constant young_modulus {prior, factor}, or with an estimated poisson_ratio beside it.
+/// Throws InputError, naming `map`, for a model whose modulus cannot be mapped. Such a model is not linear, does not have
+/// exactly one constant young_modulus {prior, factor}, or has an estimated poisson_ratio as well.
 void require_map(const Model& model);
 
-/// Tetrahedra of the elasticity whose modulus is mapped.
+/// Returns the tetrahedra of the elasticity whose modulus is mapped.
 Patch mapped_tets(const Model& model);
 
-/// The same model with a modulus a patch, K = sum_r E_r K_r: settings and regions of a Model.
+/// A patch model is a model with one modulus for each patch, K = sum_r E_r K_r: settings and regions of a Model.
 struct PatchModel {
   ModelSettings settings;
   std::map<std::string, Region> regions;
-  Eigen::Index first = 0;  ///< of the patches' moduli among the free parameters, which they follow each other in
-  double common = 0.0;     ///< prior of the one modulus in their place: mean and standard deviation of log E
+  Eigen::Index first = 0;  ///< of the patches' moduli among the free parameters, where they are consecutive
+  double common = 0.0;     ///< prior of the one modulus that they replace: mean and standard deviation of log E
   double common_std = 0.0;
 };
 
-/// `log_modulus`: of each patch, about which its modulus is looked for. Throws as require_map does.
+/// Splits the modulus of `model`. `log_modulus` holds one for each patch, about which its modulus is searched. Throws as
+/// require_map does.
 PatchModel with_patches(const Model& model, const std::vector<Patch>& patches, const Eigen::VectorXd& log_modulus);
 
-/// Prior covariance of all free parameters of a patch model: that of its moduli is common_std^2 + smooth_covariance, the
-/// body's modulus and how it varies; others keep their own variances.
+/// Returns the prior covariance of all free parameters of a patch model. Its moduli have common_std^2 + smooth_covariance,
+/// the body's modulus and how it varies; other parameters keep their own variances.
 Eigen::MatrixXd patch_covariance(const PatchModel& patches, const Eigen::VectorXd& prior_std,
                                  const Eigen::MatrixXd& smooth);
 

@@ -10,14 +10,14 @@
 
 #include "tissue_stiffness/estimation/estimator.hpp"
 #include "tissue_stiffness/forward/forward_model.hpp"
-#include "tissue_stiffness/forward/observation_operator.hpp"
+#include "tissue_stiffness/observation/observation_operator.hpp"
 
 namespace tissue_stiffness {
 
-/// What every estimation scheme shares: the model, its sensors, the clock, and the checks before a frame is used.
+/// Every estimation scheme shares the model, its sensors, the clock, and the checks before a frame is used.
 class Scheme {
  public:
-  Scheme(const ModelSettings& settings, const TetMesh& mesh, const Relatives& relatives = {});
+  Scheme(const ModelSettings& settings, const TetMesh& mesh, const ReuseSources& relatives = {});
   virtual ~Scheme() = default;
 
   StepResult step(const Frame& frame);
@@ -35,62 +35,64 @@ class Scheme {
   const Model& model() const { return *model_; }
   const Estimate& estimate() const { return estimate_; }
   const Eigen::Matrix3Xd& displacement() const;
-  /// Of the reduced basis [m], kBasisDoubt included; none for a model that runs in full, or before frames told.
+  /// Returns the error of the reduced basis [m], kBasisSafety included. There is none for a model that runs in full, and
+  /// before a few frames.
   virtual std::optional<double> basis_error() const { return std::nullopt; }
   const Prediction& prediction() const { return prediction_; }
-  virtual bool looks_back() const { return false; }
+  virtual bool reprocesses() const { return false; }
 
  protected:
   virtual StepResult process(const Frame& frame) = 0;
-  /// What came of looks at the past since the last frame, if one has ended.
-  virtual std::optional<StepResult> take_look() { return std::nullopt; }
+  /// Returns what reprocessing has brought since the last frame, if one has ended.
+  virtual std::optional<StepResult> take_reprocessed() { return std::nullopt; }
   virtual void forget() = 0;
-  /// Ends what runs of the model are under way beside the frames, before anything that they read is changed.
+  /// Ends the model's runs in the background, before anything that they read is changed.
   virtual void stop() {}
 
-  /// Frames do not wait for another look at the past: it runs beside them.
+  /// Frames do not wait for reprocessing, which runs in the background.
   bool hurried() const { return background_ && !replaying_; }
   bool background() const { return background_; }
-  /// A replay's frames come at once: what is asked of the recording now and then is asked at its last.
+  /// More frames of a replay follow at once. What is otherwise asked of the recording from time to time is asked at its
+  /// last frame.
   bool more_follow() const { return more_follow_; }
   bool replaying() const { return replaying_; }
-  /// A replay's estimate as other means have it, or null.
+  /// Returns the estimate from elsewhere that a replay starts with, or null.
   const Estimate* near() const { return near_; }
 
   double start() const { return first_stamp_.value_or(0.0) + model_->settings().time.start; }
   Prediction at_rest(const Frame& frame) const;
-  /// Says which load has not come for longer than `stale_after` before `time` [s]; empty: none.
+  /// Names the load that has not come for longer than `stale_after` before `time` [s]; empty: none.
   std::string stale_load(double time) const;
-  /// The free run at `theta` over the frames, compared with each.
+  /// Compares the free run at `theta` with each of the frames.
   std::vector<Misfit> compare_free_run(const std::vector<Frame>& frames, const RunStart& start,
                                        const Eigen::VectorXd& theta, const FreeFrameVisitor& visit,
-                                       const std::vector<Turn>& turns = {});
+                                       const std::vector<ParameterChange>& changes = {});
 
   std::unique_ptr<Model> model_;
   std::shared_ptr<ForwardModel> forward_;
   std::vector<std::unique_ptr<ObservationOperator>> operators_;
   Estimate estimate_;
   mutable Eigen::Matrix3Xd displacement_;
-  mutable std::function<void(Eigen::Ref<Eigen::VectorXd>)> recover_;  ///< fills it in when somebody asks; may be empty
+  mutable std::function<void(Eigen::Ref<Eigen::VectorXd>)> recover_;  ///< fills displacement_ on demand; may be empty
   Prediction prediction_;
-  std::vector<char> seen_nodes_;  ///< a flag a node: observed so far
+  std::vector<char> seen_nodes_;  ///< one flag a node: observed so far
 
-  /// Lets the forward model tell where the nodes are that frames have seen; others it may leave out.
-  void focus_on(const Frame& frame);
+  /// Makes the forward model's output hold the nodes that frames have seen; it may leave out others.
+  void extend_output_to(const Frame& frame);
 
  private:
-  /// Whether the frame holds anything to compare. Throws InputError for an observation that does not fit the model.
+  /// Returns whether the frame holds anything to compare. Throws InputError for an observation that does not fit the model.
   bool seen(const Frame& frame) const;
 
   std::optional<double> first_stamp_;
-  double first_load_ = std::numeric_limits<double>::infinity();  ///< earliest load's time [s]
+  double first_load_ = std::numeric_limits<double>::infinity();  ///< time of the earliest load [s]
   std::optional<double> last_time_;
   bool background_ = false, replaying_ = false, more_follow_ = false;
   const Estimate* near_ = nullptr;
 };
 
 std::unique_ptr<Scheme> make_unscented_scheme(const ModelSettings& settings, const TetMesh& mesh,
-                                              const Relatives& relatives);
+                                              const ReuseSources& relatives);
 std::unique_ptr<Scheme> make_paper_scheme(const ModelSettings& settings, const TetMesh& mesh);
 
 }  // namespace tissue_stiffness

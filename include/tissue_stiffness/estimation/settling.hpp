@@ -5,11 +5,11 @@
 
 namespace tissue_stiffness {
 
-/// Whether an estimate has settled: it lies within the 95 % intervals that were published over the last third of the
-/// frames, eight at least.
+/// An estimate has settled when it lies within the 95 % intervals that were published over the last third of the frames.
+/// These are eight frames at least.
 class Settling {
  public:
-  /// Mean and standard deviations after a frame, filter coordinates.
+  /// Takes mean and standard deviations after a frame, in filter coordinates.
   void add(const Eigen::VectorXd& mean, const Eigen::VectorXd& std);
   bool settled() const;
 
@@ -18,7 +18,7 @@ class Settling {
     Eigen::VectorXd mean, std;
   };
   std::size_t frames_ = 0;
-  std::deque<Published> published_;  ///< the last ones, oldest first
+  std::deque<Published> published_;  ///< the latest ones, oldest first
 };
 
 }  // namespace tissue_stiffness

@@ -6,7 +6,7 @@
 
 namespace tissue_stiffness {
 
-/// Wall time of the stages of a step.
+/// A stopwatch adds up the wall time of a step's stages.
 class Stopwatch {
  public:
   explicit Stopwatch(std::map<std::string, double>& seconds) : seconds_(seconds), last_(Clock::now()) {}

@@ -4,8 +4,8 @@
 
 namespace tissue_stiffness {
 
-/// Whether the model explains what it is compared with, over the last second or so of frames. A model is invalid when its
-/// error is well above noise and a good part of the motion: then no value of its parameters is right.
+/// Validity tells whether the model explains what it is compared with, over the last second or so of frames. A model is
+/// invalid when its error is well above noise and a good part of the motion. Then no value of its parameters is right.
 class Validity {
  public:
   void add(const Misfit& misfit);

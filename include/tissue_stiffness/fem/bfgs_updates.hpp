@@ -6,14 +6,14 @@
 
 namespace tissue_stiffness {
 
-/// What the last corrections of a quasi-Newton iteration tell about the Jacobian J beyond an inverse H0 of it that is at
-/// hand: H r = after(H0 before(r)) is BFGS's inverse of J times r, by the two-loop recursion of L-BFGS (Nocedal & Wright
-/// 2006, alg. 7.4). The vectors stay when they are forgotten, for those that follow.
+/// BFGS updates of an inverse Jacobian from the last corrections of a quasi-Newton iteration. With an available inverse H0
+/// of the Jacobian J, H r = after(H0 before(r)) is BFGS's inverse of J times r, by the two-loop recursion of L-BFGS
+/// (Nocedal & Wright 2006, alg. 7.4). Forgotten updates keep their vectors, so that later ones need no memory.
 class BfgsUpdates {
  public:
   void clear() { count_ = 0; }
-  /// Takes over a correction s and J s, the change of the residual with its sign turned, in exchange for vectors of no
-  /// meaning; leaves both alone where they say nothing. The oldest gives way.
+  /// Stores a correction s and J s, which is the negative change of the residual. It swaps in the vectors of the oldest
+  /// update, whose values mean nothing any more. Both arguments are left unchanged when they contain no information.
   void learn(Eigen::VectorXd& step, Eigen::VectorXd& change);
   void before(Eigen::Ref<Eigen::VectorXd> r);
   void after(Eigen::VectorXd& direction) const;
@@ -21,8 +21,8 @@ class BfgsUpdates {
  private:
   struct Update {
     Eigen::VectorXd step, change;
-    double inverse_curvature;  ///< 1 / step . change
-    double weight;             ///< step . r / step . change, from the first loop
+    double inverse_curvature;  ///< 1 / (step . change)
+    double weight;             ///< step . r / (step . change), from the first loop
   };
   static constexpr std::size_t kMost = 8;
   Update& update(std::size_t age) { return updates_[(newest_ + kMost - age) % kMost]; }

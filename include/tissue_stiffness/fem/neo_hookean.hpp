@@ -17,21 +17,21 @@ struct Lame {
   double mu;
 };
 
-/// lambda = E nu / ((1 + nu)(1 - 2 nu)), mu = E / (2 (1 + nu)).
+/// Computes lambda = E nu / ((1 + nu)(1 - 2 nu)), mu = E / (2 (1 + nu)).
 inline Lame lame(double young_modulus, double poisson_ratio) {
   return {young_modulus * poisson_ratio / ((1.0 + poisson_ratio) * (1.0 - 2.0 * poisson_ratio)),
           young_modulus / (2.0 * (1.0 + poisson_ratio))};
 }
 
-/// What multiplies the stress at a quadrature point, and its derivative with respect to the energy density psi [1/Pa].
+/// Factor of the stress at a quadrature point, and its derivative with respect to the energy density psi [1/Pa].
 struct StressScale {
   double value = 1.0;
   double slope = 0.0;
 };
 using PointLaw = std::function<StressScale(int e, int q, double psi)>;
 
-/// Compressible neo-Hookean solid, psi = mu/2 (tr F^T F - 3 - 2 ln J) + lambda/2 (ln J)^2 (Bonet & Wood 2008, eq. 6.28),
-/// over the elements listed. All throw NumericalError naming the element that turned inside out.
+/// Compressible neo-Hookean solid over the listed elements, psi = mu/2 (tr F^T F - 3 - 2 ln J) + lambda/2 (ln J)^2 (Bonet &
+/// Wood 2008, eq. 6.28). All functions throw NumericalError naming an element that is turned inside out.
 class NeoHookean {
  public:
   NeoHookean(const Discretisation& fem, std::vector<int> elements);
@@ -40,10 +40,10 @@ class NeoHookean {
   void add_force(const Lame& lame, const Eigen::VectorXd& u, Eigen::VectorXd& force) const;
   /// Adds the tangent stiffness [N/m].
   void add_stiffness(const Lame& lame, const Eigen::VectorXd& u, SparseMatrix& stiffness) const;
-  /// The same with the stress P(F) scaled from point to point: scale(e, q, psi).value P.
+  /// These do so with the stress P(F) scaled at each point: scale(e, q, psi).value P.
   void add_force(const Lame& lame, const Eigen::VectorXd& u, const PointLaw& scale, Eigen::VectorXd& force) const;
   void add_stiffness(const Lame& lame, const Eigen::VectorXd& u, const PointLaw& scale, SparseMatrix& stiffness) const;
-  /// Stored energy [J].
+  /// Returns the stored energy [J].
   double energy(const Lame& lame, const Eigen::VectorXd& u) const;
 
  private:
@@ -52,8 +52,8 @@ class NeoHookean {
 
   const Discretisation& fem_;
   std::vector<int> elements_;
-  NodeCorners corners_;                  ///< where a node's shares of the elements' forces stand
-  std::unique_ptr<VectorPool> scratch_;  ///< for those shares, of each force that is summed at the time
+  NodeCorners corners_;                  ///< corners of each node, for its parts of the elements' forces
+  std::unique_ptr<VectorPool> scratch_;  ///< buffers for these parts, one for each concurrent sum
 };
 
 }  // namespace tissue_stiffness

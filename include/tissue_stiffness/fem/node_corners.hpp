@@ -5,16 +5,16 @@
 
 namespace tissue_stiffness {
 
-/// Where each node stands in the elements of a list: sums over a node's elements then need no lock, in an order that does
-/// not depend on threads. A corner is an element's place in the list times the nodes of an element, plus the node's local
-/// number.
+/// The corners of each node in a list of elements. With them sums over a node's elements need no lock, and their order does
+/// not depend on threads. A corner's number is its element's position in the list times the nodes of an element, plus the
+/// node's local number.
 struct NodeCorners {
   NodeCorners() = default;
   /// `list`: columns of `elements` (nodes x elements).
   NodeCorners(const Eigen::MatrixXi& elements, const std::vector<int>& list, int node_count);
 
-  std::vector<int> first;    ///< of each node in `corners`, and the end
-  std::vector<int> corners;  ///< node by node, ascending
+  std::vector<int> first;    ///< start of each node's corners in `corners`, and the end
+  std::vector<int> corners;  ///< corners node by node, ascending
 };
 
 }  // namespace tissue_stiffness

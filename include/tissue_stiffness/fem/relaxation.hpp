@@ -7,7 +7,7 @@ namespace tissue_stiffness {
 
 /// A Maxwell branch of a standard linear solid: force -modulus K (u - z) with time_constant z' = u - z.
 struct Relaxation {
-  double modulus;        ///< over the elastic one [-]
+  double modulus;        ///< relative to the elastic modulus [-]
   double time_constant;  ///< [s]
 };
 
@@ -17,11 +17,11 @@ struct RelaxationStep {
   RelaxationStep(const Relaxation& relaxation, double step);
 };
 
-/// Takes z of every branch over a step from u0 to u1.
+/// Advances z of every branch over a step from u0 to u1.
 void relax(const std::vector<Relaxation>& branches, double step, const Eigen::VectorXd& u0, const Eigen::VectorXd& u1,
            std::vector<Eigen::VectorXd>& z);
 
-/// sum modulus (u - z): what the branches' stiffness acts on.
+/// Computes sum modulus (u - z), on which the branches' stiffness acts.
 void overstretch(const std::vector<Relaxation>& branches, const Eigen::VectorXd& u, const std::vector<Eigen::VectorXd>& z,
                  Eigen::VectorXd& sum);
 

@@ -8,8 +8,8 @@
 
 namespace tissue_stiffness {
 
-/// Direct solver for symmetric positive definite matrices that share one sparsity pattern (CHOLMOD, LL^T).
-/// The pattern is analysed once; a copy shares nothing.
+/// Direct solver for symmetric positive definite matrices that share one sparsity pattern (CHOLMOD, LL^T). The pattern is
+/// analysed once.
 class SparseSolver {
  public:
   SparseSolver();
@@ -17,25 +17,26 @@ class SparseSolver {
   SparseSolver(SparseSolver&&) noexcept;
   SparseSolver& operator=(SparseSolver&&) noexcept;
 
-  /// Numerical factorisation; analyses the pattern at the first call. Throws NumericalError when not positive definite.
-  /// Large ones take all cores, all others one: how many BLAS takes is a setting of the whole process, and changes the last
-  /// digits of whatever works beside it.
+  /// Computes the numerical factorisation; the first call also analyses the pattern. Throws NumericalError when the matrix
+  /// is not positive definite. Large factorisations use all cores, others one. The number of BLAS threads is a setting of
+  /// the whole process, and it changes the last digits of concurrent computations.
   void factorize(const SparseMatrix& matrix);
   bool ready() const;
 
-  /// Solution of A x = b for every column of b. Thread safe, as the next one is.
+  /// Returns the solution of A x = b for every column of b. It is thread safe, and so is solve_roughly.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
 
-  /// The same to about six digits and several times faster for several columns, for iterations that correct it.
+  /// Returns the solution to about six digits, for iterations that correct it. For several columns it is several times
+  /// faster.
   Eigen::MatrixXd solve_roughly(const Eigen::MatrixXd& b) const;
-  /// Replaces the columns of x, right-hand sides, in the same way. Not thread safe: works in buffers that stay, so that a
-  /// loop asks the heap for nothing (where CHOLMOD is supernodal).
+  /// Replaces the columns of x, right-hand sides, by solutions to about six digits. It is not thread safe. Its buffers are
+  /// kept, so that a loop allocates no memory (where CHOLMOD is supernodal).
   void solve_roughly_in_place(Eigen::Ref<Eigen::MatrixXd> x);
 
-  /// What a factorisation costs in solutions of one column, by their operations and their memory traffic.
+  /// Returns the cost of a factorisation in solutions of one column, from their operations and their memory traffic.
   double cost() const;
 
-  /// Non-zeros of the factor.
+  /// Returns the number of non-zeros of the factor.
   double factor_size() const;
 
  private:

@@ -6,11 +6,11 @@
 
 namespace tissue_stiffness {
 
-/// Vectors for whoever needs one for a moment, so that a loop asks the heap for them only the first time. Thread safe; as
-/// many stay as were ever lent at once.
+/// Pool of temporary vectors, so that a loop allocates memory only the first time. It is thread safe and keeps as many
+/// vectors as were ever lent at the same time.
 class VectorPool {
  public:
-  /// A vector of `size` entries, not initialised, that goes back to the pool at the end.
+  /// A vector of `size` entries, not initialised, that returns to the pool when the loan ends.
   class Loan {
    public:
     Loan(VectorPool& pool, Eigen::Index size);

@@ -4,31 +4,32 @@
 
 namespace tissue_stiffness {
 
-/// e^T P^-1 e: the normalised innovation squared (NIS) for an innovation and its covariance, the normalised estimation
-/// error squared (NEES) for an estimate's error and its covariance. Chi-squared with e.size() degrees of freedom when P is
-/// right (Bar-Shalom, Li, Kirubarajan 2001, section 5.4). Throws NumericalError unless P is positive definite.
+/// Returns e^T P^-1 e. It is the normalised innovation squared (NIS) for an innovation and its covariance, and the
+/// normalised estimation error squared (NEES) for an estimate's error and its covariance. It is chi-squared with e.size()
+/// degrees of freedom when P is right (Bar-Shalom, Li, Kirubarajan 2001, section 5.4). Throws NumericalError unless P is
+/// positive definite.
 double normalised_squared(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance);
 
-/// Lower regularised incomplete gamma function P(a, x), a > 0, x >= 0.
+/// Returns the lower regularised incomplete gamma function P(a, x), a > 0, x >= 0.
 double incomplete_gamma(double a, double x);
 
-/// P(chi^2_dof <= x). `dof` > 0 need not be whole.
+/// Returns P(chi^2_dof <= x). `dof` > 0 need not be an integer.
 double chi_squared_cdf(double x, double dof);
 
-/// P(chi^2_dof > x), to full relative precision where it is small.
+/// Returns P(chi^2_dof > x), to full relative precision where it is small.
 double chi_squared_upper(double x, double dof);
 
-/// Inverse of chi_squared_cdf for 0 < p < 1.
+/// Returns the inverse of chi_squared_cdf for 0 < p < 1.
 double chi_squared_quantile(double p, double dof);
 
-/// Probability of a sum of squares at least as far out on its own side as this one, times two: small for an overconfident
-/// filter (too large) and for an underconfident one (too small).
+/// Returns twice the probability of a sum of squares that is at least as extreme on the same side. It is small for an
+/// overconfident filter (the sum is too large) and for an underconfident one (the sum is too small).
 double two_sided_p_value(double sum_of_squares, double dof);
 
-/// P(z <= x) for a standard normal z.
+/// Returns P(z <= x) for a standard normal z.
 double normal_cdf(double x);
 
-/// Adds up NIS over frames.
+/// Sum of the NIS over frames.
 struct ConsistencySum {
   double sum = 0.0;
   double dof = 0.0;
@@ -37,9 +38,9 @@ struct ConsistencySum {
     sum += nis;
     dof += rows;
   }
-  /// 1 for a consistent filter; NaN before the first row.
+  /// Returns the mean per row, which is 1 for a consistent filter; NaN before the first row.
   double mean_per_dof() const { return sum / dof; }
-  /// 1 before the first row.
+  /// Returns the two-sided p-value; 1 before the first row.
   double p_value() const { return dof > 0.0 ? two_sided_p_value(sum, dof) : 1.0; }
 };
 

@@ -5,22 +5,22 @@
 
 namespace tissue_stiffness {
 
-/// Covariance R of a measurement's noise, kept as a square root B with R = B B^T.
+/// Covariance R of a measurement's noise, stored as a square root B with R = B B^T.
 class Noise {
  public:
-  /// Independent rows with the given standard deviations. Throws std::invalid_argument unless all are > 0; infinity is
-  /// allowed: such a row is ignored.
+  /// Noise of independent rows with the given standard deviations. Throws std::invalid_argument unless all are > 0.
+  /// Infinity is allowed: such a row is ignored.
   static Noise independent(Eigen::VectorXd sigma);
 
-  /// Full covariance. Throws NumericalError unless it is positive definite.
+  /// Noise with a full covariance. Throws NumericalError unless it is positive definite.
   static Noise correlated(const Eigen::MatrixXd& covariance);
 
   Eigen::Index size() const { return diagonal_ ? sigma_.size() : factor_.rows(); }
   bool usable(Eigen::Index row) const;
 
-  /// B^-1 columns.
+  /// Returns B^-1 columns.
   Eigen::MatrixXd whiten(const Eigen::MatrixXd& columns) const;
-  double log_determinant() const;    ///< of R
+  double log_determinant() const;    ///< log of the determinant of R
   Eigen::VectorXd variance() const;  ///< diagonal of R
   Noise rows(const std::vector<Eigen::Index>& indices) const;
 

@@ -6,13 +6,13 @@
 
 namespace tissue_stiffness {
 
-/// Force [N] that effects which are not linear exert at theta, beyond that at their absent values. Of finite strain the
-/// part that is even in the displacement.
+/// Force [N] of nonlinear effects at theta, less their force at their absent values. Under finite strain only the part that
+/// is even in the displacement is used.
 class ExtraForce {
  public:
   ExtraForce(const Model& model, const Eigen::VectorXd& theta);
 
-  /// Those effects are absent at theta: the force is zero.
+  /// Returns whether these effects are absent at theta, so that the force is zero.
   bool absent() const { return absent_; }
   Eigen::VectorXd operator()(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const;
 
@@ -20,12 +20,12 @@ class ExtraForce {
   Eigen::VectorXd difference(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const;
 
   const Model& model_;
-  Model::Point with_, without_;  ///< the second: where those effects are absent
+  Model::Point with_, without_;  ///< without_: these effects are absent
   bool absent_;
-  bool even_ = false, loaded_ = false;  ///< finite strain is among them; some load follows the body under it
+  bool even_ = false, loaded_ = false;  ///< the effects include finite strain; a load has a finite form
 };
 
-/// Whether the part may exert such a force.
+/// Returns whether the part may exert such a force.
 bool adds_extra_force(const Model::Part& part);
 
 }  // namespace tissue_stiffness

@@ -10,19 +10,18 @@
 
 namespace tissue_stiffness {
 
-/// What effects that are not linear would do, at first order: a run of the model's linear rest, and its response to the
-/// force that those effects exert along this run. Of finite strain only the part of the force that is even in the
-/// displacement counts, (f(u) + f(-u)) / 2: small strain turns rotations into stretch, which the odd part would resist.
-/// What has no absent value (a law of finite strain) counts as linear. Little dearer than a linear run, for tangents.
+/// Nonlinear effects at first order. The linear part of the model is run, and its response to the force of the nonlinear
+/// effects along this run is added. Under finite strain only the even part of the force, (f(u) + f(-u)) / 2, is used. Small
+/// strain turns rotations into stretch, and the odd part would resist this stretch. An effect without an absent value (a
+/// law of finite strain) counts as linear. This costs little more than a linear run and is used for tangents.
 class FirstOrderModel : public ForwardModel {
  public:
-  /// Throws InputError for a model that nothing moves.
-  /// `relative` as ReducedModel has it.
+  /// `relative`: as in ReducedModel. Throws InputError for a model that nothing moves.
   explicit FirstOrderModel(const Model& model, const BasisOptions& options = {}, const ReducedModel* relative = nullptr);
 
   std::unique_ptr<Trajectory> start(const Eigen::VectorXd& theta, double start) const override;
   void advance_through(Trajectory& run, const std::vector<double>& times, const Show& show) const override;
-  void focus(const std::vector<int>& nodes) override { reduced_.focus(nodes); }
+  void restrict_output_to(const std::vector<int>& nodes) override { reduced_.restrict_output_to(nodes); }
   std::string description() const override;
 
   const ReducedModel& reduced() const { return reduced_; }

@@ -11,11 +11,11 @@
 
 namespace tissue_stiffness {
 
-/// Runs act(i) for i < count in parallel; when all have ended the error of the lowest i is thrown, whatever the threads
-/// did.
+/// Runs act(i) for i < count in parallel. When all have ended, the error of the lowest i is thrown, whatever the order of
+/// the threads.
 ///
 /// An error that leaves the body of a TBB loop cancels the loops inside its siblings, which then return without having done
-/// their work. Here it stays in its act: the others see every inner loop through.
+/// their work. Here an error stays in its own call, and the other calls complete all inner loops.
 template <typename Act, typename Partitioner = tbb::auto_partitioner>
 void for_each_index(std::size_t count, const Act& act, const Partitioner& partitioner = {}) {
   std::vector<std::exception_ptr> errors(count);
@@ -34,7 +34,7 @@ void for_each_index(std::size_t count, const Act& act, const Partitioner& partit
   }
 }
 
-/// The same for a few different acts.
+/// Runs a few different functions in parallel and treats their errors as for_each_index does.
 template <typename... Acts>
 void run_side_by_side(const Acts&... acts) {
   const std::array<std::function<void()>, sizeof...(acts)> all{std::cref(acts)...};

@@ -10,16 +10,16 @@
 
 namespace tissue_stiffness {
 
-/// Motion of a reduced model at rest under the columns of a load's error basis, each a load of its own: what one standard
-/// deviation of each error adds to the motion under the measured load.
+/// Response of a reduced model at rest to the columns of a load's error basis, each of which is a separate load. It is what
+/// one standard deviation of each error adds to the motion under the measured load.
 class LoadErrorResponse {
  public:
-  /// At theta, from `start` [s] on. `course`: the measured load that the model's load terms refer to.
+  /// Starts at theta at `start` [s]. `course`: the measured load to which the model's load terms refer.
   LoadErrorResponse(const ReducedModel& reduced, const Eigen::VectorXd& theta, double start,
                     std::shared_ptr<const Course> course, const LoadErrorBasis& basis);
 
   void advance(double time);
-  /// Amplitudes of the reduced model's modes at theta, modes x columns.
+  /// Returns the amplitudes of the reduced model's modes at theta, modes x columns.
   Eigen::MatrixXd amplitudes() const;
 
  private:
@@ -33,7 +33,7 @@ class LoadErrorResponse {
   Eigen::MatrixXd patterns_;  ///< modal force of a unit load, modes x components
   ModalStep step_;
   Eigen::MatrixXd forces_;               ///< modes x columns
-  std::vector<Eigen::MatrixXd> states_;  ///< a column's displacement, velocity and branches each
+  std::vector<Eigen::MatrixXd> states_;  ///< displacement, velocity and branches, for each column
 };
 
 }  // namespace tissue_stiffness

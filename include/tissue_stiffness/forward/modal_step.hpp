@@ -7,8 +7,8 @@
 
 namespace tissue_stiffness {
 
-/// Exact step of q'' + d q' + w (q + sum gamma_i (q - z_i)) = f, tau_i z_i' = q - z_i, mode by mode, for f linear in time:
-/// the exponential of the system augmented by f and its increment (Van Loan 1978).
+/// Exact step of q'' + d q' + w (q + sum gamma_i (q - z_i)) = f, tau_i z_i' = q - z_i, for each mode and f linear in time.
+/// It uses the exponential of the system that is augmented by f and its increment (Van Loan 1978).
 class ModalStep {
  public:
   /// `square`: w = omega^2 of each mode; `damping`: d = alpha + beta omega^2 [1/s]. Throws InputError for more than six
@@ -16,7 +16,7 @@ class ModalStep {
   ModalStep(Eigen::VectorXd square, Eigen::VectorXd damping, std::vector<Relaxation> branches);
 
   int states() const { return 2 + static_cast<int>(branches_.size()); }
-  /// Advances the state (columns q, q', z...; a row a mode) while f goes from `before` to `after`.
+  /// Advances the state (columns q, q', z...; a row for each mode) while f changes from `before` to `after`.
   void advance(double step, const Eigen::VectorXd& before, const Eigen::VectorXd& after, Eigen::MatrixXd& state);
 
  private:
@@ -28,7 +28,7 @@ class ModalStep {
   Eigen::VectorXd square_, damping_;
   std::vector<Relaxation> branches_;
   double step_ = -1.0;
-  std::vector<Eigen::ArrayXd> transition_;  ///< states x (states, f before, f after), an array over the modes each
+  std::vector<Eigen::ArrayXd> transition_;  ///< states x (states, f before, f after); each entry is an array over the modes
 };
 
 }  // namespace tissue_stiffness

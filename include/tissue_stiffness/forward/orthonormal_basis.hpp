@@ -9,7 +9,7 @@
 
 namespace tissue_stiffness {
 
-/// Gram-Schmidt, twice, in the inner product of M (compressed).
+/// Basis that is orthonormal in the inner product of M (compressed), by Gram-Schmidt applied twice.
 class OrthonormalBasis {
  public:
   OrthonormalBasis(const SparseMatrix& mass, Eigen::Index capacity)
@@ -17,20 +17,20 @@ class OrthonormalBasis {
 
   Eigen::Index size() const { return size_; }
   auto vectors() const { return vectors_.leftCols(size_); }
-  /// M times them.
+  /// Returns M times the vectors.
   auto weighted() const { return weighted_.leftCols(size_); }
 
-  /// Begins with vectors that are orthonormal already, and M times them.
+  /// Starts with vectors that are already orthonormal, and M times them.
   void begin(const Eigen::MatrixXd& vectors, const Eigen::MatrixXd& weighted) {
     size_ = vectors.cols();
     vectors_.leftCols(size_) = vectors;
     weighted_.leftCols(size_) = weighted;
   }
 
-  /// What is left of the columns of x beside the basis.
+  /// Returns the columns of x less their projection onto the basis.
   Eigen::MatrixXd beside(Eigen::MatrixXd x) const { return off(0, std::move(x)); }
 
-  /// Adds the columns' new directions, at most until `size` vectors are there.
+  /// Adds the columns' new directions, until there are at most `size` vectors.
   void add(Eigen::MatrixXd x, Eigen::Index size) {
     const Eigen::Index before = size_, most = std::min(size, vectors_.cols());
     const Eigen::RowVectorXd norms = (x.array() * symmetric_product(mass_, x).array()).colwise().sum().sqrt();
@@ -48,9 +48,9 @@ class OrthonormalBasis {
   }
 
  private:
-  static constexpr Eigen::Index kBlock = 12;  // columns that are taken off earlier ones together
+  static constexpr Eigen::Index kBlock = 12;  // columns from which earlier ones are subtracted together
 
-  // What is left of the columns of x beside the vectors from `first` on.
+  // Returns the columns of x less their projection onto the vectors from `first` on.
   Eigen::MatrixXd off(Eigen::Index first, Eigen::MatrixXd x) const {
     if (first == size_) return x;
     for (int pass = 0; pass < 2; ++pass) {
@@ -60,10 +60,10 @@ class OrthonormalBasis {
     return x;
   }
 
-  // x stands off the first `before` vectors already; weighted: M x.
+  // x is already orthogonal to the first `before` vectors; weighted: M x.
   void add_one(Eigen::VectorXd x, Eigen::VectorXd weighted, Eigen::Index before) {
-    constexpr double dependent = 1e-7;  // of its norm: what a new direction keeps at least
-    constexpr double cancelled = 1e-3;  // of it: below, M x has lost digits
+    constexpr double dependent = 1e-7;  // least share of its norm that a new direction keeps
+    constexpr double cancelled = 1e-3;  // below this share of the norm, M x has lost digits
     const double whole = x.dot(weighted);
     for (int pass = 0; pass < 2; ++pass) {
       const Eigen::VectorXd share = weighted_.middleCols(before, size_ - before).transpose() * x;
@@ -78,7 +78,7 @@ class OrthonormalBasis {
   }
 
   const SparseMatrix& mass_;
-  Eigen::MatrixXd vectors_, weighted_;  // the second: M times the first
+  Eigen::MatrixXd vectors_, weighted_;  // weighted_: M times vectors_
   Eigen::Index size_ = 0;
 };
 

@@ -14,76 +14,79 @@ namespace tissue_stiffness {
 
 /// Free vibrations of a reduced model at one theta: (K - omega^2 M) phi = 0.
 struct ReducedModes {
-  Eigen::MatrixXd shapes;          ///< basis coordinates of each mode, basis size x modes, M-orthonormal
-  Eigen::MatrixXd to_modal;        ///< modal coordinates of basis coordinates, modes x basis size
+  Eigen::MatrixXd shapes;          ///< each mode in basis coordinates, basis size x modes, M-orthonormal
+  Eigen::MatrixXd to_modal;        ///< from basis coordinates to modal coordinates, modes x basis size
   Eigen::VectorXd square;          ///< omega^2, ascending [rad^2/s^2]
   Eigen::MatrixX3d weight;         ///< modal force of a unit body acceleration along each axis
-  Eigen::MatrixX3d momentum;       ///< modal velocity of a unit initial velocity of the nodes that nothing holds
-  double stiffness_inertia = 0.0;  ///< gamma, where M is that of the body and gamma K [s^2]
+  Eigen::MatrixX3d momentum;       ///< modal velocity of a unit initial velocity of the nodes that are not held
+  double stiffness_inertia = 0.0;  ///< gamma, if M is that of the body plus gamma K [s^2]
 
-  /// Modal value of alpha M_body + beta K [1/s].
+  /// Returns the modal value of alpha M_body + beta K [1/s].
   Eigen::ArrayXd damping(double alpha, double beta) const {
     return alpha + (beta - alpha * stiffness_inertia) * square.array();
   }
 };
 
 /// A linear model in a basis of load-dependent Ritz vectors. In the basis every step is exact for loads that are linear in
-/// time (modal superposition), so the time step is no source of error. Terms whose place or angle is estimated are
-/// projected anew for each theta. Thread safe.
+/// time (modal superposition). So the time step causes no error. Terms whose place or angle is estimated are projected
+/// again for each theta. Thread safe.
 class ReducedModel : public ForwardModel {
  public:
-  /// Throws InputError for a model that nothing moves, and for a nonlinear one that is to be simulated in full.
-  /// `relative`: a model of the same body, whose basis' root is taken over where it is this one's too; or all of it, where
-  /// the options say so.
+  /// `relative`: a model of the same body. The root of its basis is reused where it is identical, or its whole basis if the
+  /// options say so. Throws InputError for a model that nothing moves, and for a nonlinear one that is to be simulated in
+  /// full.
   explicit ReducedModel(const Model& model, const BasisOptions& options = {}, const ReducedModel* relative = nullptr);
 
   std::unique_ptr<Trajectory> start(const Eigen::VectorXd& theta, double start) const override;
-  /// Their displacements are recovered together.
+  /// Starts runs whose displacements are recovered together.
   std::unique_ptr<Trajectories> start_all(const std::vector<Eigen::VectorXd>& thetas, double start) const override;
   std::unique_ptr<Trajectory> resume(const Eigen::VectorXd& theta, const Trajectory& from) const override;
   std::unique_ptr<Trajectories> resume_all(const std::vector<Eigen::VectorXd>& thetas,
                                            const Trajectory& from) const override;
-  /// A run in the earlier half of the basis: what the later half still changes tells what is left to come.
+  /// Starts a run in the earlier half of the basis. The change due to the later half indicates the error of the whole
+  /// basis.
   std::unique_ptr<Trajectory> start_in_half(const Eigen::VectorXd& theta, double start) const;
-  /// The same in a basis larger by half; null when that adds nothing.
+  /// Returns the model in a basis larger by half; null when that adds no vectors.
   std::unique_ptr<ReducedModel> grown() const;
   void advance_through(Trajectory& run, const std::vector<double>& times, const Show& show) const override;
-  void focus(const std::vector<int>& nodes) override;
+  void restrict_output_to(const std::vector<int>& nodes) override;
   std::string description() const override;
 
   const Model& model() const { return model_; }
-  /// 3n x basis size.
+  /// Returns the basis, 3n x basis size.
   const Eigen::MatrixXd& basis() const { return basis_.vectors; }
-  /// Its rows at some nodes, three each.
+  /// Returns the basis at some nodes, three rows for each.
   Eigen::MatrixXd basis_at(const std::vector<int>& nodes) const;
-  /// Nodal displacement of basis coordinates, 3n; zero away from the focus.
+  /// Returns the nodal displacement of basis coordinates, 3n. It is zero at nodes that the output does not hold.
   Eigen::VectorXd displacement(const Eigen::VectorXd& coordinates) const;
-  /// The same of several, a column each, into rows of `out` that belong to the focus; others stay as they are.
+  /// Computes the displacements of several columns of coordinates. They are written to those rows of `out` that belong to
+  /// the output; other rows are not changed.
   void displacements(const Eigen::MatrixXd& coordinates, Eigen::MatrixXd& out) const;
-  /// Of a run that has coordinates(), many instants at once, so that the basis is read from memory but a few times.
+  /// Shows a run that has coordinates(). Many instants are processed together, so that the basis is read from memory only a
+  /// few times.
   template <typename Run>
   void show_together(Run& run, const std::vector<double>& times, const Show& show) const;
-  /// Of every node, whatever the focus.
+  /// Computes the displacement of every node, even if the output is restricted.
   void recover(const Eigen::VectorXd& coordinates, Eigen::Ref<Eigen::VectorXd> displacement) const;
-  /// Solved anew for theta that differ in more than the scale of the mass, that of the stiffness, or the latter's inertia:
-  /// the last few are kept. `half`: in the earlier half of the basis.
+  /// Returns the modes at theta. The last few are kept. They are solved again for theta that differ in more than the scale
+  /// of the mass, the scale of the stiffness, or the stiffness' inertia. `half`: in the earlier half of the basis.
   std::shared_ptr<const ReducedModes> modes(const Eigen::VectorXd& theta, bool half = false) const;
-  /// Basis coordinates of a load term's pattern.
+  /// Returns the basis coordinates of a load term's pattern.
   Eigen::VectorXd load(std::size_t part, std::size_t term, const Eigen::VectorXd& parameters) const;
 
  private:
   struct Projected {
     explicit Projected(const LinearTerms& terms)
         : mass(terms.mass.size()), stiffness(terms.stiffness.size()), strain_stiffness(terms.strain_stiffness.size()) {}
-    std::vector<Eigen::MatrixXd> mass, stiffness, strain_stiffness;  ///< the last: empty where it depends on theta
+    std::vector<Eigen::MatrixXd> mass, stiffness, strain_stiffness;  ///< strain_stiffness: empty where it depends on theta
     std::vector<Eigen::VectorXd> loads;
     std::vector<Eigen::MatrixX3d> weight, momentum;  ///< each mass term times a unit motion along each axis
   };
-  /// Mass and stiffness as multiples of the sizes of their terms' first coefficients.
+  /// Mass and stiffness relative to the sizes of the first coefficients of their terms.
   struct Proportions {
     double mass = 1.0, stiffness = 1.0;       ///< these sizes
-    std::vector<double> masses, stiffnesses;  ///< every term's coefficient over them
-    std::vector<double> others;               ///< all else that shapes of modes depend on
+    std::vector<double> masses, stiffnesses;  ///< every term's coefficient over these sizes
+    std::vector<double> others;               ///< all other numbers on which mode shapes depend
 
     bool same_shapes(const Proportions& other) const {
       return masses == other.masses && stiffnesses == other.stiffnesses && others == other.others;
@@ -102,12 +105,12 @@ class ReducedModel : public ForwardModel {
   std::shared_ptr<const Eigen::MatrixXd> shaped(const StrainTerm& term, const Eigen::VectorXd& parameters) const;
   void project();
   void project_part(std::size_t part);
-  /// What a relative has projected onto the same vectors.
+  /// Copies a relative's projections onto the same vectors.
   void adopt_projections(const ReducedModel& relative);
   void adopt_projections(std::size_t part, const ReducedModel& relative);
   Proportions proportions(const Eigen::VectorXd& theta, bool half) const;
   std::vector<int> active(const Eigen::VectorXd& theta, bool half) const;
-  /// Of masses and stiffnesses in these proportions, with no inertia of the stiffness.
+  /// Returns the modes of masses and stiffnesses in these proportions, without inertia of the stiffness.
   std::shared_ptr<const ReducedModes> unit_modes(const Proportions& proportions, const Eigen::VectorXd& theta,
                                                  bool half) const;
   ReducedModes solve(const Proportions& proportions, const Eigen::VectorXd& theta, bool half) const;
@@ -115,14 +118,14 @@ class ReducedModel : public ForwardModel {
   const Model& model_;
   BasisOptions options_;
   ReducedBasis basis_;
-  std::vector<int> focus_;            ///< nodes; empty: all
-  PackedMatrix in_focus_;             ///< their rows of the basis
-  std::vector<Projected> projected_;  ///< a part each
-  StrainRows strains_;                ///< of the basis, where a term needs them for each theta
+  std::vector<int> focus_;            ///< nodes of the output; empty: all
+  PackedMatrix in_focus_;             ///< rows of the basis at these nodes
+  std::vector<Projected> projected_;  ///< one for each part
+  StrainRows strains_;                ///< strains of the basis, if a term needs them for each theta
   mutable std::mutex mutex_;
   mutable std::vector<Known> known_;
   mutable std::vector<Shaped> shaped_;  ///< the last few projections of terms whose place or angle is estimated
-  mutable VectorPool scratch_;          ///< for displacements in the focus
+  mutable VectorPool scratch_;          ///< for displacements of the output's nodes
 };
 
 template <typename Run>

@@ -12,17 +12,17 @@
 
 namespace tissue_stiffness {
 
-/// K^-1 with some degrees of freedom held, by a factor; beside the mesh that a large one was refined from, without (see
-/// TwoGrid). A body that nothing holds gets a trace of its mass for stiffness. Thread safe.
+/// Computes K^-1 with some degrees of freedom held, by a factor. A large mesh that was refined from another one needs no
+/// factor (see TwoGrid). A body that nothing holds gets a small part of its mass as stiffness. Thread safe.
 class StaticResponse {
  public:
   /// `coarser`: null for a mesh that was not refined. Throws NumericalError when K is not positive definite.
   StaticResponse(SparseMatrix stiffness, const SparseMatrix& mass, std::vector<char> fixed, const Prolongation* coarser);
 
   Eigen::MatrixXd operator()(Eigen::MatrixXd loads) const;
-  /// In single precision where that is faster: what a basis lacks to the last digits, its other vectors hold.
+  /// Solves in single precision where that is faster. The other vectors of a basis make up for the lost digits.
   Eigen::MatrixXd roughly(Eigen::MatrixXd loads) const;
-  /// Null where there is a factor.
+  /// Returns null where a factor is used from the start.
   const TwoGrid* grids() const { return grids_.get(); }
 
  private:

@@ -11,20 +11,21 @@
 
 namespace tissue_stiffness {
 
-/// Mesh of `mesh: {file: ...}` in the order asked for. Throws InputError for a file that is missing, unreadable, open,
-/// self-intersecting or that holds inverted elements, saying where. `checkpoint` is called now and then; what it throws
-/// ends the meshing.
+/// Makes the mesh of `mesh: {file: ...}` in the requested order. Throws InputError, naming the place, for a file that is
+/// missing, unreadable, open or self-intersecting, or that holds inverted elements. `checkpoint` is called now and then; an
+/// exception from it ends the meshing.
 TetMesh build_mesh(
     const MeshSettings& settings, const std::function<void()>& checkpoint = [] {});
 
-/// Mesh of `mesh: {revolve: ...}` or `{extrude: ...}` from the first segmented contour and the camera that saw it. The
-/// contour's outline is placed in the plane through the model's axis (revolve) or through the model's origin (extrude)
-/// facing the camera; the pinhole's perspective bias (a sphere's outline is larger than its equator) is removed.
+/// Makes the mesh of `mesh: {revolve: ...}` or `{extrude: ...}` from the first segmented contour and the camera that
+/// recorded it. The outline is placed in the plane that faces the camera and passes through the model's axis (revolve) or
+/// through the model's origin (extrude). The pinhole's perspective bias is removed: a sphere's outline is larger than its
+/// equator.
 TetMesh build_mesh(
     const MeshSettings& settings, const Contour& contour, const Camera& camera,
     const std::function<void()>& checkpoint = [] {});
 
-/// Resolves named regions on the rest mesh. Throws InputError for a region that holds nothing or a vertex out of range.
+/// Evaluates named regions on the rest mesh. Throws InputError for a region that holds nothing or a vertex out of range.
 std::map<std::string, Region> resolve_regions(const std::vector<RegionSettings>& settings, const TetMesh& mesh);
 
 }  // namespace tissue_stiffness

@@ -4,11 +4,11 @@
 
 namespace tissue_stiffness {
 
-/// Turns 4-node tetrahedra into straight-edged 10-node ones: one node in the middle of every edge, shared by all tetrahedra
-/// around it, appended behind the corners. Facets, when there are any, are set anew.
-void elevate(TetMesh& mesh);
+/// Turns 4-node tetrahedra into straight-edged 10-node ones. Every edge gets one node in its middle, which all tetrahedra
+/// around it share. The new nodes follow the corners. Facets, if there are any, are set again.
+void elevate_to_quadratic(TetMesh& mesh);
 
-/// Drops the mid-edge nodes of 10-node tetrahedra: what is left is the 4-node mesh of the same corners.
+/// Removes the mid-edge nodes of 10-node tetrahedra. What remains is the 4-node mesh of the same corners.
 void drop_mid_nodes(TetMesh& mesh);
 
 }  // namespace tissue_stiffness

@@ -7,31 +7,31 @@
 
 namespace tissue_stiffness {
 
-/// "(x, y, z) m" for messages.
+/// Returns "(x, y, z) m" for messages.
 inline std::string format_point(const Eigen::Vector3d& p) {
   std::ostringstream out;
   out << "(" << p.x() << ", " << p.y() << ", " << p.z() << ") m";
   return out.str();
 }
 
-/// Walks over the bytes of a file word by word. Every failure is an InputError "FILE:LINE: found ...; allowed: ...".
+/// Reads the bytes of a file word by word. Every failure is an InputError "FILE:LINE: found ...; allowed: ...".
 class FileCursor {
  public:
-  /// Reads the whole file; throws InputError when that is not possible.
+  /// Reads the whole file. Throws InputError when that is not possible.
   explicit FileCursor(const std::string& file);
 
   const std::string& bytes() const { return bytes_; }
   std::size_t position() const { return position_; }
   bool at_end();                  ///< skips white space first
-  std::string word();             ///< next word; fails at the end of the file
-  std::string peek() const;       ///< next word without moving, empty at the end
+  std::string word();             ///< next word; throws at the end of the file
+  std::string peek() const;       ///< next word without advancing; empty at the end
   std::string line();             ///< rest of the line, without its end
-  void skip_comments(char mark);  ///< white space, and from `mark` to the end of its line
+  void skip_comments(char mark);  ///< skips white space, and from `mark` to the end of its line
 
   double number(const std::string& what);
   long long integer(const std::string& what, long long lower, long long upper);
 
-  /// `count` bytes of binary data at the present position.
+  /// Returns `count` bytes of binary data at the present position.
   const char* binary(std::size_t count, const std::string& what);
 
   [[noreturn]] void fail(const std::string& found, const std::string& allowed) const;

@@ -4,7 +4,7 @@
 
 namespace tissue_stiffness {
 
-/// Lower-case ending with its dot (".vtk"), empty when the file has none.
+/// Returns the lower-case ending with its dot (".vtk"); empty when the file has none.
 std::string file_ending(const std::string& file);
 
 }  // namespace tissue_stiffness

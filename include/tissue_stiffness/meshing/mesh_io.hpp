@@ -7,33 +7,34 @@
 
 namespace tissue_stiffness {
 
-/// Tetrahedra as a file holds them: 4 or 10 rows, in the node order of TetMesh, nodes numbered from 0.
+/// Tetrahedra as they are in a file: 4 or 10 rows, in the node order of TetMesh, with nodes numbered from 0.
 struct TetFile {
   Eigen::Matrix3Xd nodes;  ///< in the file's unit
   Eigen::MatrixXi tets;
 };
 
-/// Legacy VTK unstructured grid (versions 2 to 5.1, ASCII or binary): cell types 10 and 24; cells of lower dimension are
-/// passed over, other solids refused. A grid that mixes both types is read as 4-node.
+/// Reads a legacy VTK unstructured grid (versions 2 to 5.1, ASCII or binary) with cell types 10 and 24. Cells of lower
+/// dimension are skipped, other solids are refused. A grid with both types is read as 4-node.
 TetFile read_vtk(const std::string& file);
 
-/// TetGen's FILE.node and FILE.ele, either of which may be named; numbered from 0 or 1; 4 or 10 nodes a tetrahedron.
+/// Reads TetGen's FILE.node and FILE.ele, either of which may be named. Nodes are numbered from 0 or 1; tetrahedra have 4
+/// or 10 nodes.
 TetFile read_node_ele(const std::string& file);
 
-/// Gmsh 2.2 or 4.1, ASCII: element types 4 and 11; lower dimensions are passed over, other solids refused.
+/// Reads Gmsh 2.2 or 4.1, ASCII, with element types 4 and 11. Lower dimensions are skipped, other solids are refused.
 TetFile read_msh(const std::string& file);
 
-/// Mesh of a tetrahedral file (by its ending: .vtk, .node, .ele, .msh), coordinates times `scale` [m per file unit]. Corner
-/// nodes come first, in the file's order; then mid-edge nodes, the file's own when it has them. When every tetrahedron is
-/// inverted the file counts its nodes the other way round and is reordered. Order 1 drops mid-edge nodes.
-/// Throws InputError, naming file and place, for NaN, coincident or unused vertices, single inverted or flat
+/// Returns the mesh of a tetrahedral file (by its ending: .vtk, .node, .ele, .msh), with coordinates times `scale` [m per
+/// file unit]. Corner nodes come first, in the file's order. The mid-edge nodes follow; they are the file's own when it has
+/// them. When every tetrahedron is inverted, the file has the opposite node order and is reordered. Order 1 drops mid-edge
+/// nodes. Throws InputError, naming file and place, for NaN, coincident or unused vertices, single inverted or flat
 /// tetrahedra, and faces with more than two tetrahedra.
 TetMesh load_tet_mesh(const std::string& file, double scale, int order);
 
-/// Whether load_tet_mesh knows the file's ending.
+/// Returns whether load_tet_mesh knows the file's ending.
 bool is_tet_file(const std::string& file);
 
-/// Writes a legacy ASCII .vtk (types 10 or 24) that load_tet_mesh reads back bit for bit. Throws InputError when the file
+/// Writes a legacy ASCII .vtk (types 10 or 24) that load_tet_mesh reads back exactly. Throws InputError when the file
 /// cannot be written or does not end in .vtk.
 void save_mesh(const TetMesh& mesh, const std::string& file);
 

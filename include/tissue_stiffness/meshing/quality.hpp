@@ -7,25 +7,27 @@
 
 namespace tissue_stiffness {
 
-/// Shape of a mesh's tetrahedra. The radius ratio is 3 r / R with the inscribed sphere's radius r and the circumscribed
-/// one's R: 1 for a regular tetrahedron, 0 for a flat one (Shewchuk 2002, What is a good linear finite element?).
+/// Shape of a mesh's tetrahedra. The radius ratio is 3 r / R, where r is the inscribed sphere's radius and R the
+/// circumscribed sphere's. It is 1 for a regular tetrahedron and 0 for a flat one (Shewchuk 2002, What is a good linear
+/// finite element?).
 struct MeshQuality {
   double least_radius_ratio = 0.0;
   double mean_radius_ratio = 0.0;
   double least_dihedral_angle = 0.0;  ///< [rad]
-  double least_jacobian_ratio = 0.0;  ///< 10-node: least over greatest Jacobian of an element at its nodes; 1 when straight
-  double mean_edge_length = 0.0;      ///< of the corners' edges, each weighted by its tetrahedra [m]
-  double volume = 0.0;                ///< of the straight-edged tetrahedra [m^3]
-  int worst_tet = 0;                  ///< tetrahedron of the least radius ratio
+  double least_jacobian_ratio = 0.0;  ///< 10-node: least over greatest Jacobian at an element's nodes; 1 when straight
+  double mean_edge_length = 0.0;      ///< mean over the tetrahedra's edges between corners [m]
+  double volume = 0.0;                ///< volume of the straight-edged tetrahedra [m^3]
+  int worst_tet = 0;                  ///< tetrahedron with the least radius ratio
 };
 
-/// Throws InputError for an empty mesh.
+/// Computes the quality. Throws InputError for an empty mesh.
 MeshQuality measure_quality(const TetMesh& mesh);
 
-/// One line: counts, edge length, volume and quality.
-std::string describe(const TetMesh& mesh, const MeshQuality& quality);
+/// Returns one line with counts, edge length, volume and quality.
+std::string describe_quality(const TetMesh& mesh, const MeshQuality& quality);
 
-/// Jacobian determinants of a tetrahedron's map from the reference element at its nodes: 1 value (4-node) or 10 [m^3].
+/// Returns the Jacobian determinants of a tetrahedron's map from the reference element at its nodes: 1 value (4-node) or 10
+/// [m^3].
 Eigen::VectorXd node_jacobians(const TetMesh& mesh, int tet);
 
 }  // namespace tissue_stiffness

@@ -9,17 +9,17 @@
 namespace tissue_stiffness {
 
 /// Cuts every tetrahedron into eight (red refinement: four at the corners, four around the shortest diagonal of the inner
-/// octahedron). Corners keep their numbers; a 10-node mesh's mid-edge nodes become corners at the same numbers, curved
+/// octahedron). Corners keep their numbers. A 10-node mesh's mid-edge nodes become corners with unchanged numbers, curved
 /// edges stay, and new mid-edge nodes lie on the quadratic geometry.
-TetMesh refine(const TetMesh& mesh);
+TetMesh refine_mesh(const TetMesh& mesh);
 
-/// The same parts of the body on refine(mesh): the children of a region's facets and tetrahedra, whatever shape the region
-/// was cut out with.
-std::map<std::string, Region> refine(const std::map<std::string, Region>& regions, const TetMesh& mesh,
-                                     const TetMesh& refined);
+/// Returns the regions on refine_mesh(mesh). They consist of the children of each region's facets and tetrahedra, whatever
+/// shape defined the region.
+std::map<std::string, Region> refine_regions(const std::map<std::string, Region>& regions, const TetMesh& mesh,
+                                             const TetMesh& refined);
 
-/// Values at the nodes of refine(mesh) of what is quadratic in each tetrahedron of `mesh` (linear, when that has no
-/// mid-edge nodes).
+/// Returns the matrix that interpolates nodal values of `mesh` at the nodes of refine_mesh(mesh). It is exact for what is
+/// quadratic in each tetrahedron of `mesh`, or linear when that has no mid-edge nodes.
 Prolongation prolongation(const TetMesh& mesh, const TetMesh& refined);
 
 }  // namespace tissue_stiffness

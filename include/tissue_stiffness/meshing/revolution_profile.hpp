@@ -7,8 +7,8 @@
 
 namespace tissue_stiffness {
 
-/// A smooth surface of revolution that its centre sees all of: at the angle t from the axis it lies at the distance
-/// R(t) = sum_n c_n cos(n t) from the centre, which closes it smoothly at both poles.
+/// A smooth surface of revolution that is star-shaped about its centre. At the angle t from the axis it lies at the
+/// distance R(t) = sum_n c_n cos(n t) from the centre, which closes it smoothly at both poles.
 class RevolutionProfile {
  public:
   RevolutionProfile(const Eigen::Vector3d& centre, const Eigen::Vector3d& axis, const Eigen::VectorXd& coefficients)
@@ -21,18 +21,18 @@ class RevolutionProfile {
   double radius(double angle) const;        ///< R [m]
   double radius_slope(double angle) const;  ///< dR/dt [m/rad]
 
-  /// (distance from the axis, height along it above the centre) at an angle [m].
+  /// Returns the distance from the axis and the height along it above the centre at an angle [m].
   Eigen::Vector2d meridian(double angle) const;
 
-  double angle(const Eigen::Vector3d& point) const;  ///< from the axis, 0 to pi [rad]
+  double angle(const Eigen::Vector3d& point) const;  ///< angle from the axis, 0 to pi [rad]
 
-  /// First-order signed distance from the surface, positive outside: (|x| - R) / |grad(|x| - R)| [m].
+  /// Returns the first-order signed distance from the surface, positive outside: (|x| - R) / |grad(|x| - R)| [m].
   double distance(const Eigen::Vector3d& point) const;
 
-  /// Unit normal, outwards, of the level set through a point.
+  /// Returns the outward unit normal of the level set through a point.
   Eigen::Vector3d normal(const Eigen::Vector3d& point) const;
 
-  /// A point close by on the surface, along the normal.
+  /// Returns a nearby point on the surface, along the normal.
   Eigen::Vector3d project(const Eigen::Vector3d& point) const;
 
  private:
@@ -42,18 +42,19 @@ class RevolutionProfile {
   Eigen::VectorXd coefficients_;
 };
 
-/// A profile fitted to an outline.
+/// A profile that was fitted to an outline.
 struct ProfileFit {
   RevolutionProfile profile;
-  double rms = 0.0;        ///< weighted rms distance of the lines of sight from the surface [m]
-  double smoothing = 0.0;  ///< chosen weight of the integral
+  double rms = 0.0;        ///< rms distance of the lines of sight from the surface [m]
+  double smoothing = 0.0;  ///< weight that was chosen for the integral
 };
 
-/// The body of revolution whose silhouette is the outline: every line of sight touches it. The axis runs in direction
-/// `axis` at the depth of the model's origin (slice: in the image plane), and sideways where the outline is. Gauss-Newton
-/// on sum (distance / sigma)^2 + smoothing * integral of (R'' + R - c_0)^2, the smoothing by generalised cross-validation
-/// (Craven and Wahba 1979), so that both sides of the outline count with 1/sigma^2 and perspective needs no correction
-/// afterwards. Throws InputError for an axis that points at the camera, and an outline that its centre does not see all of.
+/// Finds the body of revolution whose silhouette is the outline: every line of sight touches it. The axis has the direction
+/// `axis` and the depth of the model's origin (slice: it lies in the image plane). Its sideways position follows from the
+/// outline. Gauss-Newton minimises sum (distance / sigma)^2 + smoothing * integral of (R'' + R - c_0)^2. The smoothing is
+/// chosen by generalised cross-validation (Craven and Wahba 1979). So both sides of the outline count with 1/sigma^2, and
+/// perspective needs no later correction. Throws InputError for an axis that points at the camera, and for an outline that
+/// is not star-shaped about its centre.
 ProfileFit fit_profile(const ViewingRays& rays, const Camera& camera, const Eigen::Vector3d& axis);
 
 }  // namespace tissue_stiffness

@@ -6,7 +6,7 @@
 
 namespace tissue_stiffness {
 
-/// The checked TetMesh of tetrahedra from a file, as described at load_tet_mesh. `where` stands first in messages.
+/// Checks tetrahedra from a file as described at load_tet_mesh and returns their TetMesh. Messages begin with `where`.
 TetMesh check_tet_file(const TetFile& input, double scale, int order, const std::string& where);
 
 }  // namespace tissue_stiffness

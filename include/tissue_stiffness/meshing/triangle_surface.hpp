@@ -6,7 +6,7 @@
 
 namespace tissue_stiffness {
 
-/// A surface of triangles, counter-clockwise seen from outside.
+/// A surface of triangles whose corners run counter-clockwise seen from outside.
 struct TriangleSurface {
   Eigen::Matrix3Xd vertices;   ///< [m]
   Eigen::Matrix3Xi triangles;  ///< vertex numbers from 0
@@ -15,14 +15,15 @@ struct TriangleSurface {
   int triangle_count() const { return static_cast<int>(triangles.cols()); }
 };
 
-/// Whether load_surface knows the file's ending: .stl, .ply or .obj.
+/// Returns whether load_surface knows the file's ending: .stl, .ply or .obj.
 bool is_surface_file(const std::string& file);
 
-/// Surface of a file (STL ASCII or binary, PLY and OBJ through PCL; polygons are cut into fans), coordinates times `scale`
-/// [m per file unit], welded, checked to be closed and oriented. Throws InputError naming file and place.
+/// Reads a surface file (STL ASCII or binary, PLY and OBJ through PCL; polygons are cut into fans). Coordinates are
+/// multiplied by `scale` [m per file unit]. The surface is welded, checked to be closed, and oriented. Throws InputError
+/// naming file and place.
 TriangleSurface load_surface(const std::string& file, double scale);
 
-/// Merges vertices closer than `tolerance` [m] into the first of them; drops triangles that thereby lose an edge, and
+/// Merges vertices closer than `tolerance` [m] into the first of them. Drops triangles that thereby lose an edge, and
 /// vertices that no triangle uses.
 TriangleSurface weld(const TriangleSurface& surface, double tolerance);
 
@@ -30,26 +31,26 @@ TriangleSurface weld(const TriangleSurface& surface, double tolerance);
 /// edge has exactly two of them.
 void check_watertight(const TriangleSurface& surface, const std::string& where);
 
-/// Triangle on the other side of every side: neighbours(i, t) shares the edge from corner i to corner i + 1 of triangle t.
-/// The surface must be watertight.
+/// Returns the triangle on the other side of every edge: neighbours(i, t) shares the edge from corner i to corner i + 1 of
+/// triangle t. The surface must be watertight.
 Eigen::Matrix3Xi triangle_neighbours(const TriangleSurface& surface);
 
-/// Turns the triangles of each connected shell the same way round, and outwards by the shell's volume. Throws InputError
-/// for a one-sided shell. The surface must be watertight.
+/// Gives the triangles of each connected shell the same orientation, outwards by the shell's volume. Throws InputError for
+/// a one-sided shell. The surface must be watertight.
 void orient_outwards(TriangleSurface& surface, const std::string& where);
 
-/// Volume that the surface encloses; shells inside an odd number of others count negative, whichever way they are oriented
-/// [m^3]. Shells must not cross.
+/// Returns the volume that the surface encloses [m^3]. Shells inside an odd number of others count negative, however they
+/// are oriented. Shells must not cross.
 double enclosed_volume(const TriangleSurface& surface);
 
-/// Number of times that the surface winds around a point (van Oosterom and Strackee 1983 for the solid angle of a
-/// triangle).
+/// Returns the number of times that the surface winds around a point (van Oosterom and Strackee 1983 for the solid angle of
+/// a triangle).
 double winding_number(const TriangleSurface& surface, const Eigen::Vector3d& point);
 
-/// Area vector of a triangle: its outward normal times its area [m^2].
+/// Returns a triangle's outward normal times its area [m^2].
 Eigen::Vector3d triangle_area_vector(const TriangleSurface& surface, int triangle);
 
-/// Shell (connected part) of every triangle, numbered from 0.
+/// Returns the shell (connected part) of every triangle, numbered from 0.
 std::vector<int> shells(const TriangleSurface& surface);
 
 }  // namespace tissue_stiffness

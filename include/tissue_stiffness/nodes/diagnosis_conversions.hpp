@@ -5,7 +5,7 @@
 
 namespace tissue_stiffness {
 
-/// `added` is left to the caller.
+/// Converts a diagnosis to its message. The caller must fill in `added`.
 DiagnosisMessage to_message(const Diagnosis& diagnosis, const std_msgs::Header& header);
 
 }  // namespace tissue_stiffness

@@ -9,20 +9,20 @@
 
 namespace tissue_stiffness {
 
-/// A node's state on /diagnostics, once a second: counts, texts and the times of stages. Thread safe.
+/// Publishes a node's state on /diagnostics once a second: counts, texts and the times of stages. It is thread safe.
 class Diagnostics {
  public:
   Diagnostics(ros::NodeHandle node, const std::string& name);
 
   void count(const std::string& key);
   void set(const std::string& key, const std::string& text);
-  /// Empty when it was never set.
+  /// Returns a text; empty when it was never set.
   std::string text(const std::string& key);
-  /// Wall time of a stage [s]: its mean and its longest are shown.
+  /// Adds the wall time of a stage [s]. Its mean and its longest are published.
   void time(const std::string& stage, double seconds);
   void state(std::uint8_t level, const std::string& message);
 
-  /// A message that was left out: counted, and logged at most once a second.
+  /// Counts a message that was left out, and logs it at most once a second.
   void bad_message(const std::string& what);
 
  private:

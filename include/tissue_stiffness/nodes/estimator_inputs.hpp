@@ -16,10 +16,10 @@
 
 namespace tissue_stiffness {
 
-/// Loads that the model's effects ask for on a topic.
+/// Returns the loads that the model's effects need on topics.
 std::vector<LoadInput> load_topics(const ModelSettings& settings);
 
-/// The estimator's subscriptions. Callbacks only queue; what they queue converts itself in the worker.
+/// The estimator's subscriptions. Callbacks only queue messages; the worker converts them.
 ///
 /// The first contour of the model comes on `contour`, further ones on `contour_2`, `contour_3`, ...
 class EstimatorInputs {
@@ -27,10 +27,10 @@ class EstimatorInputs {
   EstimatorInputs(const ros::NodeHandle& node, const ModelSettings& settings, const SensorPoses& poses, FrameQueue& queue,
                   Diagnostics& diagnostics);
 
-  /// Subscribes to observations and loads; once.
+  /// Subscribes to observations and loads, the first time it is called.
   void listen(std::uint32_t queue_size);
 
-  /// Upper bound of the field `vertex`.
+  /// Sets the upper bound of the field `vertex`.
   void set_vertex_count(int count) { vertex_count_ = count; }
 
  private:

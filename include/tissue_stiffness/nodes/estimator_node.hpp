@@ -21,20 +21,20 @@
 
 namespace tissue_stiffness {
 
-/// The online estimator behind topics. Callbacks queue, one worker steps over frames and publishes after each.
+/// The online estimator with its topics. Callbacks queue messages. One worker steps over frames and publishes after each.
 ///
-/// `time.start` of the model counts from the first stamp heard on any of its topics. The node listens from the moment it is
-/// ready (at once when the mesh comes from the contour), so a recording that waits for subscribers is heard from its start.
-/// When stamps jump back (a bag that loops, a simulated clock that is reset) the estimator starts from the prior again and
-/// `previous_estimate` of /diagnostics keeps what the run before had found.
+/// `time.start` of the model counts from the first stamp received on any of its topics. The node listens as soon as it is
+/// ready (immediately when the mesh comes from the contour). So a recording that waits for subscribers is received from its
+/// start. When stamps go back (a bag that loops, a simulated clock that is reset), the estimator starts from the prior
+/// again. `previous_estimate` of /diagnostics then keeps the result of the run before.
 ///
-/// Beside the frames it looks for what the model misses, and takes effects in and out of the running model: ModelServices.
+/// In the background ModelServices searches for what the model misses. It also adds effects to the running model and
+/// removes them. For a model with `map`, MapPublisher maps the modulus over the body in the background.
 ///
-/// A model with `map` has its modulus mapped over the body beside the frames, too: MapPublisher.
-///
-/// Private parameters: `model` (a file) or the model's keys; `model_frame` ("model"), `load_timeout` (0.1 s: how long a
-/// frame waits for the loads and other sensors up to its stamp), `transform_timeout` (0.1 s), `queue_size` (100 frames),
-/// `diagnosis_period` (10 s; 0: on request only), `diagnosis_window` (20 s of frames that a check sees).
+/// Private parameters: `model` (a file) or the model's keys; `model_frame` ("model"), `load_timeout` (0.1 s),
+/// `transform_timeout` (0.1 s), `queue_size` (100 frames), `diagnosis_period` (10 s; 0: on request only),
+/// `diagnosis_window` (20 s). A frame waits for `load_timeout` for the loads and other sensors up to its stamp. A check
+/// uses the frames of `diagnosis_window`.
 class EstimatorNode {
  public:
   EstimatorNode(ros::NodeHandle node, const ros::NodeHandle& private_node);
@@ -51,7 +51,7 @@ class EstimatorNode {
   void run();
   void work();
   std::optional<TetMesh> wait_for_mesh();
-  /// What has to happen before the next frame: a mesh that came, a model that was changed.
+  /// Applies changes before the next frame: a mesh that arrived, a model that was changed.
   bool take_changes();
   void build(const TetMesh& mesh);
   void run_again();
@@ -62,7 +62,7 @@ class EstimatorNode {
   void show_state(const Estimate& estimate);
   void report(const StepResult& result);
 
-  const ModelSettings settings_;  ///< as given
+  const ModelSettings settings_;  ///< as it was given
   std::uint32_t queue_size_;
   Diagnostics diagnostics_;
   SensorPoses poses_;
@@ -71,12 +71,12 @@ class EstimatorNode {
   EstimatorOutputs outputs_;
   MapPublisher map_;
   SetupWatch watch_;
-  ModelSettings running_;  ///< with what was added; the worker's alone, as the estimator
+  ModelSettings running_;  ///< with added effects; used only by the worker, like the estimator
   std::unique_ptr<Estimator> estimator_;
-  std::optional<Frame> last_;  ///< used
+  std::optional<Frame> last_;  ///< last frame that was used
   ros::Time last_stamp_;
   std::chrono::steady_clock::time_point arrival_;  ///< of the last frame that was used
-  bool stale_ = false;                             ///< said so since then
+  bool stale_ = false;                             ///< it was published since then
 
   std::mutex changes_mutex_;
   std::condition_variable mesh_arrived_;

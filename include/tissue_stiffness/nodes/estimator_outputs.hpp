@@ -10,19 +10,19 @@
 
 namespace tissue_stiffness {
 
-/// The estimator's topics: `stiffness` (latched), `misfit`, `tracked_surface`, `tracked_points`,
-/// `measured_points`, and for each contour that the model observes `predicted_contour` (then `predicted_contour_2`, ...):
-/// the model's outline in its image.
+/// The estimator's topics: `stiffness` (latched), `misfit`, `tracked_surface`, `tracked_points` and `measured_points`. For
+/// each contour that the model observes there is `predicted_contour` (then `predicted_contour_2`, ...), the model's outline
+/// in its image.
 class EstimatorOutputs {
  public:
   EstimatorOutputs(ros::NodeHandle node, std::string model_frame);
 
-  /// Before the first frame on this mesh.
+  /// Prepares the topics before the first frame on this mesh.
   void prepare(const ModelSettings& settings, const TetMesh& mesh);
 
-  /// After each frame that was used. What nobody listens to is not made.
+  /// Publishes after each frame that was used. Messages without a subscriber are not made.
   void publish(const Estimator& estimator, const StepResult& result, const Frame& frame, const ros::Time& stamp) const;
-  /// The estimate alone, when no frame came with it.
+  /// Publishes the estimate alone, when it changed without a frame.
   void publish(const Estimate& estimate, const ros::Time& stamp) const;
 
  private:
@@ -31,8 +31,8 @@ class EstimatorOutputs {
   ros::NodeHandle node_;
   std::string model_frame_;
   ros::Publisher stiffness_, misfit_, surface_, points_, measured_;
-  std::map<int, ModelOutline> outlines_;          ///< by row of the model's observations
-  std::map<int, ros::Publisher> outline_topics_;  ///< the same
+  std::map<int, ModelOutline> outlines_;          ///< by index in the model's list of observations
+  std::map<int, ros::Publisher> outline_topics_;  ///< by the same index
 };
 
 }  // namespace tissue_stiffness

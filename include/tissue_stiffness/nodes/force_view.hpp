@@ -7,8 +7,8 @@
 
 namespace tissue_stiffness {
 
-/// The missing force at the instant when it is largest: a needle from each of its nodes at rest, the longest a fifth of the
-/// body's size. Without a force, a marker that removes the one before.
+/// Returns the missing force at the instant when it is largest, as a needle from each of its nodes at rest. The longest
+/// needle is a fifth of the body's size. Without a force the marker removes the previous one.
 visualization_msgs::Marker force_marker(const MissingForce& force, const std_msgs::Header& header);
 
 }  // namespace tissue_stiffness

@@ -18,24 +18,24 @@
 
 namespace tissue_stiffness {
 
-/// Puts what arrives on several topics into the order in which the estimator needs it. Callbacks add, one worker takes.
+/// Orders the messages of several topics as the estimator needs them. Callbacks add messages, and one worker takes them.
 ///
-/// A frame is handed out once every topic has delivered up to the frame's stamp, or after `patience`: then what has come
-/// must do (a load is held). When more than `capacity` frames wait, the oldest is dropped.
+/// A frame is handed out once every topic has delivered up to the frame's stamp, or after `patience`. In the latter case
+/// the available messages are used (a load is held). When more than `capacity` frames wait, the oldest is dropped.
 ///
-/// A topic whose stamps jump back (by more than 0.5 s, or to where the topic began: a bag that loops), or ahead by more
-/// than a minute, starts a new lap: another run of the experiment. Topics may notice at different times; each message is
-/// kept in the lap of its topic.
+/// A lap is one run of the experiment. A topic starts a new lap when its stamps go back by more than 0.5 s, or to the
+/// topic's first stamp (a bag that loops), or ahead by more than a minute. Topics may notice this at different times, so
+/// each message is kept in the lap of its topic.
 class FrameQueue {
  public:
-  /// Conversions run in the worker, because they may wait for a transform; they may throw InputError.
+  /// Conversions run in the worker, because they may wait for a transform. They may throw InputError.
   using MakeObservation = std::function<Observation()>;
   using MakeLoad = std::function<LoadSample()>;
 
-  /// What the worker does next. The loads of a lap come with its first frame that needs them.
+  /// The worker's next task. The loads of a lap come with its first frame that needs them.
   struct Work {
-    bool new_lap = false;   ///< the estimator has to be reset before
-    ros::Time first_stamp;  ///< of the lap, over all topics
+    bool new_lap = false;   ///< the estimator must be reset first
+    ros::Time first_stamp;  ///< first stamp of the lap, over all topics
     ros::Time stamp;
     std::vector<MakeLoad> loads;
     std::vector<MakeObservation> observations;
@@ -43,19 +43,19 @@ class FrameQueue {
 
   FrameQueue(std::chrono::duration<double> patience, std::size_t capacity);
 
-  /// Frames wait for this topic from now on.
+  /// From now on frames wait for this topic.
   void expect(const std::string& topic);
 
   void add_observation(const std::string& topic, const ros::Time& stamp, MakeObservation make);
   void add_load(const std::string& topic, const ros::Time& stamp, MakeLoad make);
 
-  /// Waits for the next frame. Nothing after stop(); work without observations after wake(), and after a second without
-  /// any.
+  /// Waits for the next frame. Returns nothing after stop(). Returns work without observations after wake(), and after a
+  /// second without any.
   std::optional<Work> take();
-  /// Lets take() return although no frame is there.
+  /// Makes take() return although no frame is available.
   void wake();
 
-  /// Forgets what waits; the next message starts a new lap.
+  /// Forgets all waiting messages. The next message starts a new lap.
   void restart();
   void stop();
 

@@ -9,8 +9,9 @@
 
 namespace tissue_stiffness {
 
-/// The surface at rest, coloured by Young's modulus on a logarithmic scale, dark blue where it is least over green to
-/// yellow where it is largest (a range of a factor of 2 at least, about the middle); grey where the map is at its prior.
+/// Returns the surface at rest, coloured by Young's modulus on a logarithmic scale: from dark blue for the smallest over
+/// green to yellow for the largest. The range is at least a factor of 2 about the middle. The surface is grey where the map
+/// is at its prior.
 visualization_msgs::Marker map_marker(const StiffnessMap& map, const TetMesh& mesh, const std_msgs::Header& header);
 
 StiffnessMapMessage to_message(const StiffnessMap& map, const std_msgs::Header& header);

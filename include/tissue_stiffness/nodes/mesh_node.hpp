@@ -12,8 +12,9 @@
 
 namespace tissue_stiffness {
 
-/// Builds the model's mesh and publishes it on `mesh` (latched): from a file at once, from the first `contour` with its
-/// `camera_info` and tf2 once somebody listens to `mesh`. Services `build_mesh` and `save_mesh`.
+/// Builds the model's mesh and publishes it on `mesh` (latched). A mesh from a file is built immediately. A mesh from the
+/// first `contour` with its `camera_info` and tf2 is built once there is a subscriber to `mesh`. The services are
+/// `build_mesh` and `save_mesh`.
 ///
 /// Private parameters: `model` (a file) or the model's keys; `model_frame` ("model"), `transform_timeout` (1 s). Unless
 /// `camera_info` is remapped, the topic is the model's.

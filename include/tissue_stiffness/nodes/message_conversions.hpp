@@ -12,20 +12,20 @@
 
 namespace tissue_stiffness {
 
-// The package's own messages <-> types. What comes in is checked: InputError names the topic, what was found and what is
-// allowed.
+// These functions convert between the package's own messages and its types. Incoming messages are checked: InputError names
+// the topic, what was found and what is allowed.
 
 ContourMessage to_message(const Contour& contour, const std_msgs::Header& header);
 TetMeshMessage to_message(const TetMesh& mesh, const std_msgs::Header& header);
 StiffnessEstimate to_message(const Estimate& estimate, const std_msgs::Header& header);
 MisfitMessage to_message(const Misfit& misfit, const std_msgs::Header& header);
 
-/// Throws InputError for arrays of unequal length, an empty contour, numbers that are not finite (sigma may be infinite),
-/// sigma <= 0.
+/// Converts a contour. Throws InputError for arrays of unequal length, an empty contour, numbers that are not finite (sigma
+/// may be infinite), and sigma <= 0.
 Contour to_contour(const ContourMessage& message, const std::string& topic);
 
-/// Throws InputError for a node count other than 4 or 10, incomplete arrays, indices out of range, coordinates that are not
-/// finite.
+/// Converts a mesh. Throws InputError for a node count other than 4 or 10, incomplete arrays, indices out of range, and
+/// coordinates that are not finite.
 TetMesh to_mesh(const TetMeshMessage& message, const std::string& topic);
 
 }  // namespace tissue_stiffness

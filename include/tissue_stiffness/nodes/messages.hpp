@@ -1,7 +1,7 @@
 #pragma once
 
-// The package's own messages. Generated headers put their types into the namespace of the package, where the core has its
-// nouns of the same names; so the typedefs of these are renamed. On the wire nothing changes.
+// The package's own messages. Generated headers put their types into the package's namespace, where the core has types with
+// equal names. So these typedefs have other names. The messages themselves are not changed.
 #include <geometry_msgs/Point.h>
 #include <ros/message_operations.h>
 #include <ros/serialization.h>

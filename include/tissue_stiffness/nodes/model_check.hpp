@@ -10,23 +10,22 @@
 #include <string>
 #include <thread>
 
-#include "tissue_stiffness/diagnosis/recording.hpp"
+#include "tissue_stiffness/fit/recording.hpp"
 #include "tissue_stiffness/settings/model_settings.hpp"
 #include "tissue_stiffness/types/diagnosis.hpp"
 #include "tissue_stiffness/types/tet_mesh.hpp"
 
 namespace tissue_stiffness {
 
-/// Looks for what the running model misses, beside the estimator: one thread of low priority that runs on one core, over a
+/// Searches for what the running model misses, in the background. One thread of low priority runs on one core and uses a
 /// copy of the last seconds. All members may be called from any thread.
 class ModelCheck {
  public:
   struct Options {
-    double period =
-        0.0;  ///< [s] of wall time between checks, and at least as long as the last one took; 0: on request only
-    double window = 0.0;  ///< [s] of frames that are kept
+    double period = 0.0;  ///< wall time between checks [s], at least the time of the last one; 0: on request only
+    double window = 0.0;  ///< time span of the frames that are kept [s]
   };
-  /// What a check found in frames up to `stamp`.
+  /// Receives the result of a check of the frames up to `stamp`.
   using Report = std::function<void(const Diagnosis& diagnosis, double stamp)>;
 
   ModelCheck(const Options& options, Report report);
@@ -34,24 +33,24 @@ class ModelCheck {
   ModelCheck(const ModelCheck&) = delete;
   ModelCheck& operator=(const ModelCheck&) = delete;
 
-  /// Gives up a check in progress and ends the thread; who waits for one gets its NumericalError.
+  /// Cancels a check in progress and ends the thread. A caller that waits for the check gets its NumericalError.
   void stop();
 
-  /// From now on this is the running model; a check in progress is given up, the next one is due.
+  /// Sets the running model. A check in progress is cancelled, and the next one is due.
   void start(const ModelSettings& settings, const TetMesh& mesh);
-  /// Another run of the experiment: frames and loads are forgotten.
+  /// Starts another run of the experiment. Frames and loads are forgotten.
   void start_lap(double first_stamp);
   void add(const LoadSample& load);
   void add(const Frame& frame);
 
-  /// What is kept of this lap.
+  /// Returns what is kept of this lap.
   Recording recording() const;
-  /// False when it lacks loads that acted since the start: nothing can be run again then.
+  /// Returns false when loads since the start were dropped, so that nothing can be run again.
   bool complete() const;
-  /// The last one of the running model.
+  /// Returns the last diagnosis of the running model.
   std::optional<Diagnosis> last() const;
-  /// Checks now, in the thread, and waits for it. Throws InputError when there is no model or too little data,
-  /// NumericalError when the model cannot be run or the check was given up.
+  /// Runs a check now, in the thread, and waits for it. Throws InputError when there is no model or loads of this run were
+  /// dropped. Throws NumericalError when there are too few data, the model cannot be run, or the check was cancelled.
   Diagnosis check();
 
  private:
@@ -75,9 +74,9 @@ class ModelCheck {
   std::deque<Frame> frames_;
   std::deque<LoadSample> loads_;
   bool complete_ = true;  ///< no load of this lap was dropped
-  bool news_ = false;     ///< since the last check
+  bool news_ = false;     ///< a frame or model came since the last check
   bool stopped_ = false;
-  unsigned requests_ = 0, served_ = 0;  ///< by check()
+  unsigned requests_ = 0, served_ = 0;  ///< requests by check(), and the last one that was served
   std::atomic<bool> given_up_{false};
   std::chrono::steady_clock::time_point next_;
   std::optional<Diagnosis> last_;

@@ -18,11 +18,11 @@
 
 namespace tissue_stiffness {
 
-/// The running model as seen from outside: topic `diagnosis` (latched), services `diagnose`, `add_effect`, `remove_effect`,
-/// `list_effects`. They are served by a thread of their own, so that a long answer delays no frame.
+/// Gives access to the running model: topics `diagnosis` and `missing_force` (latched), services `diagnose`, `add_effect`,
+/// `remove_effect`, `list_effects`. A separate thread serves them, so that a long answer delays no frame.
 class ModelServices {
  public:
-  /// Gets a changed model that fits the mesh; it is to run from now on.
+  /// Receives a changed model that fits the mesh and must run from now on.
   using Change = std::function<void(const ModelSettings&)>;
 
   ModelServices(const ros::NodeHandle& node, std::string model_frame, const ModelCheck::Options& options, Change change);
@@ -30,7 +30,7 @@ class ModelServices {
 
   ModelCheck& check() { return check_; }
 
-  /// From now on this model runs on this mesh.
+  /// Sets the running model and its mesh.
   void start(const ModelSettings& settings, const TetMesh& mesh);
 
  private:
@@ -38,7 +38,7 @@ class ModelServices {
   bool on_add(AddEffect::Request& request, AddEffect::Response& response);
   bool on_remove(RemoveEffect::Request& request, RemoveEffect::Response& response);
   bool on_list(ListEffects::Request&, ListEffects::Response& response);
-  /// Checks what `edit` makes of the running model against the mesh, hands it on, gives the message.
+  /// Applies `edit` to the running model, checks the result against the mesh, and passes it on. Returns the message.
   std::string change_model(const std::function<std::string(ModelSettings&)>& edit);
   std::string entry_of(const std::string& effect) const;
   void publish(const Diagnosis& diagnosis, double stamp);

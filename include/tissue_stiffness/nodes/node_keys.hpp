@@ -8,16 +8,16 @@
 
 namespace tissue_stiffness {
 
-/// The private parameters that every node has: `model` and `directory`.
+/// Returns the private parameters that every node has: `model` and `directory`.
 const std::vector<KeySpec>& common_node_keys();
 
-/// A node's own private parameters. Throws std::logic_error for an unknown node.
+/// Returns a node's own private parameters. Throws std::logic_error for an unknown node.
 const std::vector<KeySpec>& node_keys(const std::string& node);
 
-/// The nodes that have any, in the order in which data flow.
+/// Returns the nodes that have any, in the order of the data flow.
 const std::vector<std::string>& node_names();
 
-/// Names of the keys.
+/// Returns the names of the keys.
 std::vector<std::string> names_of(const std::vector<KeySpec>& keys);
 
 }  // namespace tissue_stiffness

@@ -8,10 +8,10 @@
 
 namespace tissue_stiffness {
 
-/// Runs a node until shutdown. A wrong setting is one fatal line and exit code 2.
+/// Runs a node until shutdown. A wrong setting is logged as one fatal line and gives exit code 2.
 template <typename Node>
 int run_node() {
-  const ros::NodeHandle node_handle;  // with the last handle ROS shuts down, and its log too
+  const ros::NodeHandle node_handle;  // when the last handle goes, ROS shuts down with its log
   try {
     Node node(node_handle, ros::NodeHandle("~"));
     ros::spin();

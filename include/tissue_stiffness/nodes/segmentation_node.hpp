@@ -13,13 +13,13 @@
 
 namespace tissue_stiffness {
 
-/// Finds the tissue's outline in `image` and publishes it on `contour` with the image's header; on `overlay` the image with
-/// that outline and the model's, when an estimator publishes one of that stamp on `predicted_contour`; it waits for it
-/// then. Works only while somebody listens, so that the first image of a recording that waits for subscribers is not lost
-/// on nobody.
+/// Finds the tissue's outline in `image` and publishes it on `contour` with the image's header. On `overlay` it publishes
+/// the image with this outline and the model's. If an estimator publishes `predicted_contour`, the overlay waits for the
+/// one with the image's stamp. The node works only while it has subscribers, so that it does not consume the first image of
+/// a recording that waits for them.
 ///
-/// Private parameters: `segmentation: {kind, seed}`, or `model` (a file or the model's keys), of which contour number
-/// `contour_number` (1) counts. With a model the image topic is the model's, unless `image` is remapped. `queue_size`
+/// Private parameters: `segmentation: {kind, seed}`, or `model` (a file or the model's keys), whose contour number
+/// `contour_number` (1) is used. With a model the image topic is the model's, unless `image` is remapped. `queue_size`
 /// (100).
 class SegmentationNode {
  public:
@@ -38,7 +38,7 @@ class SegmentationNode {
     cv::Mat image;
     Contour measured;
   };
-  /// The overlay of the image that has waited longest.
+  /// Publishes the overlay of the image that has waited longest.
   void publish_overlay(const ContourConstPtr& predicted);
 
   ros::NodeHandle node_;

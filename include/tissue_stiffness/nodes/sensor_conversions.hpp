@@ -18,8 +18,9 @@
 
 namespace tissue_stiffness {
 
-// Messages of sensors -> types. `topic` is for messages to the user: each function throws InputError that names it, what
-// was found in the message and what is allowed. `model_from_sensor` places the message's frame in the model frame.
+// These functions convert sensor messages to the package's types. `topic` is for messages to the user: InputError names it,
+// what was found in the message and what is allowed. `model_from_sensor` transforms from the message's frame to the model
+// frame.
 
 /// Throws InputError for a stamp of zero.
 void require_stamp(const std_msgs::Header& header, const std::string& topic);
@@ -27,22 +28,24 @@ void require_stamp(const std_msgs::Header& header, const std::string& topic);
 /// Throws InputError for a rotation that is no unit quaternion.
 Eigen::Isometry3d to_isometry(const geometry_msgs::Transform& transform, const std::string& topic);
 
-/// Cloud of row `source` of the model's observations: fields x, y, z (FLOAT32 or FLOAT64, m), little endian, and for
-/// vertices and markers an integer field `vertex` or `marker`. Points that are not finite are left out of a cloud that is
-/// not dense; in a dense one they are an error. `vertex_count` bounds the field `vertex`.
+/// Converts a cloud of entry `source` of the model's observations. It has fields x, y, z (FLOAT32 or FLOAT64, m), little
+/// endian, and for vertices and markers an integer field `vertex` or `marker`. Points that are not finite are left out of a
+/// cloud that is not dense; in a dense cloud they are an error. `vertex_count` bounds the field `vertex`.
 Observation to_observation(const sensor_msgs::PointCloud2& cloud, const ObservationSettings& settings, int source,
                            int vertex_count, const Eigen::Isometry3d& model_from_sensor);
 
-/// Projection, size, focal lengths, principal point and distortion. plumb_bob only; no binning, no region of interest.
+/// Reads projection, size, focal lengths, principal point and distortion. Only plumb_bob is allowed, without binning and
+/// region of interest.
 Camera to_camera(const sensor_msgs::CameraInfo& info, ObservationSettings::Projection projection,
                  const Eigen::Isometry3d& model_from_sensor, const std::string& topic);
 
-/// 8-bit grey or BGR pixels of an image. An image that already is one is not copied: the message must outlive the result.
+/// Returns the 8-bit grey or BGR pixels of an image. An image with such pixels is not copied, so the message must outlive
+/// the result.
 cv::Mat to_image(const sensor_msgs::ImageConstPtr& image, const std::string& topic);
 
 LoadSample to_load(const sensor_msgs::FluidPressure& pressure, const std::string& topic);
 
-/// Force and torque, turned into the model frame.
+/// Converts force and torque and rotates them into the model frame.
 LoadSample to_load(const geometry_msgs::WrenchStamped& wrench, const Eigen::Isometry3d& model_from_sensor,
                    const std::string& topic);
 

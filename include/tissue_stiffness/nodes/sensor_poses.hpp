@@ -9,13 +9,14 @@
 
 namespace tissue_stiffness {
 
-/// Where sensors are in the model frame, from /tf and /tf_static.
+/// Poses of sensors in the model frame, from /tf and /tf_static.
 class SensorPoses {
  public:
-  /// `patience`: how long to wait for a transform [s of wall time; simulated time may stand still].
+  /// `patience`: how long to wait for a transform, in wall time [s], because simulated time may stand still.
   SensorPoses(std::string model_frame, double patience);
 
-  /// Pose of the header's frame at its stamp. Throws InputError naming `topic` and both frames when there is none.
+  /// Returns the pose of the header's frame at its stamp. Throws InputError naming `topic` and both frames when there is
+  /// none.
   Eigen::Isometry3d model_from(const std_msgs::Header& header, const std::string& topic) const;
 
   const std::string& model_frame() const { return model_frame_; }

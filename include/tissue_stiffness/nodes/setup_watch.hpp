@@ -18,16 +18,16 @@ namespace tissue_stiffness {
 /// Logs each finding as a warning.
 void warn_of(const SetupFindings& findings);
 
-/// Says what is wrong with the estimator's set-up. Numbers of the model file while it starts; topics that nobody publishes,
-/// every 5 s until the first usable frame; the mesh and the first frame when they come. Each sentence is logged once, and
-/// all of them stand on /diagnostics under `set-up`, at level WARN until a frame is used. Nothing is ever stopped. Thread
-/// safe.
+/// Reports errors of the estimator's set-up. It checks the numbers of the model file at the start. It checks for topics
+/// that nobody publishes every 5 s until the first usable frame, and the mesh and the first frame when they arrive. Each
+/// sentence is logged once. All of them are on /diagnostics under `set-up`, at level WARN until a frame is used. The node
+/// is never stopped. Thread safe.
 class SetupWatch {
  public:
   SetupWatch(ros::NodeHandle node, const ModelSettings& settings, Diagnostics& diagnostics);
 
   void mesh_came(const TetMesh& mesh);
-  /// A frame was used; only the first one is looked at. `rest_time`: when the body was at rest [s].
+  /// Must be called when a frame was used; only the first one is checked. `rest_time`: when the body was at rest [s].
   void frame_used(const Frame& frame, const TetMesh& mesh, double rest_time);
 
  private:
@@ -38,7 +38,7 @@ class SetupWatch {
   const ModelSettings settings_;
   Diagnostics& diagnostics_;
   std::atomic<bool> frame_seen_{false};
-  std::mutex mutex_;  ///< of `said_`
+  std::mutex mutex_;  ///< protects `said_`
   std::set<std::string> said_;
   ros::WallTimer timer_;
 };

@@ -2,9 +2,9 @@
 
 namespace tissue_stiffness {
 
-/// What every report.html carries, from resources/report.
+/// Files from resources/report that every report.html contains.
 struct ReportAssets {
-  const char* page;  ///< template with {{places}}
+  const char* page;  ///< template with {{places}} to fill in
   const char *style, *script;
   const char *uplot_style, *uplot, *three;
   const char *uplot_licence, *three_licence;

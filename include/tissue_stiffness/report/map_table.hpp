@@ -6,7 +6,8 @@
 
 namespace tissue_stiffness {
 
-/// Card of report.html: how many parts of the body are identified, and the modulus of each, softest first. HTML.
+/// Returns a card of report.html as HTML: how many parts of the body are identified, and the modulus of each, softest
+/// first.
 std::string map_table(const StiffnessMap& map);
 
 }  // namespace tissue_stiffness

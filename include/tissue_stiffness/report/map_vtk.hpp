@@ -7,8 +7,8 @@
 
 namespace tissue_stiffness {
 
-/// `map.vtk` (legacy ASCII unstructured grid): the body at rest with cell data `patch` (-1: not mapped), `young_modulus`,
-/// `lower95`, `upper95` [Pa] (0 where not mapped) and `identified` (0 or 1).
+/// Returns `map.vtk` (legacy ASCII unstructured grid). It is the body at rest with cell data `patch` (-1: not mapped),
+/// `young_modulus`, `lower95`, `upper95` [Pa] (0 where not mapped) and `identified` (0 or 1).
 std::string map_vtk(const StiffnessMap& map, const TetMesh& mesh);
 
 }  // namespace tissue_stiffness

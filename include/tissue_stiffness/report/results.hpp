@@ -12,7 +12,7 @@
 
 namespace tissue_stiffness {
 
-/// Whether the data determine a parameter: verdict "absolute", "ratio_only" or "none".
+/// Whether the data determine a parameter. The verdict is "absolute", "ratio_only" or "none".
 struct IdentifiabilityRecord {
   std::string verdict;
   std::string reason;
@@ -24,44 +24,44 @@ struct FrameRecord {
   bool used = true;
   std::string reason;  ///< why the frame was skipped
   EstimateState state = EstimateState::no_data;
-  std::string state_reason;                   ///< why it is so
+  std::string state_reason;                   ///< reason for the state
   std::vector<ParameterEstimate> parameters;  ///< the posterior after this frame, in the order of Results::parameters
   double misfit_rms = std::numeric_limits<double>::quiet_NaN();    ///< [m]
   double misfit_sigma = std::numeric_limits<double>::quiet_NaN();  ///< rms of error / sigma [-]
   double nis = std::numeric_limits<double>::quiet_NaN();
-  int dof = 0;       ///< rows in `nis`
-  int outliers = 0;  ///< rows down-weighted below one half
+  int dof = 0;       ///< number of rows in `nis`
+  int outliers = 0;  ///< number of rows whose weight is below one half
 };
 
-/// Everything that an estimation run leaves behind.
+/// All results of an estimation run.
 struct Results {
   std::string model;                          ///< name of the model file
   std::string recording;                      ///< name of the recording
-  std::vector<ParameterEstimate> parameters;  ///< final
+  std::vector<ParameterEstimate> parameters;  ///< final estimates
   EstimateState state = EstimateState::no_data;
-  std::string state_reason;              ///< why it is so
-  std::string interrupted;               ///< what was under way when the run was interrupted; empty: it came to its end
-  std::vector<VarianceShares> variance;  ///< of each parameter; empty: not known
-  std::vector<InputUncertainty> inputs;  ///< errors that the interval counts
+  std::string state_reason;              ///< reason for the state
+  std::string interrupted;               ///< the step during which the run was interrupted; empty: it was finished
+  std::vector<VarianceShares> variance;  ///< one for each parameter; empty: unknown
+  std::vector<InputUncertainty> inputs;  ///< errors that the interval accounts for
   std::map<std::string, IdentifiabilityRecord> identifiable;         ///< by parameter name
   double rms_error = std::numeric_limits<double>::quiet_NaN();       ///< of the free run at the final estimate [m]
   double relative_error = std::numeric_limits<double>::quiet_NaN();  ///< rms error / rms motion [-]
-  double noise_rms = std::numeric_limits<double>::quiet_NaN();       ///< what the model file says about the sensors [m]
-  double basis_error = std::numeric_limits<double>::quiet_NaN();     ///< of the reduced basis, an upper bound [m]
+  double noise_rms = std::numeric_limits<double>::quiet_NaN();    ///< noise of the sensors, as stated in the model file [m]
+  double basis_error = std::numeric_limits<double>::quiet_NaN();  ///< of the reduced basis, an upper bound [m]
   double nis_mean_per_dof = std::numeric_limits<double>::quiet_NaN();
   double nis_p_value = std::numeric_limits<double>::quiet_NaN();
-  std::optional<StiffnessMap> map;  ///< where the model file asks for one
+  std::optional<StiffnessMap> map;  ///< if the model file asks for one
   std::vector<FrameRecord> frames;
   std::vector<double> frame_seconds;                          ///< wall time of each used frame
   std::vector<std::pair<std::string, double>> stage_seconds;  ///< wall time of each stage over the whole run
-  std::vector<std::string> description;                       ///< what the estimator chose by itself
-  std::string model_text;                                     ///< the model file as it was read
+  std::vector<std::string> description;                       ///< choices that the estimator made by itself
+  std::string model_text;                                     ///< content of the model file
   std::string command_line;
-  std::vector<std::pair<std::string, std::string>> versions;  ///< of the package and its libraries
+  std::vector<std::pair<std::string, std::string>> versions;  ///< versions of the package and its libraries
 
   int used() const;
   int skipped() const;
-  /// Quantile 0 <= p <= 1 of frame_seconds by the nearest rank; NaN without frames.
+  /// Returns the quantile 0 <= p <= 1 of frame_seconds by the nearest rank; NaN without frames.
   double frame_seconds_quantile(double p) const;
 };
 

@@ -7,30 +7,30 @@
 
 namespace tissue_stiffness {
 
-/// `results.json`: complete, interrupted_during (where it is not),
-/// parameters.{effect.parameter}.{unit,mean,std,interval95}, identifiable.{...}.{verdict,reason}, state, map (where there
-/// is one).{levels[].{patches,mean_square,log_evidence,kept},
+/// Returns `results.json`: complete, interrupted_during (if it is not complete),
+/// parameters.{effect.parameter}.{unit,mean,std,interval95}, identifiable.{...}.{verdict,reason}, state, map (if there is
+/// one).{levels[].{patches,mean_square,log_evidence,kept},
 /// patches[].{center,young_modulus,interval95,identified},identified,mesh_error}, frames (used), skipped[].{time,reason},
 /// rms_error [m], noise_rms [m], relative_error, nis.{mean_per_dof,p_value}, seconds_per_frame.{median,p99}. A number that
-/// does not exist is null. Everything but seconds_per_frame is the same for the same input.
+/// does not exist is null. Everything except seconds_per_frame depends only on the input.
 std::string results_json(const Results& results);
 
-/// `estimates.csv` (RFC 4180): a header with units, then one row a frame. A number that does not exist is an empty field.
-/// The same for the same input.
+/// Returns `estimates.csv` (RFC 4180): a header with units, then one row for each frame. A number that does not exist is an
+/// empty field. The text depends only on the input.
 std::string estimates_csv(const Results& results);
 
-/// `report.html`: one page that needs no network; light and dark, from phone to paper. What it says holds without scripts,
-/// which draw and move.
+/// Returns `report.html`, one page that needs no network. It suits light and dark displays, from a phone to paper. Its text
+/// is complete without scripts, which draw and animate.
 std::string report_html(const Results& results, const Showing& showing);
 
-/// Makes the folder when it is missing and writes the three files, each whole, results.json last. Throws InputError when
-/// one cannot be written.
+/// Writes the three files, each completely or not at all, with results.json last. Makes the folder when it is missing.
+/// Throws InputError when a file cannot be written.
 void write_results(const Results& results, const Showing& showing, const std::string& directory);
 
-/// Makes the folder when it is missing. Throws InputError when it cannot.
+/// Makes the folder when it is missing. Throws InputError when that is not possible.
 void make_folder(const std::string& directory);
 
-/// As write_file does.
+/// Writes the text as write_file does.
 void write_text(const std::string& file, const std::string& text);
 
 }  // namespace tissue_stiffness

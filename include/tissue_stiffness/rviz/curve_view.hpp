@@ -11,13 +11,13 @@ class QPainter;
 
 namespace tissue_stiffness {
 
-/// Draws a live curve with its band, round axis values and marked events, in the colours of the window's palette.
+/// Draws a live curve with its interval, round axis values and marked events, in the colours of the window's palette.
 class CurveView : public QWidget {
  public:
-  /// `title`: over the curve, with the unit.
+  /// `title`: text above the curve; the unit is added.
   CurveView(QString title, QColor colour, QWidget* parent);
 
-  /// `floor`: a level to be dashed; NaN for none.
+  /// `floor`: a level that is drawn as a dashed line; NaN for none.
   void show_curve(const LiveCurve& curve, const QString& unit, double floor = std::numeric_limits<double>::quiet_NaN());
   QSize sizeHint() const override { return {320, 130}; }
   QSize minimumSizeHint() const override { return {160, 90}; }

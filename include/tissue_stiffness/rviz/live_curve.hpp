@@ -7,15 +7,15 @@
 
 namespace tissue_stiffness {
 
-/// A quantity with its band over the time of one run, as a strip chart shows it. Knows nothing of Qt or ROS.
+/// A quantity with its interval over the time of one run, for a strip chart. It does not depend on Qt or ROS.
 class LiveCurve {
  public:
   struct Point {
     double time = 0.0;  ///< [s]
     double value = 0.0;
-    double lower = 0.0, upper = 0.0;  ///< of the band; the value itself where there is none
+    double lower = 0.0, upper = 0.0;  ///< bounds of the interval; the value itself where there is none
   };
-  /// Something that happened, to be marked.
+  /// An event that is marked on the curve.
   struct Event {
     double time = 0.0;
     std::string text;
@@ -24,32 +24,33 @@ class LiveCurve {
     double low = 0.0, high = 1.0;
   };
 
-  /// `capacity`: points kept, at least 4. A full curve keeps the whole run at half the resolution.
+  /// `capacity`: number of points that are kept, at least 4. A full curve keeps the whole run at half the resolution.
   explicit LiveCurve(std::size_t capacity = 2000) : capacity_(capacity) {}
 
-  /// Two points at one time make a step. A time before the last one begins another run, and the curve anew; a value that
-  /// is not finite is left out.
+  /// Adds a point. Two points at one time make a step. A time before the last one starts another run and a new curve. A
+  /// value that is not finite is left out.
   void add(const Point& point);
-  /// Marks the last point.
+  /// Marks the last point with a text.
   void mark(const std::string& text);
   void clear();
 
   const std::vector<Point>& points() const { return points_; }
   const std::vector<Event>& events() const { return events_; }
-  /// From the run's first point to its last, never empty.
+  /// Returns the range from the run's first point to its last; it is never empty.
   Range times() const;
-  /// Holds every value, and the band as far as it does not flatten the curve; never empty.
+  /// Returns a range that holds every value. It holds the interval as far as this does not flatten the curve. It is never
+  /// empty.
   Range values() const;
 
  private:
   std::size_t capacity_;
   std::size_t stride_ = 1, skipped_ = 0;  ///< every stride_-th point is kept
-  std::vector<Point> points_;             ///< the last one is always there, kept or not
+  std::vector<Point> points_;             ///< the last point is always there, whether it is kept or not
   bool last_is_kept_ = true;
   std::vector<Event> events_;
 };
 
-/// Values inside the range at steps of 1, 2 or 5 times a power of ten, at most `most`.
-std::vector<double> ticks(const LiveCurve::Range& range, int most);
+/// Returns values inside the range at steps of 1, 2 or 5 times a power of ten, at most `most` of them.
+std::vector<double> axis_ticks(const LiveCurve::Range& range, int most);
 
 }  // namespace tissue_stiffness

@@ -12,34 +12,34 @@
 
 namespace tissue_stiffness {
 
-/// Calls the estimator's services one after the other in a thread of its own, so that who asks never waits. Answers are
-/// given in that thread.
+/// Calls the estimator's services one after the other in a separate thread, so that the caller never waits. Answers are
+/// delivered in that thread.
 class ServiceCalls {
  public:
   struct Answer {
     bool success = false;
     std::string message;
-    std::vector<std::string> added;  ///< effects that add_effect put into the running model, asked after the call
+    std::vector<std::string> added;  ///< effects that add_effect added to the running model, requested after the call
     bool added_known = false;
   };
   using Done = std::function<void(const Answer&)>;
 
   ServiceCalls();
-  /// Gives up the call in progress and those that wait; their answers do not come.
+  /// Cancels the call in progress and those that wait. Their answers are not delivered.
   ~ServiceCalls();
 
-  /// Each calls the service of that name below `node`.
+  /// Each function calls the service of that name below `node`.
   void diagnose(const ros::NodeHandle& node, Done done);
   void add_effect(const ros::NodeHandle& node, const std::string& effect, Done done);
   void remove_effect(const ros::NodeHandle& node, const std::string& effect, Done done);
   void reset(const ros::NodeHandle& node, Done done);
-  /// Only what was added; answers nothing when there is no estimator.
+  /// Requests only the added effects. The answer holds none when there is no estimator.
   void list_effects(const ros::NodeHandle& node, Done done);
 
  private:
   template <typename Service>
   Answer ask(ros::NodeHandle node, const std::string& name, Service& service);
-  /// `changes_model`: its answer comes with the effects added by then.
+  /// `changes_model`: the answer includes the effects that are added after the call.
   template <typename Service>
   void call(const ros::NodeHandle& node, const std::string& name, Service service, bool changes_model, Done done);
   Answer with_added(const ros::NodeHandle& node, Answer answer);
@@ -49,7 +49,7 @@ class ServiceCalls {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<std::pair<std::function<Answer()>, Done>> calls_;
-  ros::ServiceClient running_;  ///< of the call in progress
+  ros::ServiceClient running_;  ///< client of the call in progress
   bool stopped_ = false;
   std::thread thread_;
 };

@@ -21,9 +21,9 @@ namespace tissue_stiffness {
 
 class CurveView;
 
-/// rviz panel of one estimator: E with its band, the misfit, the state, what the model misses, and buttons that ask, add,
-/// remove and start again. Messages are taken in the GUI's thread, services are called in another. The estimator's
-/// namespace is saved with the config.
+/// rviz panel of one estimator. It shows E with its interval, the misfit, the state and what the model misses. Its buttons
+/// start a diagnosis, add and remove effects, and reset the estimator. Messages are processed in the GUI's thread, and
+/// services are called in another one. The estimator's namespace is saved with the config.
 class StiffnessPanel : public rviz::Panel {
   Q_OBJECT
  public:
@@ -42,17 +42,18 @@ class StiffnessPanel : public rviz::Panel {
   void take_messages();
   void show_estimate();
   void show_effects();
-  /// Effect of the selected row when it is an added one (or not), else what the button means by itself.
+  /// Returns the effect of the selected row if it is an added one (or not, for `added` = false). Otherwise returns the
+  /// button's default.
   std::string chosen(bool added) const;
   void on_diagnose();
   void on_add();
   void on_remove();
   void on_reset();
-  /// Waits for an answer without waiting: buttons rest, the text says for what.
+  /// Disables the buttons until an answer comes, and shows `text`. It does not block.
   void wait_for(const QString& text);
-  /// Runs `done` in the GUI's thread, unless the panel speaks with another estimator by then.
+  /// Wraps `done` so that it runs in the GUI's thread, unless the panel has been connected to another estimator.
   ServiceCalls::Done in_gui(ServiceCalls::Done done);
-  /// Ends the waiting.
+  /// Returns a function that enables the buttons again and shows the answer.
   ServiceCalls::Done when_answered();
 
   ros::CallbackQueue queue_;

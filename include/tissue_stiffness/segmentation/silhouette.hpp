@@ -8,18 +8,19 @@
 
 namespace tissue_stiffness {
 
-/// Outline of a bright body against a darker, textured background.
+/// Finds the outline of a bright body against a darker, textured background.
 ///
-/// 1. Region: of all connected regions above some threshold, the one with the largest mean gradient along its border
-///    (an extremal region; Matas et al. 2002 keep the most stable one, here the sharpest), weighted by its overlap with the
-///    previous frame's.
-/// 2. Outline: the path along the sharpest falls from inside to outside in a band around that border (dynamic programming).
-///    The band is wide outwards, because a body's own shading may hide part of it from any threshold.
-/// 3. Edge: a blurred step fitted to the profile along each normal (StepEdge); the blur is the frame's best.
+/// 1. Region: it is the connected region above some threshold with the largest mean gradient along its border. It is an
+///    extremal region; Matas et al. 2002 keep the most stable one, and here it is the sharpest one. The gradient is
+///    weighted by the region's overlap with the previous frame's.
+/// 2. Outline: it is the path along the sharpest falls from inside to outside in a band around that border (dynamic
+///    programming). The band is wide outwards, because shading may hide part of the body from any threshold.
+/// 3. Edge: it is a blurred step that is fitted to the profile along each normal (StepEdge). The blur is the best one for
+///    the whole frame.
 ///
-/// sigma is the noise of the profiles over the root of the edge's information, raised to the scatter between neighbours,
-/// plus blur^2/2 |curvature|, by which blur rounds corners off. It is infinite where no step was found, where the step
-/// disagrees with its neighbours, and at the image's border.
+/// The sigma of a point is the noise of the profiles over the root of the edge's information, and at least the scatter
+/// between neighbours. The term blur^2/2 |curvature|, by which blur rounds corners, is added in quadrature. The sigma is
+/// infinite where no step was found, where the step disagrees with its neighbours, and at the image's border.
 class SilhouetteSegmenter : public Segmenter {
  public:
   explicit SilhouetteSegmenter(const SegmentationSettings& settings);
@@ -28,17 +29,18 @@ class SilhouetteSegmenter : public Segmenter {
 
  private:
   std::optional<Eigen::Vector2d> seed_;
-  std::vector<StepEdge> edges_;  ///< one for each tried blur
+  std::vector<StepEdge> edges_;  ///< one for each blur that is tried
   Eigen::Matrix2Xd previous_;    ///< last outline found [pixel]
 };
 
-/// Border [pixel] of the most sharply bounded bright region, or no points. `previous`: last outline, may be empty.
+/// Returns the border [pixel] of the most sharply bounded bright region, or no points. `previous`: last outline, may be
+/// empty.
 Eigen::Matrix2Xd sharpest_region(const cv::Mat& grey, const std::optional<Eigen::Vector2d>& seed,
                                  const Eigen::Matrix2Xd& previous);
 
-/// The outline along the sharpest falls near that region, or near the ellipse of its moments (shading may hide a part of
-/// the body from any threshold), or near the previous outline: whichever is sharpest. Points `spacing` apart; none without
-/// a region.
+/// Returns the outline along the sharpest falls, with points `spacing` [pixel] apart, or no points without a region. The
+/// search starts from the region above, from the ellipse of its moments (because shading may hide part of the body from any
+/// threshold), and from the previous outline. The sharpest result is returned.
 Eigen::Matrix2Xd find_outline(const cv::Mat& grey, const std::optional<Eigen::Vector2d>& seed,
                               const Eigen::Matrix2Xd& previous, double spacing);
 

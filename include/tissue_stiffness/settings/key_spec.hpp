@@ -7,24 +7,24 @@
 
 namespace tissue_stiffness {
 
-/// One key of a settings tree: what the readers check it against and the documentation is written from.
+/// One key of a settings tree. The readers check values against it, and the documentation is generated from it.
 struct KeySpec {
   enum class Kind { number, integer, boolean, text, choice, numbers, map, list };
-  std::string path;  ///< below the root, "mesh.scale"; `*` stands for a name of the user's, `[]` for an entry of a list
+  std::string path;  ///< below the root, e.g. "mesh.scale"; `*` stands for a user-defined name, `[]` for a list entry
   Kind kind = Kind::text;
-  std::string unit;                  ///< of numbers, SI; "" for none
-  double lower = 0.0, upper = 0.0;   ///< of a number or an integer, both allowed
-  std::vector<std::string> choices;  ///< of a choice; the first is the default
+  std::string unit;                  ///< SI unit of a number; "" for none
+  double lower = 0.0, upper = 0.0;   ///< bounds of a number or an integer, inclusive
+  std::vector<std::string> choices;  ///< allowed words of a choice; the first is the default
   bool required = false;
-  double value = 0.0;   ///< of a number or an integer that is not given, of a boolean 0 or 1; NaN: none
-  std::string text;     ///< of a text that is not given
-  std::string meaning;  ///< for people, as a clause
+  double value = 0.0;   ///< default of a number or an integer, or of a boolean as 0 or 1; NaN: there is none
+  std::string text;     ///< default of a text
+  std::string meaning;  ///< explanation for the user, as a clause
 
-  /// Last part of the path, the key itself.
+  /// Returns the last part of the path, which is the key itself.
   std::string name() const;
 };
 
-// A key of each kind, not required unless it says so. `value`: what it is when it is not given.
+// These functions make a key of each kind. It is required only where they say so. `value` is its default.
 KeySpec plain_key(const std::string& path, KeySpec::Kind kind, const std::string& unit, const std::string& meaning);
 KeySpec required_key(const std::string& path, KeySpec::Kind kind, const std::string& unit, const std::string& meaning);
 KeySpec text_key(const std::string& path, const std::string& value, const std::string& meaning);
@@ -36,13 +36,14 @@ KeySpec integer_key(const std::string& path, int lower, int upper, int value, co
 KeySpec choice_key(const std::string& path, const std::vector<std::string>& choices, bool required,
                    const std::string& meaning);
 
-/// Every key of a model file but the effects' own, which their specs hold. In the order in which they are documented.
+/// Returns every key of a model file, in the order of the documentation. The effects' own keys are in their specs instead.
 const std::vector<KeySpec>& model_keys();
 
-/// The one of that path. Throws std::logic_error when there is none.
+/// Returns the key with this path. Throws std::logic_error when there is none.
 const KeySpec& find_key(const std::vector<KeySpec>& keys, const std::string& path);
 
-// Reads the key from the map that holds it, or gives its default. Throws InputError as Value's conversions do.
+// These functions read the key from the map that holds it, or return its default. They throw InputError as Value's
+// conversions do.
 double read_number(const Value& map, const KeySpec& key);
 int read_integer(const Value& map, const KeySpec& key);
 bool read_boolean(const Value& map, const KeySpec& key);

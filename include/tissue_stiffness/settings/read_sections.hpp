@@ -7,8 +7,8 @@
 
 namespace tissue_stiffness {
 
-// Sections of a model file. Each throws InputError for a missing key and a value out of range; keys that nobody asked for
-// are left unread.
+// These functions read sections of a model file. They throw InputError for a missing key or a value out of range. Unknown
+// keys are left unread.
 
 MeshSettings read_mesh(const Value& map, const std::string& directory);
 std::vector<RegionSettings> read_regions(const Value& map);

@@ -8,23 +8,23 @@
 
 namespace tissue_stiffness {
 
-/// A number of the model file: known, or estimated with a prior. `{prior: m, factor: f}` is log-normal with median m and
-/// 1-sigma factor f > 1; `{mean: m, std: s}` is normal. `{value: v, tolerance: s}` is known to s (1 sigma). With `drift: d`
-/// beside them it may change while the body moves, like a random walk: after t seconds the log of the former, the value of
-/// the latter, has moved by d sqrt(t) (1 sigma).
+/// A number of the model file, either known or estimated with a prior. `{prior: m, factor: f}` is log-normal with median m
+/// and 1-sigma factor f > 1. `{mean: m, std: s}` is normal. `{value: v, tolerance: s}` is known to within s (1 sigma). An
+/// estimated number with `drift: d` may change like a random walk while the body moves. After t seconds the log of a
+/// log-normal number, or the value of a normal one, has moved by d sqrt(t) (1 sigma).
 struct Quantity {
   enum class Kind { known, log_normal, normal };
   Kind kind = Kind::known;
   double value = 0.0;       ///< known value, median, or mean
   double spread = 0.0;      ///< factor (log_normal) or standard deviation (normal)
   double drift = 0.0;       ///< [1/sqrt(s)] (log_normal) or [unit/sqrt(s)] (normal); 0: constant
-  double tolerance = -1.0;  ///< of a known value: 1 sigma by which it may be off; below 0: what the key's spec says
+  double tolerance = -1.0;  ///< 1 sigma of a known value's error; below 0: the value in the key's spec
 
   bool estimated() const { return kind != Kind::known; }
 };
 
-/// One node of a settings tree, whatever it came from (a YAML file, ROS parameters). Every value knows its path
-/// ("model.yaml:12: effects[1].elasticity.law") and whether it was read, so that a key nobody reads is an error.
+/// One node of a settings tree, which comes from a YAML file or from ROS parameters. Every value knows its path
+/// ("model.yaml:12: effects[1].elasticity.law") and whether it was read. So a key that nobody reads is an error.
 class Value {
  public:
   enum class Type { null, boolean, number, text, list, map };
@@ -38,19 +38,20 @@ class Value {
 
   Type type() const { return type_; }
   const std::string& path() const { return path_; }
-  std::string shown() const;  ///< the value as a user would write it, shortened
+  std::string shown() const;  ///< the value as a user would write it, abbreviated
 
-  /// Of the same content, wherever it was written.
+  /// Returns whether both have the same content, wherever it was written.
   bool same(const Value& other) const;
 
   bool has(const std::string& key) const;
   std::vector<std::string> keys() const;
 
-  /// Entry of a map; marks it read. Throws InputError when missing, naming the keys that are there.
+  /// Returns an entry of a map and marks it as read. Throws InputError, naming the existing keys, when the entry is
+  /// missing.
   const Value& at(const std::string& key) const;
-  const std::vector<Value>& items() const;  ///< throws InputError unless a list; marks read
+  const std::vector<Value>& items() const;  ///< throws InputError unless this is a list; marks as read
 
-  // Each conversion marks the value read and throws InputError(path, shown, allowed) when it does not fit.
+  // Each conversion marks the value as read. It throws InputError(path, shown, allowed) when the value does not fit.
   double as_number(double lower, double upper, const std::string& unit) const;
   int as_integer(int lower, int upper) const;
   bool as_boolean() const;
@@ -59,12 +60,12 @@ class Value {
   Eigen::Vector3d as_vector3(const std::string& unit) const;
   Quantity as_quantity(double lower, double upper, const std::string& unit) const;
 
-  /// The same with a default when the key is absent.
+  /// These convert the entry with this key, or return `fallback` when the key is absent.
   double number_or(const std::string& key, double fallback, double lower, double upper, const std::string& unit) const;
   std::string text_or(const std::string& key, const std::string& fallback) const;
 
   void mark_read_deep() const;
-  /// Throws InputError naming the first key below this value that nobody read, with the keys that were asked for there.
+  /// Throws InputError naming the first key below this value that nobody read, and the keys that were requested there.
   void require_all_read() const;
 
  private:
@@ -82,7 +83,7 @@ class Value {
 /// Parses a YAML file. Throws InputError naming file and line for a file that is missing or not YAML.
 Value load_yaml(const std::string& file);
 
-/// Parses YAML text; `name` stands for the file in messages.
+/// Parses YAML text; `name` replaces the file's name in messages.
 Value parse_yaml(const std::string& text, const std::string& name);
 
 }  // namespace tissue_stiffness

@@ -10,16 +10,16 @@
 
 namespace tissue_stiffness {
 
-/// What a bag holds, before anybody asks whether that fits a model.
+/// Content of a bag, whether or not it fits a model.
 struct BagOverview {
   std::vector<Topic> topics;
-  std::vector<TopicTimes> times;                                ///< of the needed topics that are there; no camera_info
-  std::map<std::string, std::string> frames;                    ///< frame_id of the first message, by topic
-  std::vector<std::pair<std::string, std::string>> transforms;  ///< parent and child on /tf and /tf_static, each once
-  std::map<std::string, std::vector<cv::Mat>> images;           ///< up to five, evenly over the bag, by topic
+  std::vector<TopicTimes> times;              ///< of the needed topics that are there, without camera_info
+  std::map<std::string, std::string> frames;  ///< frame_id of each topic's first message
+  std::vector<std::pair<std::string, std::string>> transforms;  ///< parent and child on /tf and /tf_static, each pair once
+  std::map<std::string, std::vector<cv::Mat>> images;           ///< up to five for each topic, evenly over the bag
 };
 
-/// Throws InputError for a file that is missing or no bag.
+/// Reads the overview. Throws InputError for a file that is missing or not a bag.
 BagOverview overview(const std::string& file, const std::vector<NeededTopic>& needed);
 
 }  // namespace tissue_stiffness

@@ -27,38 +27,38 @@ namespace tissue_stiffness {
 /// One instant of a recording. `frame` is empty when nothing in it could be used; `reason` then says why.
 struct Instant {
   Frame frame;
-  std::vector<LoadSample> loads;  ///< read since the last instant: up to the frame's stamp and a little beyond
+  std::vector<LoadSample> loads;  ///< loads read since the last instant, up to the frame's stamp and a little later
   std::string reason;
   double segment_seconds = 0.0;
 };
 
-/// Reads what a model asks for from a rosbag: frames in the order of their header stamps, with the loads that drive them.
-/// Observations of one stamp make one frame. Images are segmented here; poses come from /tf and /tf_static.
+/// Reads what a model needs from a rosbag: frames in the order of their header stamps, with their loads. Observations with
+/// one stamp make one frame. Images are segmented here, and poses come from /tf and /tf_static.
 ///
-/// Throws InputError for a file that is missing or no bag, a topic that is absent or of another type, a message whose
-/// content is wrong. An image without an outline and a sensor without a pose at the stamp only cost that observation. A
-/// message that comes when its stamp has already passed (0.5 s or 256 frames behind the newest) is late: counted and left
-/// out.
+/// Throws InputError for a file that is missing or not a bag, a topic that is absent or of another type, and a message
+/// whose content is wrong. An image without an outline, or a sensor without a pose at the stamp, costs only this
+/// observation. A message is late when its stamp has already passed (0.5 s or 256 frames behind the newest). Late messages
+/// are counted and left out.
 class BagReader {
  public:
   BagReader(const std::string& file, const ModelSettings& settings, std::string model_frame = "model");
 
-  /// Earliest stamp on the model's topics [s].
+  /// Returns the earliest stamp on the model's topics [s].
   double first_stamp() const { return first_stamp_.toSec(); }
-  /// How many frames there are, at most.
+  /// Returns the number of frames, at most.
   std::size_t frame_count() const { return frame_count_; }
-  /// Upper bound of the field `vertex`, once the mesh is known.
+  /// Sets the upper bound of the field `vertex`, once the mesh is known.
   void set_vertex_count(int count) { vertex_count_ = count; }
 
-  /// Segments about `most` images of each sensor, evenly over the bag, and passes over the others.
+  /// Segments only about `most` images of each sensor, evenly over the bag.
   void thin_images(std::size_t most) { image_stride_ = (frame_count_ + most - 1) / most; }
 
-  /// Nothing at the end.
+  /// Returns the next instant; nothing at the end.
   std::optional<Instant> next();
 
   int late() const { return late_; }
 
-  /// Images of the frames read so far, small, at most 40 a sensor, for showing.
+  /// Returns reduced images of the frames read so far, at most 40 for each sensor, for reports.
   const std::vector<Picture>& pictures() const { return pictures_; }
   std::vector<double> picture_stamps() const;
 
@@ -100,9 +100,9 @@ class BagReader {
   int late_ = 0;
 
   tf2::BufferCore poses_;
-  std::map<int, std::unique_ptr<Segmenter>> segmenters_;  ///< by source
-  std::map<int, std::size_t> images_;                     ///< seen, by source
-  std::map<int, std::size_t> come_;                       ///< those passed over, too
+  std::map<int, std::unique_ptr<Segmenter>> segmenters_;  ///< by index of the observation
+  std::map<int, std::size_t> images_;                     ///< images that were segmented, by index of the observation
+  std::map<int, std::size_t> come_;                       ///< all images, by index of the observation
   std::vector<Picture> pictures_;
   std::map<std::string, std::map<ros::Time, sensor_msgs::CameraInfoConstPtr>> cameras_;
   std::map<ros::Time, std::vector<Measurement>> pending_;

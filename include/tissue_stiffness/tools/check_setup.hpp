@@ -9,15 +9,15 @@
 
 namespace tissue_stiffness {
 
-/// What is wrong with a model file and, where one is given, a recording for it. From what costs nothing to what takes a run
-/// of the model; each step only where those before found nothing that would mislead it. Throws InputError for what cannot
-/// be read, unless a finding says why. `checkpoint` is called before every frame that is read; what it throws ends the
-/// check.
+/// Finds errors in a model file and, if one is given, in a recording for it. The checks go from cheap ones to those that
+/// run the model. Each step is done only if the earlier ones found nothing that would mislead it. Throws InputError for
+/// what cannot be read, unless a finding says why. `checkpoint` is called before every frame that is read; an exception
+/// from it ends the check.
 SetupFindings check_setup(
     const ModelSettings& settings, const std::string& recording = "", const std::function<void()>& checkpoint = [] {});
 
-/// The same before a tool's own work: sentences as warnings, "TOOL: warning: SENTENCE". Throws Interrupted from
-/// `checkpoint` and nothing else: what makes the run impossible is the run's to say.
+/// Runs check_setup before a tool's own work and prints its sentences as warnings, "TOOL: warning: SENTENCE". Throws only
+/// Interrupted, from `checkpoint`. Other errors are left to the run, which reports them itself.
 void warn_of_setup(const std::string& tool, const ModelSettings& settings, const std::string& recording,
                    const std::function<void()>& checkpoint, std::ostream& out);
 

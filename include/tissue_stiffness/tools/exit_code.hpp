@@ -5,21 +5,21 @@
 
 namespace tissue_stiffness {
 
-/// What a tool tells the shell.
+/// Exit codes of the tools.
 enum class ExitCode {
   answered = 0,
   failed = 1,
   wrong_input = 2,     ///< one line says what is wrong
-  not_to_be_used = 3,  ///< answered, but nobody should rely on it
-  interrupted = 75,    ///< by a signal or the time limit; what was known is written (EX_TEMPFAIL of sysexits.h)
+  not_to_be_used = 3,  ///< there is an answer, but it must not be relied on
+  interrupted = 75,    ///< by a signal or the time limit; results so far are written (EX_TEMPFAIL of sysexits.h)
 };
 
-/// not_to_be_used in the states doubtful and model_invalid.
+/// Returns not_to_be_used in the states doubtful and model_invalid.
 ExitCode exit_code(const Results& results);
-/// not_to_be_used where the last step's verdict is unexplained.
+/// Returns not_to_be_used where the last step's verdict is unexplained.
 ExitCode exit_code(const Diagnosis& diagnosis);
 
-/// A line about them for --help.
+/// One line about the exit codes for --help.
 extern const char* const exit_code_help;
 
 }  // namespace tissue_stiffness

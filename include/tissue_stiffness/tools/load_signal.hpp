@@ -8,11 +8,11 @@
 
 namespace tissue_stiffness {
 
-/// A load's magnitude over time, s after the first stamp.
+/// A load's magnitude as a function of the time after the first stamp [s].
 using Signal = std::function<double(double)>;
 
 /// Reads one of
-///   ramp: {from, to, start, end}          linear between start and end, held outside; from defaults to 0
+///   ramp: {from, to, start, end}          linear between start and end, constant outside; from defaults to 0
 ///   sine: {amplitude, frequency, phase}   amplitude sin(2 pi frequency t + phase)
 ///   raised_cosine: {amplitude, frequency} amplitude (1 - cos(2 pi frequency t)) / 2
 ///   steps: {times, values}                the value of the last time passed, 0 before the first

@@ -4,11 +4,12 @@
 
 namespace tissue_stiffness {
 
-/// Colours for a terminal; plain text for a file or a pipe, a terminal that cannot, and who sets NO_COLOR (no-color.org).
+/// Colours for a terminal. Text is plain in a file or a pipe, on a terminal without colours, and if NO_COLOR is set
+/// (no-color.org).
 class Paint {
  public:
   explicit Paint(bool on) : on_(on) {}
-  /// For standard output as it is.
+  /// Returns the colours that suit standard output.
   static Paint for_stdout();
 
   std::string bold(const std::string& text) const { return in("1", text); }

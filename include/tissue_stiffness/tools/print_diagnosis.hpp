@@ -7,7 +7,7 @@
 
 namespace tissue_stiffness {
 
-/// The closing table of `diagnose`.
+/// Prints the final table of `diagnose`.
 void print_diagnosis(const Diagnosis& diagnosis, const Paint& paint, std::ostream& out);
 
 }  // namespace tissue_stiffness

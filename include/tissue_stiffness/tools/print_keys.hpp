@@ -4,10 +4,10 @@
 
 namespace tissue_stiffness {
 
-/// Keys of a model file and private parameters of the nodes, for a terminal.
+/// Prints the keys of a model file and the private parameters of the nodes for a terminal.
 void print_keys(std::ostream& out);
 
-/// The same as a Markdown page.
+/// Prints these keys and parameters as a Markdown page.
 void print_keys_markdown(std::ostream& out);
 
 }  // namespace tissue_stiffness

@@ -8,14 +8,14 @@
 
 namespace tissue_stiffness {
 
-/// Progress of long work: a bar with rate and time left on a terminal, a plain line every 5 s elsewhere.
+/// Progress of long work. On a terminal it is a bar with rate and remaining time, elsewhere a plain line every 5 s.
 class Progress {
  public:
   enum class Style { bar, lines, quiet };
 
   Progress(std::ostream& out, Style style, std::string what);
 
-  /// bar when standard error is a terminal, lines otherwise.
+  /// Returns `bar` when standard error is a terminal, and `lines` otherwise.
   static Style style_of_stderr(bool quiet);
 
   void show(std::size_t done, std::size_t total);
@@ -33,20 +33,21 @@ class Progress {
   bool drawn_ = false;
 };
 
-/// Progress of work whose steps have names: which one, and for how long by now. Where steps are counted, how many of them
-/// are done and how long the others will take at that pace. One line that changes on a terminal; elsewhere a line a step,
-/// and while one step goes on a line every 5 s.
+/// Progress of work in named steps: the current step and the elapsed time. If a step is counted, it also shows how many
+/// parts are done and estimates the remaining time. On a terminal one line is updated. Elsewhere there is one line for each
+/// step, and one every 5 s during a step.
 class StepProgress {
  public:
-  /// The seconds since some fixed time.
+  /// Returns the seconds since some fixed time.
   using Clock = std::function<double()>;
 
   StepProgress(std::ostream& out, Progress::Style style, std::string what, Clock clock = steady_seconds);
 
-  /// The time of std::chrono::steady_clock [s].
+  /// Returns the time of std::chrono::steady_clock [s].
   static double steady_seconds();
 
-  /// A step begins; `done` of `total` alike are over (0 of 0: nobody counts). A `done` of 0 begins a new count.
+  /// Shows a step; `done` of `total` equal parts are finished (0 of 0: they are not counted). A `done` of 0 starts a new
+  /// count.
   void show(const std::string& step, std::size_t done = 0, std::size_t total = 0);
   /// Ends the line.
   void finish();
@@ -57,7 +58,7 @@ class StepProgress {
   std::string what_;
   Clock clock_;
   double start_;                ///< [s]
-  double counted_since_ = 0.0;  ///< when the count began [s]
+  double counted_since_ = 0.0;  ///< start of the present count [s]
   double last_shown_ = 0.0;
   std::string last_step_;
   int steps_ = 0;

@@ -4,7 +4,7 @@
 
 namespace tissue_stiffness {
 
-/// The camera or the B-mode sector behind an observed contour, as described at Scene. Throws InputError.
+/// Reads the camera or the B-mode sector of an observed contour, as described at Scene. Throws InputError.
 ImageScene read_image_scene(const Value& map, const ObservationSettings& observation);
 
 }  // namespace tissue_stiffness

@@ -5,22 +5,23 @@
 #include <optional>
 #include <string>
 
-#include "tissue_stiffness/diagnosis/study.hpp"
+#include "tissue_stiffness/fit/recording_fit.hpp"
 #include "tissue_stiffness/tools/bag_reader.hpp"
 #include "tissue_stiffness/types/tet_mesh.hpp"
 
 namespace tissue_stiffness {
 
-/// A bag with the model's mesh: reads ahead to the first contour when the mesh is made from it. Throws as BagReader and
-/// build_mesh do. `checkpoint` is called before every frame that is read; what it throws ends the reading.
+/// A bag with the model's mesh. If the mesh is made from the first contour, the bag is read ahead up to it. Throws as
+/// BagReader and build_mesh do. `checkpoint` is called before every frame that is read; an exception from it ends the
+/// reading.
 class RecordingReader {
  public:
-  /// `most_images`: of each sensor that are segmented; 0: all.
+  /// `most_images`: number of images of each sensor that are segmented; 0: all.
   RecordingReader(
       const std::string& file, const ModelSettings& settings, std::function<void()> checkpoint = [] {},
       std::size_t most_images = 0);
 
-  /// Nothing at the end.
+  /// Returns the next instant; nothing at the end.
   std::optional<Instant> next();
   const BagReader& reader() const { return reader_; }
   const TetMesh& mesh() const { return mesh_; }
@@ -35,8 +36,8 @@ class RecordingReader {
   TetMesh mesh_;
 };
 
-/// Everything that is left in the bag, without frames that hold nothing or come before the body's rest. Throws InputError
-/// when no frame is left. The recording's checkpoint is the reader's.
+/// Reads the rest of the bag, without frames that are empty or before the body is at rest. Throws InputError when no frame
+/// is left. The recording's checkpoint is the reader's.
 Recording read_recording(RecordingReader& reader, const ModelSettings& settings, const std::string& file);
 
 }  // namespace tissue_stiffness

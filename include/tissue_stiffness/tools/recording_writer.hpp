@@ -13,22 +13,22 @@
 
 namespace tissue_stiffness {
 
-/// Writes what sensors saw into a rosbag, which is there once it is closed; a message's stamp is its record time.
+/// Writes sensor data into a rosbag, which exists once it is closed. A message's stamp is its record time.
 class RecordingWriter {
  public:
-  /// Throws InputError when the file cannot be written.
+  /// Opens the file. Throws InputError when it cannot be written.
   explicit RecordingWriter(const std::string& file);
 
-  /// Points of the frame `model`; `ids` go into the integer field `id_name` unless that is empty.
+  /// Writes points in the frame `model`. `ids` become the integer field `id_name`, unless that is empty.
   void write_cloud(const std::string& topic, const ros::Time& stamp, const Eigen::Matrix3Xd& points,
                    const Eigen::VectorXi& ids, const std::string& id_name);
   void write_load(const LoadInput& input, const ros::Time& stamp, const Eigen::VectorXd& value);
-  /// An 8-bit grey image with its CameraInfo.
+  /// Writes an 8-bit grey image with its CameraInfo.
   void write_image(const std::string& topic, const std::string& info_topic, const std::string& frame,
                    const ros::Time& stamp, const Camera& camera, const cv::Mat& image);
-  /// A sensor's pose on /tf_static.
+  /// Writes a sensor's pose on /tf_static.
   void write_pose(const std::string& frame, const ros::Time& stamp, const Eigen::Isometry3d& model_from_sensor);
-  /// Throws InputError as PendingFile does.
+  /// Closes the bag and puts it in place. Throws InputError as PendingFile does.
   void close();
 
  private:

@@ -11,8 +11,8 @@
 
 namespace tissue_stiffness {
 
-/// Parses the command line and runs a tool, which returns its exit code, or nothing where it always answers. Wrong
-/// arguments or input: one line and exit code 2; anything else that fails: one line and exit code 1.
+/// Parses the command line and runs a tool. The tool returns its exit code, or nothing if it always answers. Wrong
+/// arguments or input give one line and exit code 2, other failures one line and exit code 1.
 template <typename Tool>
 int run_tool(CLI::App& app, int argc, char** argv, const Tool& tool) {
   keep_freed_memory();

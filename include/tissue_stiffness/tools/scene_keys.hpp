@@ -7,10 +7,10 @@
 
 namespace tissue_stiffness {
 
-/// Every key below `simulation` of a scene file; `*` stands for a topic.
+/// Returns every key below `simulation` of a scene file; `*` stands for a topic.
 const std::vector<KeySpec>& scene_keys();
 
-/// The one of that path below "simulation.".
+/// Returns the key with this path below "simulation.".
 const KeySpec& scene_key(const std::string& path);
 
 }  // namespace tissue_stiffness

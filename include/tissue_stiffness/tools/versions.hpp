@@ -6,7 +6,7 @@
 
 namespace tissue_stiffness {
 
-/// Of the package, its compiler and the libraries that its numbers depend on, by name.
+/// Returns the versions of the package, its compiler and the libraries that its numbers depend on, by name.
 std::vector<std::pair<std::string, std::string>> versions();
 
 }  // namespace tissue_stiffness

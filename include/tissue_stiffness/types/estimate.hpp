@@ -7,18 +7,22 @@
 
 namespace tissue_stiffness {
 
-/// no_data: nothing was measured. converging: the interval has not settled, or little was learnt. converged: the interval
-/// has settled and the misfit passes its test. doubtful: settled, but the misfit or an input does not pass. drifting: a
-/// parameter is changing. stale: no measurement or load has come for longer than a stated time. model_invalid: no value of
-/// the parameters explains the motion.
+/// States of an estimate:
+/// * no_data: nothing was measured.
+/// * converging: the interval has not settled, or little was learnt.
+/// * converged: the interval has settled and the misfit passes its test.
+/// * doubtful: the interval has settled, but the misfit or an input does not pass.
+/// * drifting: a parameter is changing.
+/// * stale: no measurement or load has come for longer than a stated time.
+/// * model_invalid: no value of the parameters explains the motion.
 enum class EstimateState { no_data, converging, converged, doubtful, drifting, stale, model_invalid };
 
-/// "no_data", "converging", "converged", "doubtful", "drifting", "stale" or "model_invalid".
+/// Returns "no_data", "converging", "converged", "doubtful", "drifting", "stale" or "model_invalid".
 std::string to_string(EstimateState state);
 
-/// One estimated quantity, in its own unit. Its distribution is log-normal where the quantity is positive by nature.
+/// One estimated quantity in its own unit. Its distribution is log-normal where the quantity must be positive.
 struct ParameterEstimate {
-  std::string name;  ///< effect.parameter, with #2, #3, ... behind a repeated effect's name
+  std::string name;  ///< effect.parameter; a repeated effect's name gets #2, #3, ...
   std::string unit;
   double mean = 0.0;
   double std = 0.0;
@@ -26,33 +30,33 @@ struct ParameterEstimate {
   double upper95 = 0.0;
 };
 
-/// True of "elasticity.young_modulus", "elasticity#2.young_modulus", ...
+/// Returns true for "elasticity.young_modulus", "elasticity#2.young_modulus", ...
 bool is_young_modulus(const std::string& name);
 
-/// One error of an input that the interval takes into account.
+/// One error of an input that the interval accounts for.
 struct InputUncertainty {
-  std::string input;  ///< topic, or effect.parameter
+  std::string input;  ///< a topic, or effect.parameter
   std::string error;  ///< gain, bias, noise, delay, hysteresis, direction, pose rotation, pose offset or value
   std::string unit;
   double tolerance = 0.0;  ///< 1 sigma, as stated or by default
-  double mean = 0.0;       ///< as estimated: root mean square over its components; 0 for what is only considered
-  double std = 0.0;        ///< that is left of the tolerance
+  double mean = 0.0;       ///< estimated error: root mean square over its components; 0 if the error is only considered
+  double std = 0.0;        ///< 1 sigma that remains of the tolerance
 };
 
-/// Where a parameter's variance comes from: shares that add up to 1.
+/// Sources of a parameter's variance, as shares that add up to 1.
 struct VarianceShares {
   double noise = 1.0, mesh = 0.0, loads = 0.0, constants = 0.0, model = 0.0;
 };
 
-/// Posterior after a frame.
+/// Posterior distribution after a frame.
 struct Estimate {
   double time = 0.0;  ///< [s] on the recording's clock
   EstimateState state = EstimateState::no_data;
-  std::string state_reason;  ///< why it is so, a sentence
+  std::string state_reason;  ///< reason for the state, as a sentence
   std::vector<ParameterEstimate> parameters;
-  std::vector<VarianceShares> variance;  ///< of each parameter; empty: not known
-  std::vector<InputUncertainty> inputs;  ///< empty: every input is taken as exact, or nothing was studied yet
-  Eigen::MatrixXd covariance;            ///< of the parameters in their own units
+  std::vector<VarianceShares> variance;  ///< one for each parameter; empty: unknown
+  std::vector<InputUncertainty> inputs;  ///< empty: every input is taken as exact, or none has been studied yet
+  Eigen::MatrixXd covariance;            ///< covariance of the parameters in their own units
 };
 
 }  // namespace tissue_stiffness

@@ -7,8 +7,9 @@
 
 namespace tissue_stiffness {
 
-/// For programs that end soon: freed memory is kept for what asks next, by any thread. Asking the system for the large
-/// matrices anew takes a tenth of a diagnosis. To be called first of all; does nothing without GNU's C library.
+/// Keeps freed memory in the process for later allocations of any thread. It is for programs that end soon, where
+/// requesting the large matrices from the system again takes a tenth of a diagnosis. It must be called before anything
+/// else, and does nothing without GNU's C library.
 inline void keep_freed_memory() {
 #ifdef __GLIBC__
   constexpr int never = -1, ahead = 64 * 1024 * 1024;  // [byte]
@@ -19,7 +20,7 @@ inline void keep_freed_memory() {
 #endif
 }
 
-/// For programs that run for long, after work that took much: gives freed memory back to the system.
+/// Returns freed memory to the system. It is for programs that run for long, after work that took much memory.
 inline void return_freed_memory() {
 #ifdef __GLIBC__
   malloc_trim(0);

@@ -12,7 +12,7 @@ struct LoadSample {
   Eigen::VectorXd value;  ///< pressure: 1 value [Pa]; wrench: force [N] and torque [N m], in the model frame
 };
 
-/// A topic that the model wants to be fed from.
+/// A topic from which the model needs load samples.
 struct LoadInput {
   enum class Kind { pressure, wrench };
   std::string topic;

@@ -11,18 +11,19 @@ namespace tissue_stiffness {
 
 enum class ObservationKind { vertices, markers, points, contour };
 
-/// What one sensor saw at one instant. `source` is the row of the model file's `observations` list.
+/// The measurement of one sensor at one instant. `source` is the index of its entry in the model file's list
+/// `observations`.
 struct Observation {
   int source = 0;
   ObservationKind kind = ObservationKind::vertices;
   double time = 0.0;                       ///< [s] on the recording's clock
   Eigen::Matrix3Xd points;                 ///< positions in the model frame [m]; empty for a contour
-  Eigen::VectorXi ids;                     ///< mesh vertex (vertices) or row of `rest` (markers); empty otherwise
+  Eigen::VectorXi ids;                     ///< mesh vertex (vertices) or index in `rest` (markers); empty otherwise
   std::shared_ptr<const Contour> contour;  ///< only for contour
   std::shared_ptr<const Camera> camera;    ///< only for contour
 };
 
-/// All observations of one instant: what the estimator steps over.
+/// All observations of one instant; the estimator makes one step for each frame.
 struct Frame {
   double time = 0.0;  ///< [s] on the recording's clock
   std::vector<Observation> observations;

@@ -4,15 +4,15 @@
 
 namespace tissue_stiffness {
 
-/// One frame's measurement against the model, row by row. Identity-free kinds (points, contour) give the signed distance of
-/// the measurement from the model along the normal: measured is then 0 - the distance is in `predicted` with its sign
-/// turned.
+/// One frame's measurement and the model's prediction of it, row by row. Observations whose points have no identity
+/// (points, contour) give the signed distance of the measurement from the model along the normal. Their `measured` is 0,
+/// and `predicted` is the negative of this distance.
 struct Prediction {
   Eigen::VectorXd measured;   ///< y [m]
   Eigen::VectorXd predicted;  ///< h(x) [m]; NaN where the model has no counterpart
-  Eigen::VectorXd sigma;      ///< 1-sigma noise of each row [m]
-  Eigen::Matrix3Xd places;    ///< where each row was measured, model frame [m]
-  Eigen::VectorXi nodes;      ///< nearest mesh node of each row, for showing misfit on the surface
+  Eigen::VectorXd sigma;      ///< standard deviation of each row's noise [m]
+  Eigen::Matrix3Xd places;    ///< position at which each row was measured, in the model frame [m]
+  Eigen::VectorXi nodes;      ///< nearest mesh node of each row, to show the misfit on the surface
 };
 
 }  // namespace tissue_stiffness

@@ -4,7 +4,7 @@
 
 namespace tissue_stiffness {
 
-/// Values at a mesh's nodes of what is known at a coarser one's, nodes there x nodes here.
+/// Matrix that maps nodal values from a coarser mesh to a finer one: fine nodes x coarse nodes.
 using Prolongation = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 }  // namespace tissue_stiffness

@@ -6,24 +6,24 @@
 
 namespace tissue_stiffness {
 
-/// Work that was asked to end before it was done. Nothing is wrong: what is known by then stays.
+/// The work was asked to end before it was finished. This is no failure: the results so far remain valid.
 class Interrupted : public std::runtime_error {
  public:
   Interrupted() : std::runtime_error("interrupted") {}
 };
 
-/// Asks work under way to end early: at once, or when a time limit is over. Long work is given one and calls check() at
-/// least once a frame.
+/// Asks running work to end early, either immediately or when a time limit has passed. Long work gets a StopRequest and
+/// calls check() at least once a frame.
 class StopRequest {
  public:
   StopRequest() = default;
   StopRequest(const StopRequest&) = delete;
   StopRequest& operator=(const StopRequest&) = delete;
 
-  /// Limits the time of the work to `seconds` from now. To be called before the work begins.
+  /// Limits the time of the work to `seconds` from now. It must be called before the work begins.
   void end_after(double seconds) { limit_ = Clock::now() + std::chrono::duration<double>(seconds); }
 
-  /// From any thread, and from a signal handler.
+  /// Asks the work to end now. It may be called from any thread and from a signal handler.
   void stop() noexcept { stopped_ = true; }
 
   bool stopped() const { return stopped_ || Clock::now() >= limit_; }

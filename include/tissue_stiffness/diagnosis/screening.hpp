@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "tissue_stiffness/diagnosis/diagnose.hpp"
+#include "tissue_stiffness/diagnosis/finer_mesh.hpp"
+#include "tissue_stiffness/diagnosis/model_comparison.hpp"
+#include "tissue_stiffness/diagnosis/ranking.hpp"
+
+namespace tissue_stiffness {
+
+/// The depth says how far a round searches for what its base lacks. It goes as far as all stages do. Where the base has an
+/// effect that an earlier round found, it searches from tangents and the initial segment, or from tangents alone.
+enum class SearchDepth { all, initial_segment, tangents };
+
+/// This is what an earlier round on this recording has found out.
+struct PreviousRound {
+  std::shared_ptr<const RecordingFit> finer = nullptr;      ///< the model on a finer mesh; null: none yet
+  std::shared_ptr<const ModelComparison> models = nullptr;  ///< their noise is known; null: none yet
+  Library library = {};                                     ///< see find_candidates
+  SearchDepth search = SearchDepth::all;
+  bool settled = false;  ///< the model keeps its fit, even where another would be better
+};
+
+/// A screening shows what a fitted model's error tells before anything is refitted: the library, ranked by its tangents,
+/// and the mesh's part.
+struct Screening {
+  Screening(FittedModel& fitted, const DiagnosisOptions& options, PreviousRound previous = {});
+
+  /// Moves the base to another fit. Tangents, and the base's assessment, stay those of the first place.
+  void move_base(const BatchFit& fit);
+
+  FittedModel& base;
+  double cost;               ///< sum of squared errors [sigma^2]
+  const SearchDepth search;  ///< see PreviousRound; passed on to the next one
+  const bool settled;
+  std::vector<Candidate> candidates;  ///< their tangents are whitened
+  Library library;                    ///< of models that the tangents were read from
+  Eigen::VectorXd error;              ///< of the base, whitened
+  Eigen::MatrixXd nuisance_tangents;  ///< of the base's parameters, and the directions of the mesh's error; whitened
+  FinerMesh finer;
+  double discretisation_error = 0.0;  ///< rms of what the base's parameters leave of the mesh's change [sigma]
+  std::unique_ptr<Scorer> scorer;
+  std::vector<Ranked> ranked;
+
+  Explained explained;         ///< the base as it is compared
+  ModelComparison comparison;  ///< of the base with others
+  Assessment given;            ///< of the base
+};
+
+}  // namespace tissue_stiffness

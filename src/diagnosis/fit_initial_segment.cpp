@@ -1,0 +1,66 @@
+#include <algorithm>
+#include <cmath>
+
+#include "tissue_stiffness/diagnosis/refit.hpp"
+#include "tissue_stiffness/types/error.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr std::size_t kMostStarts = 2;
+// An amplitude is tried at these prior standard deviations: a positive one, whose prior speaks of a strong effect, and a
+// signed one.
+constexpr double kPositive[] = {-3.0, -2.25, -1.5, -0.75, 0.0, 0.75, 1.5}, kSigned[] = {-1.0, -0.3, 0.3, 1.0};
+
+// Returns starts from the base's fit and the proposal's prior, at several strengths.
+std::vector<Eigen::VectorXd> strengths(const RecordingFit& recording_fit, const Eigen::VectorXd& w,
+                                       const Candidate& candidate) {
+  std::vector<Eigen::VectorXd> out{w};
+  const auto& free = recording_fit.model().free_parameters();
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    if (free[i].name.rfind(candidate.effect + "." + candidate.proposal.amplitude, 0) != 0) continue;
+    const auto try_at = [&](double deviations) {
+      const auto k = static_cast<Eigen::Index>(i);
+      Eigen::VectorXd there = w;
+      there[k] += deviations * recording_fit.model().prior_std()[k];
+      const double value = free[i].to_value(there[k]);
+      if (free[i].lower < value && value < free[i].upper) out.push_back(std::move(there));
+    };
+    if (free[i].prior.kind == Quantity::Kind::log_normal) {
+      std::for_each(std::begin(kPositive), std::end(kPositive), try_at);
+    } else {
+      std::for_each(std::begin(kSigned), std::end(kSigned), try_at);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+InitialSegmentFit fit_initial_segment(const FittedModel& base, const Candidate& candidate) {
+  const RecordingFit& known = *base.recording_fit;
+  ModelSettings settings = known.model().settings();
+  add_effect(settings, candidate.proposal.refine);
+  const RecordingFit recording_fit(settings, known);
+  const Model& model = recording_fit.model();
+  const Eigen::VectorXd w = recording_fit.extend(known, base.fit.w);
+  const std::vector<Eigen::Index> tuning = recording_fit.tuning_shared_with(known);
+  const Eigen::VectorXd spread = recording_fit.spread_beyond(known);
+  std::vector<RecordingFit::Place> places;
+  for (const Eigen::VectorXd& start : strengths(recording_fit, w, candidate))
+    places.push_back(recording_fit.scan_near(start, tuning, kInitialSegment));
+  std::stable_sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
+  places.resize(std::min(places.size(), kMostStarts));
+  BatchFit fit;
+  for (const RecordingFit::Place& place : places) {
+    BatchFit now = recording_fit.quick_fit(place.w, spread, kInitialSegment);
+    if (fit.w.size() == 0 || now.cost < fit.cost) fit = std::move(now);
+  }
+  InitialSegmentFit out;
+  const auto added = static_cast<double>(model.free_parameters().size() - known.model().free_parameters().size());
+  out.deviance = fit.cost + added * std::log(kInitialSegment * base.rows.count());
+  out.parameters = model.values(fit.w);
+  return out;
+}
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,74 @@
+#include "tissue_stiffness/diagnosis/screening.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "tissue_stiffness/effects/registry.hpp"
+#include "tissue_stiffness/forward/for_each_index.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+// Returns the effects that are not searched for. What a simulation puts into its recording is no missing physics, unless it
+// is asked for.
+std::vector<std::string> not_looked_for(const DiagnosisOptions& options) {
+  std::vector<std::string> out = options.ignore;
+  for (const EffectSpec& spec : effect_specs()) {
+    if (spec.of_simulation && std::count(options.add.begin(), options.add.end(), spec.name) == 0) out.push_back(spec.name);
+  }
+  return out;
+}
+
+// Returns what a finer mesh changes; for a mesh that cannot be refined it is a part of the motion.
+Eigen::VectorXd mesh_change(const FittedModel& base, const FinerMesh& finer) {
+  const bool unknown = finer.recording_fit == nullptr && base.recording_fit->model().settings().mesh.discretisation_error;
+  return unknown ? kComparison.unknown_mesh * motion_of(base.rows).cwiseProduct(base.rows.used) : finer.change;
+}
+
+}  // namespace
+
+Screening::Screening(FittedModel& fitted, const DiagnosisOptions& options, PreviousRound previous)
+    : base(fitted),
+      cost(fitted.rows.error.squaredNorm()),
+      search(previous.search),
+      settled(previous.settled),
+      library(std::move(previous.library)),
+      explained(compared_residual(base)),
+      comparison(base, Eigen::VectorXd::Zero(base.rows.error.size())),
+      given(comparison.assess(explained)) {
+  if (previous.models) comparison.note(*previous.models);
+  if (!given.test.passes()) explained = compared_residual(base, {}, true);
+  const std::string step = "tangents of the library, and what a finer mesh would change";
+  options.progress(step, 0, 0);
+  run_side_by_side(
+      [&] {
+        candidates = find_candidates(
+            *base.recording_fit, base.fit.w, not_looked_for(options),
+            [&](std::size_t done, std::size_t total) { options.progress(step, done, total); }, library);
+      },
+      [&] { finer = finer_mesh(base, previous.finer.get()); });
+  comparison.allow_for_mesh(mesh_change(base, finer));
+  given = comparison.assess(explained);
+  const Eigen::MatrixXd &own = explained.linearisation.columns, &of_mesh = comparison.mesh_directions();
+  nuisance_tangents.resize(own.rows(), own.cols() + of_mesh.cols());
+  nuisance_tangents << own, of_mesh;
+  nuisance_tangents = comparison.whitened(nuisance_tangents);
+  error = comparison.whitened(explained.error);
+  for_each_index(candidates.size(), [&](std::size_t c) {
+    candidates[c].tangent.columns = comparison.whitened(candidates[c].tangent.columns);
+  });
+  scorer = std::make_unique<Scorer>(error, nuisance_tangents, comparison.noise_variance());
+  discretisation_error = finer.change.norm() / std::sqrt(base.rows.count());
+  ranked = rank_effects(*scorer, candidates);
+}
+
+void Screening::move_base(const BatchFit& fit) {
+  base.fit = fit;
+  base.rows = base.recording_fit->rows(fit.w);
+  cost = base.rows.error.squaredNorm();
+  explained = compared_residual(base, {}, !given.test.passes());
+  comparison.note(base.rows.error);
+}
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,263 @@
+#include "tissue_stiffness/estimation/iterated_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "tissue_stiffness/estimation/basis_error.hpp"
+#include "tissue_stiffness/fit/coordinate_scan.hpp"
+#include "tissue_stiffness/forward/reduced_model.hpp"
+#include "tissue_stiffness/meshing/surface.hpp"
+#include "tissue_stiffness/observation/frame_misfit.hpp"
+#include "tissue_stiffness/types/error.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr double kFar = 1.0;                    // spreads between anchor and estimate that ask for a new anchor
+constexpr double kWide = 6.0;                   // posterior standard deviations that the sigma points may span
+constexpr double kNewSpread = 2.0;              // posterior standard deviations that they span after a move
+constexpr double kFloor = 1e-3;                 // of the prior's standard deviation: the smallest span
+constexpr double kBent = 0.2;                   // of the misfit: nonlinearity over the span that asks for a smaller one
+constexpr double kLongestMove = 3.0;            // spreads that the anchor may move at once
+constexpr int kMostVisits = 6;                  // moves of the anchor in one relinearization
+constexpr std::size_t kEarly = 16;              // frames up to which the anchor may move at every frame
+constexpr double kRelinearizationGrowth = 1.1;  // growth of the recording between later moves of the anchor
+constexpr double kScanMisfit = 4.0;             // mean square error over sigma that asks for a scan of the parameters
+constexpr int kScanPoints = 25;                 // points on either side of the prior's mean
+constexpr std::size_t kFirstBasisCheck = 4;     // frames before the first check of the basis
+constexpr int kMostGrowths = 4;                 // growths of the basis at once, by half each
+constexpr double kChangedSpread = 0.05;         // prior standard deviations, of the sigma points after a change
+constexpr double kGrowthHelps = 0.7;            // of the error: a growth that leaves no more is worth another
+
+}  // namespace
+
+IteratedFilter::IteratedFilter(const Model& model, const Operators& operators, std::shared_ptr<ForwardModel> forward,
+                               PosteriorLinearizationFilter prior, RunStart start)
+    : model_(model),
+      operators_(operators),
+      forward_(std::move(forward)),
+      start_(std::move(start)),
+      filter_(std::move(prior)) {}
+
+std::unique_ptr<IteratedFilter> IteratedFilter::clone_unstarted() const {
+  auto out = std::make_unique<IteratedFilter>(model_, operators_, forward_, filter_, start_);
+  out->discrepancy_ = discrepancy_;
+  out->notes_ = notes_;
+  return out;
+}
+
+void IteratedFilter::expect(const Estimate& near) {
+  Eigen::VectorXd anchor = filter_.anchor(), spread = filter_.spread();
+  for (std::size_t i = 0; i < model_.free_parameters().size(); ++i) {
+    const FreeParameter& free = model_.free_parameters()[i];
+    const auto known = std::find_if(near.parameters.begin(), near.parameters.end(),
+                                    [&free](const ParameterEstimate& p) { return p.name == free.name; });
+    if (known == near.parameters.end()) continue;
+    const auto k = static_cast<Eigen::Index>(i);
+    anchor[k] = free.to_coordinate(known->mean);
+    const double wide = free.to_coordinate(known->mean + kNewSpread * known->std) - anchor[k];
+    spread[k] = std::clamp(wide, kFloor * spread[k], spread[k]);
+  }
+  filter_.move_anchor(anchor, spread);
+}
+
+void IteratedFilter::begin() {
+  ensemble_ = std::make_unique<Ensemble>(model_, *forward_, operators_);
+  ensemble_->restart(filter_.sigma_points(), start_);
+}
+
+PosteriorLinearizationFilter::Innovation IteratedFilter::absorb(const Ensemble::Predicted& predicted) {
+  Prediction now = predicted.central;
+  now.predicted = filter_.predict(predicted.rows, filter_.mean());
+  return filter_.update(now.measured, predicted.rows, now.sigma.cwiseAbs2(), row_weights(now));
+}
+
+PosteriorLinearizationFilter::Innovation IteratedFilter::absorb(const Frame& frame) {
+  ensemble_->advance(frame.time);
+  return absorb(ensemble_->predict(frame));
+}
+
+Eigen::MatrixXd IteratedFilter::covariance() const {
+  Eigen::MatrixXd sum = filter_.robust_covariance();
+  for (const Eigen::VectorXd& discrepancy : {discrepancy_, notes_.basis_shift}) {
+    if (discrepancy.size() > 0) sum += discrepancy * discrepancy.transpose();
+  }
+  return sum;
+}
+
+bool IteratedFilter::bent() const {
+  return filter_.nonlinearity() > kBent * filter_.misfit_scale();
+}
+
+bool IteratedFilter::stale() const {
+  return filter_.stale(kFar, kWide, kFloor * model_.prior_std()) || bent();
+}
+
+bool IteratedFilter::settle_is_due(std::size_t count) const {
+  return count <= kEarly || static_cast<double>(count) >= kRelinearizationGrowth * static_cast<double>(notes_.settled);
+}
+
+// Only linear models are scanned, because their runs cost next to nothing.
+bool IteratedFilter::scan_is_due(std::size_t count) const {
+  return !model_.nonlinear() && count >= 2 * notes_.scanned && filter_.misfit_scale() >= kScanMisfit;
+}
+
+bool IteratedFilter::basis_is_due(std::size_t count) const {
+  return !model_.nonlinear() && !start_.motion && count >= std::max(kFirstBasisCheck, 2 * notes_.basis);
+}
+
+bool IteratedFilter::wants_relinearization(std::size_t count) const {
+  const bool relinearization = settle_is_due(count) && (stale() || scan_is_due(count));
+  return relinearization || basis_is_due(count);
+}
+
+void IteratedFilter::rerun(const std::vector<Frame>& frames, const Eigen::VectorXd& w) {
+  const FitProblem run = problem(frames, [] {});
+  replay(run, w, filter_.spread());
+  settle(run);
+}
+
+bool IteratedFilter::relinearize(const std::vector<Frame>& frames, const Checkpoint& checkpoint) {
+  try {
+    return relinearize_runs(frames, checkpoint);
+  } catch (const NumericalError&) {
+    return false;
+  }
+}
+
+bool IteratedFilter::relinearize_runs(const std::vector<Frame>& frames, const Checkpoint& checkpoint) {
+  const std::size_t count = frames.size();
+  const FitProblem run = problem(frames, checkpoint);
+  bool moved = false;
+  if (settle_is_due(count)) {
+    moved = scan(run);
+    moved = settle(run) || moved;
+    if (moved) notes_.settled = count;
+  }
+  if (grow_basis(run)) {
+    replay(problem(frames, checkpoint), filter_.anchor(), filter_.spread());
+    moved = true;
+  }
+  return moved;
+}
+
+std::unique_ptr<IteratedFilter> IteratedFilter::changed(const std::vector<Frame>& frames, const ChangeQuestion& question,
+                                                        const Checkpoint& checkpoint, std::size_t& first) const {
+  try {
+    const auto change = find_change(problem(frames, checkpoint), question);
+    if (!change) return nullptr;
+    Eigen::MatrixXd prior = question.covariance;
+    prior.diagonal() += drifted(model_, change->from.time - start_.time);
+    auto out = std::make_unique<IteratedFilter>(model_, operators_, forward_,
+                                                PosteriorLinearizationFilter(question.w, prior), change->from);
+    const std::vector<Frame> later(frames.begin() + static_cast<std::ptrdiff_t>(change->first), frames.end());
+    const Eigen::VectorXd spread = prior.diagonal().cwiseSqrt().cwiseMin(kChangedSpread * model_.prior_std());
+    out->replay(out->problem(later, checkpoint), change->w, spread);
+    out->discrepancy_ = change->discrepancy;
+    out->relinearize(later, checkpoint);
+    first = change->first;
+    return out;
+  } catch (const NumericalError&) {
+    return nullptr;
+  }
+}
+
+std::unique_ptr<IteratedFilter> IteratedFilter::rolled(const std::vector<Frame>& frames, std::size_t first,
+                                                       const Checkpoint& checkpoint) const {
+  // Runs in full would never catch up with a camera.
+  if (model_.nonlinear()) return nullptr;
+  const auto middle = frames.begin() + static_cast<std::ptrdiff_t>(first);
+  const std::vector<Frame> early(frames.begin(), middle), later(middle, frames.end());
+  try {
+    const std::unique_ptr<IteratedFilter> before = clone_unstarted();
+    before->replay(problem(early, checkpoint), filter_.anchor(), filter_.spread());
+    const Eigen::VectorXd theta = model_.theta(filter_.mean());
+    const auto run = forward_->begin(theta, start_);
+    const double time = early.back().time - model_.delay(theta);
+    run->advance(time);
+    PosteriorLinearizationFilter prior(before->filter_.mean(), before->filter_.robust_covariance());
+    auto out = std::make_unique<IteratedFilter>(model_, operators_, forward_, std::move(prior),
+                                                RunStart{time, forward_->resume(theta, *run)});
+    out->discrepancy_ = discrepancy_;
+    out->notes_ = notes_;
+    out->notes_.settled = out->notes_.scanned = later.size();
+    out->replay(out->problem(later, checkpoint), filter_.anchor(), filter_.spread());
+    return out;
+  } catch (const NumericalError&) {
+    return nullptr;
+  }
+}
+
+FitProblem IteratedFilter::problem(const std::vector<Frame>& frames, const Checkpoint& checkpoint) const {
+  return {model_, *forward_, operators_, frames, start_, checkpoint};
+}
+
+bool IteratedFilter::settle(const FitProblem& problem) {
+  int visit = 0;
+  for (; visit < kMostVisits && stale(); ++visit) move_anchor(problem);
+  return visit > 0;
+}
+
+void IteratedFilter::move_anchor(const FitProblem& problem) {
+  const PosteriorLinearizationFilter before = filter_;
+  const Eigen::VectorXd limit = kLongestMove * before.spread();
+  Eigen::VectorXd move = (before.mean() - before.anchor()).cwiseMax(-limit).cwiseMin(limit);
+  const Eigen::VectorXd std = before.covariance().diagonal().cwiseSqrt();
+  Eigen::VectorXd spread = (kNewSpread * std).cwiseMin(before.spread());
+  if (bent()) {
+    const double excess = before.nonlinearity() / (kBent * before.misfit_scale());
+    spread = spread.cwiseMin(0.8 * std::pow(excess, -0.25) * before.spread());
+  }
+  spread = spread.cwiseMax(kFloor * model_.prior_std());
+  for (int cut = 0; cut < 3; ++cut, move *= 0.25) {
+    replay(problem, before.anchor() + move, spread);
+    if (filter_.cost() <= before.cost() * (1.0 + 1e-3) + 1.0) return;
+  }
+  replay(problem, before.anchor(), spread);
+}
+
+// Searches for a better minimum whenever the recording has doubled while the misfit is large.
+bool IteratedFilter::scan(const FitProblem& problem) {
+  if (!scan_is_due(problem.frames.size())) return false;
+  notes_.scanned = problem.frames.size();
+  const ScanResult found = scan_coordinates([&](const Eigen::VectorXd& w) { return free_fit(problem, w).cost; },
+                                            filter_.anchor(), model_.prior_mean(), model_.prior_std(), kScanPoints);
+  if (!found.moved) return false;
+  const Eigen::VectorXd narrow = found.step.cwiseMin(filter_.spread());
+  replay(problem, found.best, (found.step.array() > 0.0).select(narrow, filter_.spread()));
+  return true;
+}
+
+// Checks what the reduced basis leaves out whenever the recording has doubled. The basis grows until that is a small part
+// of the noise. Returns true if it grew.
+bool IteratedFilter::grow_basis(const FitProblem& problem) {
+  if (!basis_is_due(problem.frames.size())) return false;
+  notes_.basis = problem.frames.size();
+  auto reduced = std::dynamic_pointer_cast<ReducedModel>(forward_);
+  const std::vector<int> surface = surface_nodes(model_.mesh());
+  for (int k = 0;; ++k) {
+    const FitProblem run{model_, *reduced, operators_, problem.frames, start_, problem.checkpoint};
+    const BasisError error = tissue_stiffness::basis_error(*reduced, run, filter_.mean(), surface);
+    const bool helps = k == 0 || error.rms < kGrowthHelps * *notes_.basis_error;
+    notes_.basis_error = error.rms;
+    if (notes_.basis_exhausted || error.sigmas <= kBasisShare) break;
+    std::shared_ptr<ReducedModel> larger = k == kMostGrowths || !helps ? nullptr : reduced->grown();
+    notes_.basis_exhausted = larger == nullptr;
+    if (!larger) break;
+    reduced = std::move(larger);
+  }
+  notes_.basis_shift = basis_shift(*reduced, problem, filter_.mean(), filter_.spread(), model_.prior_std());
+  return std::exchange(forward_, reduced) != reduced;
+}
+
+void IteratedFilter::replay(const FitProblem& problem, const Eigen::VectorXd& anchor, const Eigen::VectorXd& spread) {
+  filter_.move_anchor(anchor, spread);
+  begin();
+  for (const Frame& frame : problem.frames) {
+    problem.checkpoint();
+    absorb(frame);
+  }
+}
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,340 @@
+#include "tissue_stiffness/fem/generalized_alpha.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <Eigen/IterativeLinearSolvers>
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "tissue_stiffness/fem/products.hpp"
+#include "tissue_stiffness/types/error.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr int kMaxIterations = 40;
+constexpr int kPatience = 12;     // iterations of a step before the factor is renewed within it
+constexpr int kMostRenewals = 6;  // of the factor within a step
+constexpr double kGrowth = 2.0;   // of a correction, at which iterations are taken to diverge
+constexpr int kYoung = 4;         // steps that a factor's first iterations are counted over
+constexpr double kOlder = 0.2;    // share of the last step's acceleration in the first guess
+constexpr int kMaxHalvings = 10;
+constexpr int kMostCuts = 6;              // of a correction that turns an element inside out
+constexpr double kSameStep = 0.02;        // relative change of the step that a factor survives
+constexpr double kWorthIterations = 0.6;  // iterations that a solution's time buys, with the forces that go with it
+constexpr double kMassTolerance = 1e-14;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+void zero_fixed(Eigen::VectorXd& x, const std::vector<char>& fixed) {
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    if (fixed[static_cast<std::size_t>(i)] != 0) x[i] = 0.0;
+  }
+}
+
+void turn_nodes(const Eigen::Matrix3Xd& turn, bool back, Eigen::Ref<Eigen::VectorXd> x) {
+  for (Eigen::Index i = 0; i < turn.cols(); i += 3) {
+    const Eigen::Matrix3d r = turn.middleCols<3>(i);
+    const Eigen::Vector3d turned =
+        back ? Eigen::Vector3d(r.transpose() * x.segment<3>(i)) : Eigen::Vector3d(r * x.segment<3>(i));
+    x.segment<3>(i) = turned;
+  }
+}
+
+void initialise_one(const DynamicSystem& system, DynamicState& state) {
+  state.relaxed.resize(system.relaxations().size(), state.displacement);
+  Eigen::VectorXd f = system.force(state.time, state.displacement, state.velocity);
+  if (system.damped()) f -= system.damping() * state.velocity;
+  zero_fixed(f, system.fixed());
+  SparseMatrix mass = system.mass();
+  fix_dofs(mass, system.fixed(), mass.diagonal().mean());
+  // A mass matrix is so well conditioned that a few dozen iterations reach round-off.
+  Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower | Eigen::Upper> solver(mass);
+  solver.setTolerance(kMassTolerance);
+  state.acceleration = solver.solve(f);
+}
+
+}  // namespace
+
+Eigen::VectorXd DynamicSystem::force(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const {
+  Eigen::VectorXd f = Eigen::VectorXd::Zero(u.size());
+  add_force(time, u, v, f);
+  return f;
+}
+
+const std::vector<Relaxation>& DynamicSystem::relaxations() const {
+  static const std::vector<Relaxation> none;
+  return none;
+}
+
+GeneralizedAlpha::GeneralizedAlpha(std::vector<const DynamicSystem*> systems, double spectral_radius, double tolerance)
+    : tolerance_(tolerance) {
+  if (spectral_radius < 1.0) {
+    alpha_m_ = (2.0 * spectral_radius - 1.0) / (spectral_radius + 1.0);
+    alpha_f_ = spectral_radius / (spectral_radius + 1.0);
+    gamma_ = 0.5 - alpha_m_ + alpha_f_;
+    beta_ = 0.25 * std::pow(1.0 - alpha_m_ + alpha_f_, 2);
+  }
+  columns_.resize(systems.size());
+  for (std::size_t i = 0; i < systems.size(); ++i) columns_[i].system = systems[i];
+}
+
+GeneralizedAlpha::GeneralizedAlpha(const DynamicSystem& system, double spectral_radius, double tolerance)
+    : GeneralizedAlpha(std::vector<const DynamicSystem*>{&system}, spectral_radius, tolerance) {}
+
+void GeneralizedAlpha::initialise(std::vector<DynamicState>& states) const {
+  tbb::parallel_for(std::size_t{0}, states.size(), [&](std::size_t i) { initialise_one(*columns_[i].system, states[i]); });
+}
+
+void GeneralizedAlpha::initialise(DynamicState& state) const {
+  initialise_one(*columns_.front().system, state);
+}
+
+void GeneralizedAlpha::step(std::vector<DynamicState>& states, const std::vector<double>& steps) {
+  cut_step(states, steps, 0);
+}
+
+void GeneralizedAlpha::step(DynamicState& state, double step) {
+  std::vector<DynamicState> states{state};
+  cut_step(states, {step}, 0);
+  state = std::move(states.front());
+}
+
+void GeneralizedAlpha::cut_step(std::vector<DynamicState>& states, const std::vector<double>& steps, int depth) {
+  if (try_step(states, steps)) return;
+  if (depth == kMaxHalvings) {
+    throw NumericalError("time step at " + std::to_string(states.front().time) + " s diverges, even cut to " +
+                         std::to_string(steps.front()) + " s");
+  }
+  std::vector<DynamicState> half_way = states;
+  std::vector<double> half = steps;
+  for (double& step : half) step *= 0.5;
+  cut_step(half_way, half, depth + 1);
+  cut_step(half_way, half, depth + 1);
+  states = std::move(half_way);
+}
+
+void GeneralizedAlpha::find_acceleration(const Column& c, const Eigen::VectorXd& x, Eigen::VectorXd& a) const {
+  const DynamicState& s = *c.before;
+  a = (x - c.step * s.velocity) / (beta_ * c.step * c.step) - (0.5 / beta_ - 1.0) * s.acceleration;
+}
+
+// Computes the residual of the balance at the weighted instants for the displacement increment x.
+void GeneralizedAlpha::find_residual(Column& c, const Eigen::VectorXd& x, Eigen::VectorXd& r) const {
+  const DynamicState& s = *c.before;
+  const DynamicSystem& system = *c.system;
+  DynamicState& middle = c.middle;
+  const double h = c.step;
+  find_acceleration(c, x, middle.acceleration);
+  middle.velocity = s.velocity + (1.0 - alpha_f_) * h * ((1.0 - gamma_) * s.acceleration + gamma_ * middle.acceleration);
+  middle.acceleration = (1.0 - alpha_m_) * middle.acceleration + alpha_m_ * s.acceleration;
+  middle.time = s.time + (1.0 - alpha_f_) * h;
+  middle.displacement = s.displacement + (1.0 - alpha_f_) * x;
+  r.setZero(x.size());
+  system.add_force(middle.time, middle.displacement, middle.velocity, r);
+  subtract_product(system.mass(), middle.acceleration, r);
+  if (system.damped()) subtract_product(system.damping(), middle.velocity, r);
+  if (const auto& branches = system.relaxations(); !branches.empty()) {
+    middle.relaxed = s.relaxed;
+    relax(branches, (1.0 - alpha_f_) * h, s.displacement, middle.displacement, middle.relaxed);
+    overstretch(branches, middle.displacement, middle.relaxed, c.stretch);
+    subtract_product(system.relaxing_stiffness(), c.stretch, r);
+  }
+  zero_fixed(r, system.fixed());
+}
+
+void GeneralizedAlpha::factorize(const Column& c) {
+  const double h = c.step;
+  SparseMatrix j = c.system->stiffness(c.middle.time, c.middle.displacement, c.middle.velocity);
+  j *= 1.0 - alpha_f_;
+  add_scaled(j, (1.0 - alpha_m_) / (beta_ * h * h), c.system->mass());
+  const double to_velocity = (1.0 - alpha_f_) * gamma_ / (beta_ * h);
+  if (c.system->damped()) add_scaled(j, to_velocity, c.system->damping());
+  if (c.system->has_velocity_tangent()) {
+    add_scaled(j, to_velocity, c.system->friction(c.middle.time, c.middle.displacement, c.middle.velocity));
+  }
+  for (const Relaxation& branch : c.system->relaxations()) {
+    const double quick = branch.modulus * (1.0 - RelaxationStep(branch, (1.0 - alpha_f_) * h).to);
+    add_scaled(j, (1.0 - alpha_f_) * quick, c.system->relaxing_stiffness());
+  }
+  fix_dofs(j, c.system->fixed(), j.diagonal().mean());
+  solver_.factorize(j);
+  for (Column& column : columns_) {
+    column.updates.clear();
+    column.last = kInfinity;
+  }
+  c.system->find_rotations(c.middle.displacement, factored_rotations_);
+  turned_ = false;
+  factored_step_ = h;
+  young_before_ = young_;
+  young_ = excess_ = 0.0;
+  steps_ = 0;
+  ++factorisations_;
+}
+
+// Finds the rotation of the material since the factor was made, because the factor's stiffness rotates with it.
+void GeneralizedAlpha::turn() {
+  const Column& c = columns_.front();
+  c.system->find_rotations(c.middle.displacement, turn_);
+  for (Eigen::Index i = 0; i < turn_.cols(); i += 3) {
+    const Eigen::Matrix3d now = turn_.middleCols<3>(i);
+    turn_.middleCols<3>(i) = now * factored_rotations_.middleCols<3>(i).transpose();
+  }
+  turned_ = true;
+}
+
+// Extrapolates from displacement, velocity and acceleration. The acceleration oscillates in modes that the steps do not
+// resolve, and a part of the previous one improves the guess.
+bool GeneralizedAlpha::start() {
+  std::atomic<bool> fine{true};
+  tbb::parallel_for(std::size_t{0}, columns_.size(), [&](std::size_t i) {
+    Column& c = columns_[i];
+    const DynamicState& s = *c.before;
+    c.increment = c.step * s.velocity + 0.5 * c.step * c.step * s.acceleration;
+    if (c.reached == s.time) c.increment -= 0.5 * kOlder * c.step * c.step * (s.acceleration - c.earlier_acceleration);
+    c.last = kInfinity;
+    c.rate = 1.0;
+    c.done = false;
+    c.updates.clear();
+    try {
+      find_residual(c, c.increment, c.residual);
+    } catch (const NumericalError&) {
+      fine = false;
+    }
+  });
+  return fine;
+}
+
+void GeneralizedAlpha::find_directions() {
+  directions_.resize(active_.front()->residual.size(), static_cast<Eigen::Index>(columns_.size()));
+  tbb::parallel_for(std::size_t{0}, active_.size(), [&](std::size_t k) {
+    auto d = directions_.col(static_cast<Eigen::Index>(k));
+    d = active_[k]->residual;
+    active_[k]->updates.before(d);
+    if (turned_) turn_nodes(turn_, true, d);
+  });
+  solver_.solve_roughly_in_place(directions_.leftCols(static_cast<Eigen::Index>(active_.size())));
+  tbb::parallel_for(std::size_t{0}, active_.size(), [&](std::size_t k) {
+    Column& c = *active_[k];
+    c.direction = directions_.col(static_cast<Eigen::Index>(k));
+    if (turned_) turn_nodes(turn_, false, c.direction);
+    c.updates.after(c.direction);
+  });
+}
+
+// Ends the columns whose next correction would be below the tolerance, judging from the last two.
+GeneralizedAlpha::Progress GeneralizedAlpha::judge(int iteration) {
+  bool all = true, slow = iteration >= kPatience;
+  for (Column* column : active_) {
+    Column& c = *column;
+    const double size = c.direction.cwiseAbs().maxCoeff();
+    if (!std::isfinite(size)) return Progress::failed;
+    slow = slow || size > kGrowth * c.last;
+    if (std::isfinite(c.last)) c.rate = std::min(1.0, size / c.last);
+    c.done = size * c.rate < tolerance_;
+    if (c.done) c.increment += c.direction;
+    c.last = size;
+    all = all && c.done;
+  }
+  return all ? Progress::done : slow ? Progress::slow : Progress::going;
+}
+
+bool GeneralizedAlpha::move() {
+  std::atomic<bool> fine{true};
+  tbb::parallel_for(std::size_t{0}, active_.size(), [&](std::size_t i) {
+    if (!active_[i]->done && !move(*active_[i])) fine = false;
+  });
+  return fine;
+}
+
+// Applies the correction, and halves it while it turns an element inside out.
+bool GeneralizedAlpha::move(Column& c) const {
+  for (int cut = 0;; ++cut, c.direction *= 0.5) {
+    c.next_increment = c.increment + c.direction;
+    try {
+      find_residual(c, c.next_increment, c.next_residual);
+      break;
+    } catch (const NumericalError&) {
+      if (cut == kMostCuts) return false;
+    }
+  }
+  c.increment.swap(c.next_increment);
+  c.residual -= c.next_residual;  // the change
+  c.updates.learn(c.direction, c.residual);
+  c.residual.swap(c.next_residual);
+  return true;
+}
+
+int GeneralizedAlpha::iterate() {
+  int renewals = 0;
+  for (int k = 0, since = 0; k < kMaxIterations; ++k, ++since) {
+    ++iterations_;
+    active_.clear();
+    for (Column& column : columns_) {
+      if (!column.done) active_.push_back(&column);
+    }
+    find_directions();
+    const Progress progress = judge(since);
+    if (progress == Progress::done) return k + 1;
+    if (progress == Progress::failed) return 0;
+    if (progress == Progress::slow) {  // the factor is too old here: renew it and take this iteration again
+      if (++renewals > kMostRenewals) return 0;
+      factorize(*active_.front());
+      since = -1;
+    } else if (!move()) {
+      return 0;
+    }
+  }
+  return 0;
+}
+
+bool GeneralizedAlpha::try_step(std::vector<DynamicState>& states, const std::vector<double>& steps) {
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
+    columns_[i].before = &states[i];
+    columns_[i].step = steps[i];
+  }
+  try {
+    if (!start()) return false;
+    const bool other_step = std::abs(steps.front() - factored_step_) > kSameStep * factored_step_;
+    if (!solver_.ready() || other_step || excess_ > kWorthIterations * worth_ * solver_.cost()) {
+      factorize(columns_.front());
+    } else {
+      turn();
+    }
+    const int iterations = iterate();
+    if (iterations == 0) return false;
+    note_age(iterations);
+  } catch (const NumericalError&) {
+    return false;
+  }
+  for (std::size_t i = 0; i < columns_.size(); ++i) accept(columns_[i], states[i]);
+  return true;
+}
+
+// The cost of a factor's age is counted relative to its own first steps. Renewals that did not help make the next one more
+// expensive.
+void GeneralizedAlpha::note_age(int iterations) {
+  if (++steps_ <= kYoung) {
+    young_ += static_cast<double>(iterations) / kYoung;
+    if (steps_ == kYoung && young_before_ > 0.0) worth_ = young_ > young_before_ ? 2.0 * worth_ : 1.0;
+    return;
+  }
+  excess_ = std::max(0.0, excess_ + iterations - young_);
+}
+
+void GeneralizedAlpha::accept(Column& c, DynamicState& state) const {
+  Eigen::VectorXd &a = c.middle.acceleration, &u = c.middle.displacement;
+  find_acceleration(c, c.increment, a);
+  u = state.displacement + c.increment;
+  state.velocity += c.step * ((1.0 - gamma_) * state.acceleration + gamma_ * a);
+  relax(c.system->relaxations(), c.step, state.displacement, u, state.relaxed);
+  state.displacement.swap(u);
+  c.earlier_acceleration.swap(state.acceleration);
+  state.acceleration.swap(a);
+  state.time += c.step;
+  c.reached = state.time;
+}
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,325 @@
+#include "tissue_stiffness/fit/recording_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "tissue_stiffness/fit/coordinate_scan.hpp"
+#include "tissue_stiffness/forward/extra_force.hpp"
+#include "tissue_stiffness/meshing/build_mesh.hpp"
+#include "tissue_stiffness/observation/frame_misfit.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr int kScanPoints = 12;
+constexpr int kSteps = 8;              // a frame: the period error of longer steps would be taken for an effect
+constexpr int kMostRuns = 8;           // moves of a fit from one full run to the next
+constexpr int kMostCuts = 3;           // cuts of a move that makes it worse
+constexpr double kSettled = 0.2;       // posterior standard deviations: shorter moves need no further run
+constexpr double kWorthwhile = 2e-3;   // relative fall of the cost that quick runs must promise before another full one
+constexpr double kGain = 1e-4;         // relative fall of the cost that a full run must bring
+constexpr double kNarrower = 4.0;      // posterior standard deviations: span of the next fit's sigma points
+constexpr double kBaseSpread = 0.05;   // prior standard deviations, for parameters that a smaller model has too
+constexpr double kAddedSpread = 0.25;  // prior standard deviations, for the others
+
+}  // namespace
+
+std::vector<Frame> Recording::training() const {
+  std::vector<Frame> kept;
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    if (!held_out(k)) kept.push_back(frames[k]);
+  }
+  return kept;
+}
+
+RecordingFit::RecordingFit(const ModelSettings& settings, const TetMesh& mesh, const Recording& recording,
+                           const BasisOptions& basis)
+    : RecordingFit(settings, mesh, resolve_regions(settings.regions, mesh), recording, basis) {}
+
+RecordingFit::RecordingFit(const ModelSettings& settings, const TetMesh& mesh, std::map<std::string, Region> regions,
+                           const Recording& recording, const BasisOptions& basis)
+    : recording_(recording),
+      training_(recording.training()),
+      model_(settings, mesh, std::move(regions)),
+      operators_(make_observation_operators(model_)) {
+  prepare(basis, nullptr);
+}
+
+RecordingFit::RecordingFit(const ModelSettings& settings, const RecordingFit& relative, const BasisOptions& basis)
+    : recording_(relative.recording_),
+      training_(relative.training_),
+      model_(settings, relative.model_),
+      operators_(make_observation_operators(model_)) {
+  prepare(basis, relative.forward_.get());
+}
+
+void RecordingFit::prepare(const BasisOptions& basis, const ForwardModel* relative) {
+  recording_.checkpoint();  // what follows may take longer than a frame
+  model_.drive(recording_.first_stamp, recording_.loads);
+  BasisOptions whole = basis;
+  whole.steps_per_frame = kSteps;
+  forward_ = make_forward_model(model_, whole, relative);
+  const std::vector<int> nodes = observed_nodes(operators_, recording_.frames);
+  forward_->restrict_output_to(nodes);
+  if (!model_.nonlinear() || basis.nonlinear != BasisOptions::Nonlinear::in_full) return;
+  BasisOptions quick = basis;
+  const auto& parts = model_.parts();
+  const bool steered = std::any_of(parts.begin(), parts.end(), [&](const Model::Part& part) {
+    return adds_extra_force(part) && model_.estimated(part);
+  });
+  quick.nonlinear = steered ? BasisOptions::Nonlinear::first_order : BasisOptions::Nonlinear::left_out;
+  quick_ = make_forward_model(model_, quick, relative);
+  quick_->restrict_output_to(nodes);
+}
+
+BasisOptions RecordingFit::keeping_root() {
+  BasisOptions basis;
+  basis.keep_root = true;
+  return basis;
+}
+
+void RecordingFit::borrow(const RecordingFit& base) {
+  if (!base.anchored_ || !quick_) return;
+  anchored_ = std::make_unique<CorrectedSurrogate>(*forward_, *quick_);
+  anchored_->move_as(*base.anchored_);
+}
+
+FitProblem RecordingFit::problem(const ForwardModel& forward, const std::vector<Frame>& frames) const {
+  const RunStart start{recording_.first_stamp + model_.settings().time.start};
+  return {model_, forward, operators_, frames, start, recording_.checkpoint};
+}
+
+RecordingFit::Rows RecordingFit::rows(const Eigen::VectorXd& w) const {
+  const FitProblem all = problem(quick(), recording_.frames);
+  std::vector<Prediction> predictions;
+  Rows out;
+  out.offsets.push_back(0);
+  run_freely(all, w, [&](const Frame& frame, const Eigen::VectorXd& theta, const Eigen::Ref<const Eigen::VectorXd>& u) {
+    predictions.push_back(predict_frame(model_, operators_, frame, theta, u));
+    out.offsets.push_back(out.offsets.back() + predictions.back().measured.size());
+  });
+  for (Eigen::VectorXd* v : {&out.error, &out.predicted, &out.used, &out.sigma})
+    *v = Eigen::VectorXd::Zero(out.offsets.back());
+  out.nodes = Eigen::VectorXi::Zero(out.offsets.back());
+  for (std::size_t k = 0; k < predictions.size(); ++k) {
+    const Prediction& p = predictions[k];
+    const Eigen::VectorXd weight = row_weights(p);
+    for (Eigen::Index i = 0; i < p.measured.size(); ++i) {
+      const Eigen::Index row = out.offsets[k] + i;
+      if (!(weight[i] > 0.0) || !std::isfinite(p.sigma[i])) continue;
+      out.sigma[row] = p.sigma[i];
+      out.nodes[row] = p.nodes[i];
+      out.used[row] = std::sqrt(weight[i]);
+      out.predicted[row] = p.predicted[i] / p.sigma[i];
+      out.error[row] = out.used[row] * (p.measured[i] - p.predicted[i]) / p.sigma[i];
+    }
+  }
+  return out;
+}
+
+Eigen::VectorXd RecordingFit::predicted(const Eigen::VectorXd& w) const {
+  std::vector<double> out;
+  run_freely(problem(quick(), recording_.frames), w,
+             [&](const Frame& frame, const Eigen::VectorXd& theta, const Eigen::Ref<const Eigen::VectorXd>& u) {
+               const Prediction p = predict_frame(model_, operators_, frame, theta, u);
+               for (Eigen::Index i = 0; i < p.predicted.size(); ++i) {
+                 const double row = p.predicted[i] / p.sigma[i];
+                 out.push_back(std::isfinite(row) ? row : 0.0);
+               }
+             });
+  return Eigen::Map<const Eigen::VectorXd>(out.data(), static_cast<Eigen::Index>(out.size()));
+}
+
+void RecordingFit::show(const Eigen::VectorXd& w, const FreeFrameVisitor& visit) {
+  forward_->restrict_output_to({});
+  const FitProblem all = problem(*forward_, recording_.frames);
+  free_run({model_, *forward_, operators_, all.frames, all.start}, model_.theta(w), [&](const FreeFrame& frame) {
+    recording_.checkpoint();
+    visit(frame);
+  });
+}
+
+Eigen::MatrixXd RecordingFit::rows_along(const Eigen::VectorXd& w, const Eigen::MatrixXd& shapes, const Rows& rows) const {
+  const FitProblem all = problem(quick(), recording_.frames);
+  const Eigen::VectorXd theta = model_.theta(w);
+  const auto run = quick().begin(theta, all.start);
+  Eigen::MatrixXd out(rows.error.size(), shapes.cols());
+  for (std::size_t k = 0; k < all.frames.size(); ++k) {
+    recording_.checkpoint();
+    run->advance(all.frames[k].time);
+    const Eigen::VectorXd u = run->displacement();
+    const Prediction there = predict_frame(model_, operators_, all.frames[k], theta, u);
+    out.middleRows(rows.offsets[k], rows.offsets[k + 1] - rows.offsets[k]) =
+        predict_along(model_, operators_, all.frames[k], theta, u, there, shapes);
+  }
+  for (Eigen::Index r = 0; r < out.rows(); ++r) {
+    if (rows.used[r] > 0.0 && out.row(r).allFinite()) {
+      out.row(r) *= rows.used[r] / rows.sigma[r];
+    } else {
+      out.row(r).setZero();
+    }
+  }
+  return out;
+}
+
+std::shared_ptr<const ReducedModel> RecordingFit::reduced() const {
+  if (auto linear = std::dynamic_pointer_cast<const ReducedModel>(forward_)) return linear;
+  BasisOptions options;
+  options.nonlinear = BasisOptions::Nonlinear::left_out;
+  return std::make_shared<ReducedModel>(model_, options);
+}
+
+BatchFit RecordingFit::fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread) const {
+  return quick_ ? fit_from_run_to_run(start, spread) : quick_fit(start, spread);
+}
+
+const std::vector<Frame>& RecordingFit::first_of_training(double share, std::vector<Frame>& room) const {
+  if (share >= 1.0) return training_;
+  const auto count = static_cast<std::ptrdiff_t>(std::ceil(share * static_cast<double>(training_.size())));
+  room.assign(training_.begin(), training_.begin() + count);
+  return room;
+}
+
+BatchFit RecordingFit::quick_fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread, double share,
+                                 double rival) const {
+  std::vector<Frame> room;
+  const std::vector<Frame>& frames = first_of_training(share, room);
+  return fit_batch(problem(quick(), frames), start, spread, rival);
+}
+
+// Every full run tells by how much quick runs are off there. A fit with that correction tells where the next full run has
+// to be.
+BatchFit RecordingFit::fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd spread) const {
+  const double start = problem(*forward_, training_).start.time;
+  std::vector<double> times;
+  for (const Frame& frame : recording_.frames) times.push_back(frame.time);
+  const auto run = [&](const Eigen::VectorXd& w) {
+    auto runs = std::make_unique<CorrectedSurrogate>(*forward_, *quick_);
+    runs->anchor(model_.theta(w), start, times, recording_.checkpoint);
+    return runs;
+  };
+  anchored_ = run(at);
+  double cost = free_fit(problem(*anchored_, training_), at).cost;
+  BatchFit fit;
+  for (int k = 0; k < kMostRuns; ++k) {
+    fit = fit_batch(problem(*anchored_, training_), at, spread);
+    const Eigen::VectorXd std = fit.covariance.diagonal().cwiseSqrt();
+    Eigen::VectorXd move = fit.w - at;
+    const bool settled = (move.array().abs() < kSettled * std.array()).all();
+    if (settled || cost - fit.cost < kWorthwhile * cost) break;
+    double gain = 0.0;
+    for (int cut = 0; cut < kMostCuts && !(gain > 0.0); ++cut, move *= 0.3) {
+      auto there = run(at + move);
+      const double now = free_fit(problem(*there, training_), at + move).cost;
+      gain = cost - now;
+      if (!(gain > 0.0)) continue;
+      there->follow(*anchored_, (model_.theta(at + model_.prior_std()) - model_.theta(at)).cwiseAbs());
+      at += move;
+      cost = now;
+      anchored_ = std::move(there);
+    }
+    if (!(gain > kGain * cost)) break;
+    spread = spread.cwiseMin(kNarrower * std);
+  }
+  fit.w = at;
+  return fit;
+}
+
+Eigen::VectorXd RecordingFit::scan(const Eigen::VectorXd& start) const {
+  const FitProblem train = problem(quick(), training_);
+  return scan_coordinates([&](const Eigen::VectorXd& w) { return free_fit(train, w).cost; }, start, model_.prior_mean(),
+                          model_.prior_std(), kScanPoints)
+      .best;
+}
+
+RecordingFit::Place RecordingFit::scan_near(const Eigen::VectorXd& start, const std::vector<Eigen::Index>& coordinates,
+                                            double share) const {
+  std::vector<Frame> room;
+  const std::vector<Frame>& frames = first_of_training(share, room);
+  const FitProblem train = problem(quick(), frames);
+  const auto cost = [&](const Eigen::VectorXd& w) { return free_fit(train, w).cost; };
+  const ScanResult nearest = scan_around(cost, start, model_.prior_std(), coordinates);
+  return {nearest.best, nearest.lowest};
+}
+
+std::vector<Eigen::Index> RecordingFit::shared_with(const RecordingFit& base) const {
+  std::vector<Eigen::Index> shared;
+  for (std::size_t i = 0; i < model_.free_parameters().size(); ++i) {
+    if (base.index(model_.free_parameters()[i].name) >= 0) shared.push_back(static_cast<Eigen::Index>(i));
+  }
+  return shared;
+}
+
+std::vector<Eigen::Index> RecordingFit::tuning_shared_with(const RecordingFit& base) const {
+  const Eigen::VectorXd w = model_.prior_mean(), std = model_.prior_std();
+  std::vector<Eigen::Index> tuning;
+  for (const Eigen::Index i : shared_with(base)) {
+    if (!model_.same_answer(model_.theta(w), model_.theta(w + std[i] * Eigen::VectorXd::Unit(w.size(), i))))
+      tuning.push_back(i);
+  }
+  return tuning;
+}
+
+Eigen::VectorXd RecordingFit::extend(const RecordingFit& base, const Eigen::VectorXd& w) const {
+  Eigen::VectorXd out = model_.prior_mean();
+  for (const Eigen::Index i : shared_with(base)) {
+    out[i] = w[base.index(model_.free_parameters()[static_cast<std::size_t>(i)].name)];
+  }
+  return out;
+}
+
+Eigen::VectorXd RecordingFit::spread_beyond(const RecordingFit& base) const {
+  const Eigen::VectorXd prior = model_.prior_std();
+  Eigen::VectorXd spread = kAddedSpread * prior;
+  for (const Eigen::Index i : shared_with(base)) spread[i] = kBaseSpread * prior[i];
+  return spread;
+}
+
+Eigen::Index RecordingFit::index(const std::string& parameter) const {
+  const auto& free = model_.free_parameters();
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    if (free[i].name == parameter) return static_cast<Eigen::Index>(i);
+  }
+  return -1;
+}
+
+FittedModel fit_recording(std::unique_ptr<RecordingFit> recording_fit, const Eigen::VectorXd& start, double spread) {
+  FittedModel out;
+  out.fit = recording_fit->fit(start, spread * recording_fit->model().prior_std());
+  out.rows = recording_fit->rows(out.fit.w);
+  out.recording_fit = std::move(recording_fit);
+  return out;
+}
+
+Eigen::VectorXd motion_of(const RecordingFit::Rows& rows) {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(rows.predicted.size());
+  const Eigen::Index first = rows.offsets[1];
+  for (std::size_t k = 0; k + 1 < rows.offsets.size(); ++k) {
+    const Eigen::Index from = rows.offsets[k], size = rows.offsets[k + 1] - from;
+    if (size == first) out.segment(from, size) = rows.predicted.segment(from, size) - rows.predicted.head(first);
+  }
+  return out;
+}
+
+double structured_squares(const RecordingFit::Rows& rows) {
+  return std::max(0.0, rows.error.squaredNorm() - rows.count());
+}
+
+double rms_error(const RecordingFit::Rows& rows, const Recording& recording, bool held_out) {
+  double sum = 0.0, count = 0.0;
+  for (std::size_t k = 0; k < recording.frames.size(); ++k) {
+    if (recording.held_out(k) != held_out) continue;
+    for (Eigen::Index r = rows.offsets[k]; r < rows.offsets[k + 1]; ++r) {
+      sum += std::pow(rows.sigma[r] * rows.error[r], 2);
+      count += rows.used[r] > 0.0 ? 1.0 : 0.0;
+    }
+  }
+  return std::sqrt(sum / count);
+}
+
+double noise_floor(const RecordingFit::Rows& rows) {
+  return std::sqrt(rows.sigma.squaredNorm() / rows.count());
+}
+
+}  // namespace tissue_stiffness

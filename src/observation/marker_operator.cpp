@@ -1,0 +1,120 @@
+// Markers may stand off the surface. Each is carried by the facet nearest to it at rest, as if by a rigid pin.
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <limits>
+
+#include "tissue_stiffness/observation/closest_point.hpp"
+#include "tissue_stiffness/observation/observation_operator.hpp"
+#include "tissue_stiffness/types/error.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+struct Attachment {
+  int tet;
+  Eigen::VectorXd shape;      ///< shape functions of the tetrahedron at the foot point
+  Eigen::Matrix3Xd gradient;  ///< their gradients there [1/m]
+  Eigen::Vector3d foot;       ///< on the rest surface [m]
+  Eigen::Vector3d pin;        ///< from the foot to the marker at rest [m]
+  int node;                   ///< nearest mesh node
+};
+
+class MarkerOperator : public ObservationOperator {
+ public:
+  MarkerOperator(const Model& model, const ObservationSettings& settings)
+      : mesh_(model.mesh()), topic_(settings.topic), noise_(settings.noise), finite_(model.nonlinear()) {
+    for (Eigen::Index i = 0; i < settings.rest.cols(); ++i) attachments_.push_back(attach(settings.rest.col(i)));
+  }
+
+  void check(const Observation& observation) const override {
+    for (Eigen::Index i = 0; i < observation.ids.size(); ++i) {
+      if (observation.ids[i] < 0 || observation.ids[i] >= static_cast<int>(attachments_.size())) {
+        throw InputError(topic_, "marker " + std::to_string(observation.ids[i]),
+                         "0 to " + std::to_string(attachments_.size() - 1) + " (rows of `rest`)");
+      }
+    }
+  }
+
+  Prediction predict(const Observation& observation, const Eigen::Ref<const Eigen::VectorXd>& u) const override {
+    const Eigen::Index n = observation.ids.size();
+    Prediction p;
+    p.measured = Eigen::Map<const Eigen::VectorXd>(observation.points.data(), 3 * n);
+    p.predicted.resize(3 * n);
+    p.sigma = Eigen::VectorXd::Constant(3 * n, noise_);
+    p.places.resize(3, 3 * n);
+    p.nodes.resize(3 * n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Attachment& a = attachments_[static_cast<std::size_t>(observation.ids[i])];
+      p.predicted.segment<3>(3 * i) = carried(a, u);
+      p.places.middleCols<3>(3 * i) = observation.points.col(i).replicate<1, 3>();
+      p.nodes.segment<3>(3 * i).setConstant(a.node);
+    }
+    return p;
+  }
+
+  std::vector<int> nodes(const Observation& observation) const override {
+    std::vector<int> list;
+    for (Eigen::Index i = 0; i < observation.ids.size(); ++i) {
+      const auto tet = mesh_.tets.col(attachments_[static_cast<std::size_t>(observation.ids[i])].tet);
+      list.insert(list.end(), tet.data(), tet.data() + tet.size());
+    }
+    return list;
+  }
+
+ private:
+  Attachment attach(const Eigen::Vector3d& marker) const {
+    SurfacePoint best = closest_surface_point(mesh_, marker);
+    Attachment a;
+    a.tet = mesh_.facet_tet[best.facet];
+    a.foot = best.point;
+    a.pin = marker - best.point;
+    // The foot is expressed in the tetrahedron's own coordinates, which its straight corners define.
+    Eigen::Matrix3d edges;
+    const Eigen::Vector3d origin = mesh_.nodes.col(mesh_.tets(0, a.tet));
+    for (int i = 0; i < 3; ++i) edges.col(i) = mesh_.nodes.col(mesh_.tets(i + 1, a.tet)) - origin;
+    const Eigen::Vector3d rst = edges.inverse() * (best.point - origin);
+    const int n = static_cast<int>(mesh_.tets.rows());
+    a.shape = tet_shape(n, rst);
+    const Eigen::MatrixXd derivative = tet_shape_derivative(n, rst);
+    Eigen::Matrix3Xd x(3, n);
+    for (int k = 0; k < n; ++k) x.col(k) = mesh_.nodes.col(mesh_.tets(k, a.tet));
+    a.gradient = (derivative * x.transpose()).inverse() * derivative;
+    Eigen::Index nearest = 0;
+    (x.colwise() - marker).colwise().squaredNorm().minCoeff(&nearest);
+    a.node = mesh_.tets(nearest, a.tet);
+    return a;
+  }
+
+  // Returns the displaced foot + R pin. For small strain the rotation is linear, R = I + skew(grad u).
+  Eigen::Vector3d carried(const Attachment& a, const Eigen::Ref<const Eigen::VectorXd>& u) const {
+    Eigen::Vector3d displacement = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d gradient = Eigen::Matrix3d::Zero();
+    for (Eigen::Index k = 0; k < a.shape.size(); ++k) {
+      const Eigen::Vector3d uk = u.segment<3>(3 * mesh_.tets(k, a.tet));
+      displacement += a.shape[k] * uk;
+      gradient += uk * a.gradient.col(k).transpose();
+    }
+    Eigen::Matrix3d turn = 0.5 * (gradient - gradient.transpose()) + Eigen::Matrix3d::Identity();
+    if (finite_) {
+      const Eigen::JacobiSVD<Eigen::Matrix3d> svd(Eigen::Matrix3d::Identity() + gradient,
+                                                  Eigen::ComputeFullU | Eigen::ComputeFullV);
+      turn = svd.matrixU() * svd.matrixV().transpose();
+    }
+    return a.foot + displacement + turn * a.pin;
+  }
+
+  const TetMesh& mesh_;
+  std::string topic_;
+  double noise_;
+  bool finite_;
+  std::vector<Attachment> attachments_;
+};
+
+}  // namespace
+
+std::unique_ptr<ObservationOperator> make_marker_operator(const Model& model, const ObservationSettings& settings) {
+  return std::make_unique<MarkerOperator>(model, settings);
+}
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,75 @@
+// These tests cover what the mesh is blamed for, and what the tangents say.
+#include "tissue_stiffness/diagnosis/screening.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "../box_model.hpp"
+#include "tissue_stiffness/settings/extend_model.hpp"
+#include "verification/experiment.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr double kNoise = 1e-4;
+
+class BarWithADamping : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::vector<std::string> effects{
+        "inertia: {density: 1000}",
+        "elasticity: {law: linear, poisson_ratio: 0.45, young_modulus: {prior: 20.0e3, factor: 3}}",
+        "fixed: {region: clamp}", "gravity: {acceleration: [0.5, 1, -3]}"};
+    given_ = box_settings(effects);
+    effects.push_back("viscous_damping: {beta: 6.0e-3}");
+    const Experiment experiment(box_settings(effects), bar_mesh(), {20e3});
+    recording_.frames = see_all(experiment, experiment.film(0.0, 0.02, 40), kNoise, 1);
+    base_.recording_fit = std::make_unique<RecordingFit>(given_, bar_mesh(), recording_);
+    const Model& model = base_.recording_fit->model();
+    base_.fit = base_.recording_fit->fit(model.prior_mean(), 0.1 * model.prior_std());
+    base_.rows = base_.recording_fit->rows(base_.fit.w);
+  }
+
+  ModelSettings given_;
+  Recording recording_;
+  FittedModel base_;
+};
+
+// Amplitudes of tangents are counted from where the effect is absent: a scale is 1 there.
+TEST_F(BarWithADamping, CountsAmplitudesFromWhereAnEffectIsAbsent) {
+  const Screening look(base_, {});
+  std::map<std::string, double> absent;
+  for (const Candidate& candidate : look.candidates) absent[candidate.effect] = candidate.absent;
+  EXPECT_EQ(absent.at("image_scale"), 1.0);
+  EXPECT_EQ(absent.at("viscous_damping"), 0.0);
+}
+
+// What an earlier round's models hold, they also hold once one of its effects has been added.
+TEST_F(BarWithADamping, ReadsTangentsInTheVectorsOfAnEarlierLook) {
+  const Screening first(base_, {});
+  ModelSettings damped = given_;
+  add_effect(damped, "viscous_damping: {beta: {prior: 5.0e-3, factor: 2}}");
+  FittedModel next;
+  next.recording_fit = std::make_unique<RecordingFit>(damped, *base_.recording_fit);
+  const Model& model = next.recording_fit->model();
+  next.fit = next.recording_fit->fit(model.prior_mean(), 0.1 * model.prior_std());
+  next.rows = next.recording_fit->rows(next.fit.w);
+  const Screening alone(next, {}),
+      after(next, {}, {first.finer.recording_fit, nullptr, first.library, SearchDepth::tangents});
+  ASSERT_EQ(alone.candidates.size(), after.candidates.size());
+  double worst = 0.0;
+  for (std::size_t c = 0; c < alone.candidates.size(); ++c) {
+    const Eigen::MatrixXd &a = alone.candidates[c].tangent.columns, &b = after.candidates[c].tangent.columns;
+    EXPECT_NE(a, b) << alone.candidates[c].effect;
+    worst = std::max(worst, (a - b).norm() / a.norm());
+  }
+  std::printf("tangents in an earlier look's vectors: off by %.1e at most\n", worst);
+  EXPECT_LT(worst, 0.02);
+}
+
+}  // namespace
+}  // namespace tissue_stiffness
