@@ -51,7 +51,7 @@ NEARLY = {'two_branches': {'viscoelasticity', 'viscous_damping', 'mass_damping'}
 
 
 def like(effect):
-    """The effect and its twins."""
+    """The effect, and those that these recordings cannot tell from it."""
     return {effect}.union(*(group for group in TWINS if effect in group))
 
 

@@ -41,7 +41,7 @@ MODULUS = 'elasticity.young_modulus'
 TIME_LIMIT = 600  # s a run
 VISIBLE = 1.15    # held-out error over a clean recording's: there is something to find
 EVERY = 8  # draws there come one of each of these, numbered from here on:
-PUSHES, LONG_STEPS = 10000, 20000  # pushes that nobody recorded, which no effect of the library is; truths in long time steps
+PUSHES, LONG_STEPS = 10000, 20000  # unrecorded loads, which no effect of the library is; truths in long time steps
 EVERY_ORGAN, FIRST_ORGAN = 2, 30000  # draws there comes one of a block or a ventricle
 MOST_TRIALS = 5   # of a strength
 STRONGEST = 10.0
@@ -188,7 +188,7 @@ def tasks(arguments):
 
 
 def like(hidden):
-    """The effect and its twins."""
+    """The effect, and those that these recordings cannot tell from it."""
     return {hidden}.union(*(group for group in TWINS if hidden in group))
 
 
@@ -216,7 +216,7 @@ def tables(rows):
         cells += [share([value(row) for row in seen if row['misfit'] == m]) for m in MISFITS]
         lines.append('| %s | %s |' % (name, ' | '.join(cells)))
     line('the hidden effect is in the set', lambda row: row['hidden'] in row['set'])
-    line('it or a twin is first', lambda row: bool(row['set']) and row['set'][0] in like(row['hidden']))
+    line('it or its equivalent is first', lambda row: bool(row['set']) and row['set'][0] in like(row['hidden']))
     line('it is first', lambda row: row['set'][:1] == [row['hidden']])
     line('it is first or second', lambda row: row['hidden'] in row['set'][:2])
     line('E within 3 % after adding', lambda row: abs(row['modulus_error']) < 0.03)
@@ -225,8 +225,8 @@ def tables(rows):
     silent = [(row['hidden'], row['verdict'] != 'missing') for row in absent if row['number'] in leaves]
     lines += ['', '* false alarms on clean recordings: ' + share([row['verdict'] == 'missing' for row in clean]),
               '* abstention when the effect is not in the library: ' + share([no for _, no in silent]),
-              '  * a push that nobody recorded: ' + share([no for what, no in silent if what == 'push']),
-              '  * an effect that was taken out of the library, with its twins: ' +
+              '  * an unrecorded load: ' + share([no for what, no in silent if what == 'push']),
+              '  * an effect that was taken out of the library, with its equivalents: ' +
               share([no for what, no in silent if what != 'push']),
               '* p-values below 5 %% on clean recordings: %s' % share([p < 0.05 for row in clean for p in row['p_values']]),
               '* held-out error over noise after adding: median %.3f' % (ratios[len(ratios) // 2] if ratios else float('nan')),
