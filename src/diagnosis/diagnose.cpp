@@ -209,7 +209,7 @@ class Search {
       if (refits.empty()) break;
       const Library library = add(refits.front());
       bool moved = false;
-      finding_ = grown_ ? std::move(*grown_) : examine(model_, after_adding(library, SearchDepth::tangents), moved);
+      finding_ = grown_ ? std::move(*grown_) : examine(model_, after_adding(library), moved);
       grown_.reset();
       if (moved) replace_step();
       out_.final_verdict = finding_.verdict;
@@ -237,15 +237,15 @@ class Search {
   bool lacks_something() const { return finding_.verdict == Verdict::missing || finding_.verdict == Verdict::unexplained; }
 
   // Returns what a round on a model with one more effect takes over.
-  PreviousRound after_adding(const Library& library, SearchDepth search) const {
-    return {finding_.previous.finer, finding_.models, library, search};
+  PreviousRound after_adding(const Library& library) const {
+    return {finding_.previous.finer, finding_.models, library, true};
   }
 
   // Repeats rounds until the model fits nowhere better. `moved` says that it does not stay where it was.
   Finding examine(
       FittedModel& model, const PreviousRound& previous, bool& moved,
       const CandidatesSoFar& so_far = [](std::vector<MissingEffect>) {}) {
-    const int most = previous.search == SearchDepth::all ? kMostBases : 1;
+    const int most = previous.tangents_only ? 1 : kMostBases;
     Finding out = diagnose_once(model, {}, options_, previous, so_far);
     moved = out.base_moved;
     for (int k = 1; out.to_repeat; ++k) {
@@ -268,8 +268,7 @@ class Search {
       auto next = std::make_shared<FittedModel>(extended(model_, leader));
       const bool same = same_body(model_.recording_fit->model(), next->recording_fit->model());
       bool moved = false;
-      const SearchDepth depth = i == 0 ? SearchDepth::initial_segment : SearchDepth::tangents;
-      Finding deeper = examine(*next, after_adding(same ? finding_.previous.library : Library(), depth), moved);
+      Finding deeper = examine(*next, after_adding(same ? finding_.previous.library : Library()), moved);
       leader.model = next;
       if (deeper.models->noise_variance() < finding_.models->noise_variance()) finding_.models = deeper.models;
       Comparison all = finding_.comparison;

@@ -106,7 +106,7 @@ Finding diagnose_once(FittedModel& base, const std::vector<std::string>& wanted,
   out.believe(refits.compare());
   out.refits = refits.take();
   out.discretisation_error = screening.discretisation_error;
-  out.previous = {screening.finer.recording_fit, out.models, screening.library, screening.search};
+  out.previous = {screening.finer.recording_fit, out.models, screening.library, screening.tangents_only};
   out.base_moved = refits.base_moved();
   return out;
 }

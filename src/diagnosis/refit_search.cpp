@@ -26,11 +26,10 @@ class Search {
     }
     refit_from_tangents();
     if (!screening_.settled && refits_.move_to_better_base()) return verdict() == Verdict::unexplained;
-    if (!wide()) return false;
-    const bool all = screening_.search == SearchDepth::all;
-    if (all && !explained()) refit_other_variants();
-    if (screening_.search != SearchDepth::tangents && !explained()) refit_from_initial_segment();
-    if (all && !explained()) refit_other_kinds();
+    if (screening_.tangents_only || !wide()) return false;
+    if (!explained()) refit_other_variants();
+    if (!explained()) refit_from_initial_segment();
+    if (!explained()) refit_other_kinds();
     return false;
   }
 
@@ -45,8 +44,7 @@ class Search {
   /// Returns whether something is to be explained that tangents may not show. What a model that already has an effect
   /// leaves is small once it passes its test, and tangents are taken at the right place.
   bool wide() const {
-    return screening_.search == SearchDepth::all ? screening_.given.test.discrepancy() > 0.0
-                                                 : !screening_.given.test.passes();
+    return screening_.tangents_only ? !screening_.given.test.passes() : screening_.given.test.discrepancy() > 0.0;
   }
   Verdict verdict() const { return judge(refits_.compare()); }
   bool explained() const { return verdict() == Verdict::missing; }

@@ -31,7 +31,7 @@ Eigen::VectorXd mesh_change(const FittedModel& base, const FinerMesh& finer) {
 Screening::Screening(FittedModel& fitted, const DiagnosisOptions& options, PreviousRound previous)
     : base(fitted),
       cost(fitted.rows.error.squaredNorm()),
-      search(previous.search),
+      tangents_only(previous.tangents_only),
       settled(previous.settled),
       library(std::move(previous.library)),
       explained(compared_residual(base)),

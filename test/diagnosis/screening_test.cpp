@@ -58,8 +58,7 @@ TEST_F(BarWithADamping, ReadsTangentsInTheVectorsOfAnEarlierLook) {
   const Model& model = next.recording_fit->model();
   next.fit = next.recording_fit->fit(model.prior_mean(), 0.1 * model.prior_std());
   next.rows = next.recording_fit->rows(next.fit.w);
-  const Screening alone(next, {}),
-      after(next, {}, {first.finer.recording_fit, nullptr, first.library, SearchDepth::tangents});
+  const Screening alone(next, {}), after(next, {}, {first.finer.recording_fit, nullptr, first.library, true});
   ASSERT_EQ(alone.candidates.size(), after.candidates.size());
   double worst = 0.0;
   for (std::size_t c = 0; c < alone.candidates.size(); ++c) {

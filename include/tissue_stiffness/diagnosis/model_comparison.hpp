@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "tissue_stiffness/estimation/misfit_test.hpp"
-#include "tissue_stiffness/types/diagnosis.hpp"
 #include "tissue_stiffness/fit/recording_fit.hpp"
+#include "tissue_stiffness/types/diagnosis.hpp"
 
 namespace tissue_stiffness {
 

@@ -11,17 +11,13 @@
 
 namespace tissue_stiffness {
 
-/// The depth says how far a round searches for what its base lacks. It goes as far as all stages do. Where the base has an
-/// effect that an earlier round found, it searches from tangents and the initial segment, or from tangents alone.
-enum class SearchDepth { all, initial_segment, tangents };
-
 /// This is what an earlier round on this recording has found out.
 struct PreviousRound {
   std::shared_ptr<const RecordingFit> finer = nullptr;      ///< the model on a finer mesh; null: none yet
   std::shared_ptr<const ModelComparison> models = nullptr;  ///< their noise is known; null: none yet
   Library library = {};                                     ///< see find_candidates
-  SearchDepth search = SearchDepth::all;
-  bool settled = false;  ///< the model keeps its fit, even where another would be better
+  bool tangents_only = false;  ///< the model has an effect that was found: refits from tangents are the only search
+  bool settled = false;        ///< the model keeps its fit, even where another would be better
 };
 
 /// A screening shows what a fitted model's error tells before anything is refitted: the library, ranked by its tangents,
@@ -33,9 +29,8 @@ struct Screening {
   void move_base(const BatchFit& fit);
 
   FittedModel& base;
-  double cost;               ///< sum of squared errors [sigma^2]
-  const SearchDepth search;  ///< see PreviousRound; passed on to the next one
-  const bool settled;
+  double cost;                        ///< sum of squared errors [sigma^2]
+  const bool tangents_only, settled;  ///< see PreviousRound
   std::vector<Candidate> candidates;  ///< their tangents are whitened
   Library library;                    ///< of models that the tangents were read from
   Eigen::VectorXd error;              ///< of the base, whitened
