@@ -65,12 +65,14 @@ void Search::refit_wanted(const std::vector<std::string>& wanted) {
   refits_.add(list);
 }
 
-// Refits every effect where something is to be explained, else those whose tangents speak for them. The first one goes
-// alone: what falls behind it need not be fitted to the end.
+// Refits every effect where something is to be explained. Elsewhere a tangent has to speak for some effect; then all that
+// tangents hardly tell from it are refitted. The first one goes alone: what falls behind it need not be fitted to the end.
 void Search::refit_from_tangents() {
   std::vector<RefitTask> first, others;
+  const double most = screening_.ranked.empty() ? 0.0 : screening_.ranked.front().evidence;
+  const double least = most > kComparison.worthwhile ? most - 2.0 * kComparison.worthwhile : most + 1.0;
   for (const Ranked& r : screening_.ranked) {
-    if (!worth_full_runs(r) || (!wide() && r.evidence < 0.0)) continue;
+    if (!worth_full_runs(r) || (!wide() && r.evidence < least)) continue;
     (first.empty() ? first : others).push_back({r.best, r.score.amplitude});
   }
   refits_.add(first);
