@@ -43,15 +43,15 @@ std::string probabilities(const Diagnosis& d) {
 std::string traces(const Diagnosis& d) {
   std::string list;
   for (const RivalExplanation& trace : d.traces) {
-    if (trace.probability < kTraced) continue;
-    list += (list.empty() ? "" : ", ") + effect_title(trace.effect) + " (" +
-            std::to_string(std::lround(100.0 * trace.probability)) + " %";
+    std::string changes;
     for (const auto& [name, ratio] : trace.modulus_ratio) {
       const long percent = std::lround(100.0 * std::abs(ratio - 1.0));
       if (percent > 0)
-        list += ", " + name + " " + std::to_string(percent) + " % " + (ratio > 1.0 ? "higher" : "lower") + " with it";
+        changes += ", " + name + " " + std::to_string(percent) + " % " + (ratio > 1.0 ? "higher" : "lower") + " with it";
     }
-    list += ")";
+    if (trace.probability < kTraced || changes.empty()) continue;
+    list += (list.empty() ? "" : ", ") + effect_title(trace.effect) + " (" +
+            std::to_string(std::lround(100.0 * trace.probability)) + " %" + changes + ")";
   }
   if (list.empty()) return "";
   return " These may act without being missed: " + list + ". The interval of Young's modulus allows for them.";
