@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "tissue_stiffness/observation/closest_point.hpp"
+#include "tissue_stiffness/observation/named_points.hpp"
 #include "tissue_stiffness/observation/observation_operator.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
@@ -37,17 +38,10 @@ class MarkerOperator : public ObservationOperator {
   }
 
   Prediction predict(const Observation& observation, const Eigen::Ref<const Eigen::VectorXd>& u) const override {
-    const Eigen::Index n = observation.ids.size();
-    Prediction p;
-    p.measured = Eigen::Map<const Eigen::VectorXd>(observation.points.data(), 3 * n);
-    p.predicted.resize(3 * n);
-    p.sigma = Eigen::VectorXd::Constant(3 * n, noise_);
-    p.places.resize(3, 3 * n);
-    p.nodes.resize(3 * n);
-    for (Eigen::Index i = 0; i < n; ++i) {
+    Prediction p = predict_named_points(observation, noise_);
+    for (Eigen::Index i = 0; i < observation.ids.size(); ++i) {
       const Attachment& a = attachments_[static_cast<std::size_t>(observation.ids[i])];
       p.predicted.segment<3>(3 * i) = carried(a, u);
-      p.places.middleCols<3>(3 * i) = observation.points.col(i).replicate<1, 3>();
       p.nodes.segment<3>(3 * i).setConstant(a.node);
     }
     return p;

@@ -1,4 +1,5 @@
 // This sensor tracks mesh vertices: h = X + u.
+#include "tissue_stiffness/observation/named_points.hpp"
 #include "tissue_stiffness/observation/observation_operator.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
@@ -20,17 +21,10 @@ class VertexOperator : public ObservationOperator {
   }
 
   Prediction predict(const Observation& observation, const Eigen::Ref<const Eigen::VectorXd>& u) const override {
-    const Eigen::Index n = observation.ids.size();
-    Prediction p;
-    p.measured = Eigen::Map<const Eigen::VectorXd>(observation.points.data(), 3 * n);
-    p.predicted.resize(3 * n);
-    p.sigma = Eigen::VectorXd::Constant(3 * n, noise_);
-    p.places.resize(3, 3 * n);
-    p.nodes.resize(3 * n);
-    for (Eigen::Index i = 0; i < n; ++i) {
+    Prediction p = predict_named_points(observation, noise_);
+    for (Eigen::Index i = 0; i < observation.ids.size(); ++i) {
       const int node = observation.ids[i];
       p.predicted.segment<3>(3 * i) = mesh_.nodes.col(node) + u.segment<3>(3 * node);
-      p.places.middleCols<3>(3 * i) = observation.points.col(i).replicate<1, 3>();
       p.nodes.segment<3>(3 * i).setConstant(node);
     }
     return p;
