@@ -99,10 +99,23 @@ std::vector<ParameterSpec> FibreField::angles() {
 
 std::vector<FibreField::Trial> FibreField::trials(const TetMesh& mesh) {
   const Eigen::Vector3d axis = principal_axis(mesh).direction;
-  std::vector<Trial> list{{"circumferential", 0.0}, {"longitudinal", 0.0}, {"radial", 0.0}};
-  for (const double angle : {-M_PI / 4.0, M_PI / 4.0}) list.push_back({"circumferential", angle});
+  std::vector<Trial> list{{"circumferential", 0.0, false}, {"longitudinal", 0.0, false}, {"radial", 0.0, false}};
+  for (const double angle : {-M_PI / 4.0, M_PI / 4.0}) list.push_back({"circumferential", angle, false});
   for (int i = 0; i < 3; ++i) {
-    if (std::abs(axis[i]) < 0.95) list.push_back({Eigen::Vector3d(Eigen::Vector3d::Unit(i)), 0.0});
+    if (std::abs(axis[i]) < 0.95) list.push_back({Eigen::Vector3d(Eigen::Vector3d::Unit(i)), 0.0, true});
+  }
+  return list;
+}
+
+std::vector<FibreField::Trial> FibreField::oblique_trials() {
+  std::vector<Trial> list;
+  for (const double x : {0.0, 1.0}) {
+    for (const double y : {-1.0, 0.0, 1.0}) {
+      for (const double z : {-1.0, 0.0, 1.0}) {
+        const bool first = x > 0.0 || y > 0.0;  // the opposite direction is the same fibre
+        if (first && std::abs(x) + std::abs(y) + std::abs(z) > 1.5) list.push_back({Eigen::Vector3d(x, y, z), 0.0, true});
+      }
+    }
   }
   return list;
 }

@@ -40,19 +40,27 @@ class FibreReinforcement : public Effect {
   FibreField fibres_;
 };
 
+constexpr double kTurn = 0.3;  // [rad] prior standard deviation of both angles
+
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.holds("fibre_reinforcement")) return {};
   const double scale = 0.5 * context.young_modulus;
   std::vector<Proposal> list;
-  for (const FibreField::Trial& trial : FibreField::trials(context.mesh)) {
-    const auto with = [&trial](const Argument& angle, const Quantity& modulus) {
-      return EffectEntry{"fibre_reinforcement", {{"direction", trial.direction}, {"angle", angle}, {"modulus", modulus}}};
+  const auto add = [&](const FibreField::Trial& trial) {
+    const auto with = [&trial](const Argument& angle, const Argument& tilt, const Quantity& modulus) {
+      EffectEntry entry{"fibre_reinforcement", {{"direction", trial.direction}, {"angle", angle}}};
+      if (trial.straight) entry.arguments.emplace_back("tilt", tilt);
+      entry.arguments.emplace_back("modulus", modulus);
+      return entry;
     };
-    list.push_back({with(trial.angle, normal_prior(0.0, scale)),
-                    "modulus",
-                    with(normal_prior(trial.angle, 0.3), log_normal_prior(scale, 3.0)),
-                    {"direction"}});
-  }
+    Proposal proposal{with(trial.angle, 0.0, normal_prior(0.0, scale)), "modulus",
+                      with(normal_prior(trial.angle, kTurn), normal_prior(0.0, kTurn), log_normal_prior(scale, 3.0))};
+    // Tangents choose between straight directions, because a fit turns them.
+    if (!trial.straight) proposal.kind_keys = {"direction"};
+    list.push_back(std::move(proposal));
+  };
+  for (const FibreField::Trial& trial : FibreField::trials(context.mesh)) add(trial);
+  for (const FibreField::Trial& trial : FibreField::oblique_trials()) add(trial);
   return list;
 }
 

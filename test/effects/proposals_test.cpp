@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <map>
+#include <random>
 
 #include "../box_model.hpp"
+#include "tissue_stiffness/effects/fibre_field.hpp"
 #include "tissue_stiffness/effects/registry.hpp"
 #include "tissue_stiffness/forward/full_model.hpp"
 
@@ -158,17 +160,38 @@ TEST(Proposals, KnowTheirOtherKinds) {
     const auto list = proposals_of(effect, base);
     EXPECT_EQ(other_kinds(list), static_cast<std::ptrdiff_t>(list.size()) - 1) << effect;
   }
-  // Along x, the bar's length: circumferential, longitudinal, radial, y and z without an angle, and circumferential with
-  // two.
+  // Along x, the bar's length: circumferential, longitudinal and radial without an angle, circumferential with two, y, z
+  // and ten oblique directions.
   const auto fibres = proposals_of("fibre_reinforcement", base);
   EXPECT_EQ(fibres.front().kind(), "circumferential");
-  EXPECT_EQ(fibres.back().kind(), "[0, 0, 1]");
-  EXPECT_EQ(fibres.size(), 7U);
-  EXPECT_EQ(other_kinds(fibres), 4);
+  EXPECT_EQ(fibres.back().kind(), "");
+  EXPECT_EQ(fibres.size(), 17U);
+  EXPECT_EQ(other_kinds(fibres), 2);
   // The same rhythm in the other directions.
   EXPECT_EQ(other_kinds(proposals_of("active_contraction", base)), 3);
   for (const std::string effect : {"viscoelasticity", "stiff_inclusion", "rigid_drift"}) {
     EXPECT_EQ(other_kinds(proposals_of(effect, base)), 0) << effect;
+  }
+}
+
+TEST(Proposals, CoverTheHalfSphereWithStraightFibres) {
+  const TetMesh mesh = bar_mesh(2);
+  std::vector<Eigen::Vector3d> directions{Eigen::Vector3d::UnitX()};  // longitudinal
+  for (const FibreField::Trial& trial : FibreField::trials(mesh)) {
+    if (trial.straight) directions.push_back(std::get<Eigen::Vector3d>(trial.direction.content));
+  }
+  for (const FibreField::Trial& trial : FibreField::oblique_trials()) {
+    ASSERT_TRUE(trial.straight);
+    directions.push_back(std::get<Eigen::Vector3d>(trial.direction.content).normalized());
+  }
+  EXPECT_EQ(directions.size(), 13U);
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  for (int k = 0; k < 2000; ++k) {
+    const Eigen::Vector3d any = Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized();
+    double nearest = 0.0;
+    for (const Eigen::Vector3d& d : directions) nearest = std::max(nearest, std::abs(d.dot(any)));
+    EXPECT_GT(nearest, std::cos(27.6 * M_PI / 180.0)) << any.transpose();
   }
 }
 

@@ -36,8 +36,13 @@ class FibreField {
   struct Trial {
     Argument direction;
     double angle;
+    bool straight;  ///< alike everywhere: a fit may turn it by `angle` and `tilt`
   };
+  /// Returns directions about the body's axis, two helices, and the coordinate axes that are not the body's axis.
   static std::vector<Trial> trials(const TetMesh& mesh);
+  /// Returns the straight directions halfway between two or three coordinate axes. With these axes they cover the half
+  /// sphere, and no direction is further than 28 degrees from one of them.
+  static std::vector<Trial> oblique_trials();
 
  private:
   enum class Kind { fixed, circumferential, longitudinal, radial };
