@@ -100,17 +100,18 @@ Refit refit_with(const FittedModel& base, const RefitTask& task, double rival) {
   model->recording_fit = std::make_unique<RecordingFit>(settings, known);
   const RecordingFit& recording_fit = *model->recording_fit;
   model->recording_fit->borrow(known);
-  if (recording_fit.model().nonlinear()) rival = no_rival;  // quick runs are off
+  const double quick_rival = recording_fit.model().nonlinear() ? no_rival : rival;  // quick runs are off
   std::string reason;
   std::optional<Start> start =
-      task.warm_started ? grown(recording_fit, start_of(recording_fit, task.scanned), rival)
-                        : quick_start(recording_fit, known, starts(recording_fit, known, base.fit.w, task), rival, reason);
+      task.warm_started
+          ? grown(recording_fit, start_of(recording_fit, task.scanned), quick_rival)
+          : quick_start(recording_fit, known, starts(recording_fit, known, base.fit.w, task), quick_rival, reason);
   if (!start) throw NumericalError(task.effect() + " cannot be refitted: " + reason);
   RecordingFit::Rows& rows = model->rows = recording_fit.rows(start->fit.w);
   const double gain = base.rows.error.squaredNorm() - rows.error.squaredNorm();
   const bool only_quick = known.model().nonlinear() && gain < kComparison.promising * structured_squares(base.rows);
   if (recording_fit.model().nonlinear() && !only_quick) {
-    start->fit = recording_fit.fit(start->fit.w, start->spread);
+    start->fit = recording_fit.fit(start->fit.w, start->spread, rival);
     rows = recording_fit.rows(start->fit.w);  // the last full run was at just this place
   }
   model->fit = start->fit;

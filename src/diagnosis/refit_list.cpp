@@ -56,8 +56,11 @@ void RefitList::add(std::vector<RefitTask> list) {
     if (r.candidate->linear) rival = std::min(rival, kReach * r.fitted);
   }
   // The longest fits go first, because the last one to end keeps only one core busy.
-  std::vector<std::pair<std::ptrdiff_t, RefitTask>> trials;
-  for (RefitTask& task : list) trials.emplace_back(parameters_of(*task.candidate), std::move(task));
+  std::vector<std::pair<std::pair<bool, std::ptrdiff_t>, RefitTask>> trials;
+  for (RefitTask& task : list) {
+    const Candidate& candidate = *task.candidate;
+    trials.emplace_back(std::make_pair(!candidate.linear, parameters_of(candidate)), std::move(task));
+  }
   std::stable_sort(trials.begin(), trials.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<std::optional<Refit>> done(trials.size());
   try {

@@ -170,8 +170,8 @@ std::shared_ptr<const ReducedModel> RecordingFit::reduced() const {
   return std::make_shared<ReducedModel>(model_, options);
 }
 
-BatchFit RecordingFit::fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread) const {
-  return quick_ ? fit_from_run_to_run(start, spread) : quick_fit(start, spread);
+BatchFit RecordingFit::fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread, double rival) const {
+  return quick_ ? fit_from_run_to_run(start, spread, rival) : quick_fit(start, spread, 1.0, rival);
 }
 
 const std::vector<Frame>& RecordingFit::first_of_training(double share, std::vector<Frame>& room) const {
@@ -190,7 +190,7 @@ BatchFit RecordingFit::quick_fit(const Eigen::VectorXd& start, const Eigen::Vect
 
 // Every full run tells by how much quick runs are off there. A fit with that correction tells where the next full run has
 // to be.
-BatchFit RecordingFit::fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd spread) const {
+BatchFit RecordingFit::fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd spread, double rival) const {
   const double start = problem(*forward_, training_).start.time;
   std::vector<double> times;
   for (const Frame& frame : recording_.frames) times.push_back(frame.time);
@@ -207,7 +207,7 @@ BatchFit RecordingFit::fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd s
     const Eigen::VectorXd std = fit.covariance.diagonal().cwiseSqrt();
     Eigen::VectorXd move = fit.w - at;
     const bool settled = (move.array().abs() < kSettled * std.array()).all();
-    if (settled || cost - fit.cost < kWorthwhile * cost) break;
+    if (settled || cost - fit.cost < kWorthwhile * cost || fit.cost > rival) break;
     double gain = 0.0;
     for (int cut = 0; cut < kMostCuts && !(gain > 0.0); ++cut, move *= 0.3) {
       auto there = run(at + move);
