@@ -241,6 +241,11 @@ class Search {
     return {finding_.previous.finer, finding_.models, library, true};
   }
 
+  // Returns the library of tangents that a round on `next` may take over.
+  Library library_for(const FittedModel& next) const {
+    return same_body(model_.recording_fit->model(), next.recording_fit->model()) ? finding_.previous.library : Library();
+  }
+
   // Repeats rounds until the model fits nowhere better. `moved` says that it does not stay where it was.
   Finding examine(
       FittedModel& model, const PreviousRound& previous, bool& moved,
@@ -266,9 +271,8 @@ class Search {
       if (!(cost - leader.cost > kComparison.promising * structured)) continue;
       options_.progress("what is missing beside " + leader.effect, 0, 0);
       auto next = std::make_shared<FittedModel>(extended(model_, leader));
-      const bool same = same_body(model_.recording_fit->model(), next->recording_fit->model());
       bool moved = false;
-      Finding deeper = examine(*next, after_adding(same ? finding_.previous.library : Library()), moved);
+      Finding deeper = examine(*next, after_adding(library_for(*next)), moved);
       leader.model = next;
       if (deeper.models->noise_variance() < finding_.models->noise_variance()) finding_.models = deeper.models;
       Comparison all = finding_.comparison;
@@ -308,9 +312,7 @@ class Search {
     // What is found beside another effect was compared beside that one only.
     out_.rivals.push_back(grown_ ? std::vector<RivalExplanation>() : rivals_of(finding_, best));
     FittedModel next = extended(model_, best);
-    Library library = same_body(model_.recording_fit->model(), next.recording_fit->model())
-                          ? std::move(finding_.previous.library)
-                          : Library();
+    Library library = library_for(next);
     out_.final_effects.push_back(best.effect);
     entries_.push_back(best.entry);
     out_.entries.push_back(to_yaml(best.entry));

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "tissue_stiffness/diagnosis/diagnose.hpp"
-#include "tissue_stiffness/diagnosis/model_comparison.hpp"
+#include "tissue_stiffness/diagnosis/hypotheses.hpp"
 #include "tissue_stiffness/diagnosis/refit.hpp"
 #include "tissue_stiffness/diagnosis/screening.hpp"
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "tissue_stiffness/diagnosis/hypotheses.hpp"
 #include "tissue_stiffness/diagnosis/refit.hpp"
 #include "tissue_stiffness/diagnosis/screening.hpp"
 

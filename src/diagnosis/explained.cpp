@@ -1,0 +1,93 @@
+#include "tissue_stiffness/diagnosis/explained.hpp"
+
+#include <Eigen/Cholesky>
+
+#include "tissue_stiffness/diagnosis/candidates.hpp"
+#include "tissue_stiffness/diagnosis/comparison_numbers.hpp"
+#include "tissue_stiffness/settings/extend_model.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr double kSteps[] = {1.0, 4.0};  // squared steps that are tried, over their prior's standard deviation
+constexpr double kSpread = 0.05;         // prior standard deviations, of the fit that starts where the linearisation leads
+
+// Returns the most probable unknowns of a linear model and its deviance there, with the noise as stated.
+Eigen::VectorXd most_probable(const Linearisation& model, const Eigen::VectorXd& error, Eigen::Index unknowns,
+                              double& deviance) {
+  const auto j = model.columns.leftCols(unknowns);
+  const Eigen::VectorXd mean = model.prior.head(unknowns);
+  const Eigen::MatrixXd precision = Eigen::MatrixXd::Identity(unknowns, unknowns) + j.transpose() * j;
+  Eigen::VectorXd u = precision.ldlt().solve(j.transpose() * error + mean);
+  deviance = (error - j * u).squaredNorm() + (u - mean).squaredNorm();
+  return u;
+}
+
+}  // namespace
+
+double log_root_weights(const RecordingFit::Rows& rows) {
+  return (rows.used.array() > 0.0).select(rows.used.array().log(), 0.0).sum();
+}
+
+std::vector<std::string> added_amplitudes(const RecordingFit& recording_fit, const RecordingFit& smaller) {
+  std::vector<std::string> out;
+  for (const FreeParameter& p : recording_fit.model().free_parameters()) {
+    if (p.prior.kind == Quantity::Kind::normal && smaller.index(p.name) < 0) out.push_back(p.name);
+  }
+  return out;
+}
+
+Linearisation linearise_model(const FittedModel& fitted, const std::vector<std::string>& amplitudes) {
+  const RecordingFit& recording_fit = *fitted.recording_fit;
+  const Model& model = recording_fit.model();
+  const Eigen::VectorXd& w = fitted.fit.w;
+  const Eigen::VectorXd prior = model.prior_std();
+  // Each tangent is read as far as its parameter is known while the others are held: no tangent reaches far along what they
+  // can compensate.
+  const Eigen::VectorXd known = fitted.fit.covariance.inverse().diagonal().cwiseInverse().cwiseSqrt();
+  const Eigen::MatrixXd own = base_tangents(recording_fit, w, known, fitted.rows);
+  const Eigen::MatrixXd steps = tangents_of_time_steps(recording_fit, w, fitted.rows);
+  Linearisation out;
+  out.columns.resize(own.rows(), own.cols() + steps.cols());
+  out.columns << own * prior.asDiagonal(), steps;
+  out.prior = Eigen::VectorXd::Zero(out.columns.cols());
+  out.prior.head(w.size()) = (model.prior_mean() - w).cwiseQuotient(prior);
+  out.parameters = w.size();
+  for (const std::string& name : amplitudes) out.amplitudes.push_back(recording_fit.index(name));
+  out.log_root_weights = log_root_weights(fitted.rows);
+  return out;
+}
+
+Explained compared_residual(const FittedModel& fitted, const std::vector<std::string>& amplitudes, bool far) {
+  Explained out{fitted.rows.error, linearise_model(fitted, amplitudes)};
+  const RecordingFit& recording_fit = *fitted.recording_fit;
+  const Eigen::Index all = out.linearisation.columns.cols(), own = out.linearisation.parameters;
+  if (recording_fit.model().nonlinear() || all == own) return out;
+  double with = 0.0, without = 0.0;
+  most_probable(out.linearisation, out.error, own, without);
+  const Eigen::VectorXd u = most_probable(out.linearisation, out.error, all, with);
+  const bool linear = without - with > 2.0 * kComparison.worthwhile && u[own] > 0.0;
+  if (!linear && !far) return out;
+  FittedModel joint;
+  joint.recording_fit = std::make_unique<RecordingFit>(
+      extend_model(recording_fit.model().settings(), entries_of_time_steps(recording_fit, fitted.fit.w)), recording_fit);
+  const RecordingFit& stepped_study = *joint.recording_fit;
+  const Eigen::VectorXd at = stepped_study.extend(recording_fit, fitted.fit.w), prior = stepped_study.model().prior_std();
+  const Eigen::VectorXd near = kSpread * prior;
+  if (linear) joint.fit = stepped_study.quick_fit(at + prior.cwiseProduct(u), near);
+  // Long steps lead a body that rings into another minimum, which no tangent shows.
+  const std::vector<Eigen::Index> tuning = stepped_study.tuning_shared_with(recording_fit);
+  for (const double length : kSteps) {
+    if (!far) break;
+    Eigen::VectorXd start = at;
+    start.tail(all - own) = length * prior.tail(all - own);
+    const BatchFit fit =
+        stepped_study.quick_fit(stepped_study.scan_near(start, tuning).w, stepped_study.spread_beyond(recording_fit));
+    if (joint.fit.w.size() == 0 || fit.cost < joint.fit.cost) joint.fit = fit;
+  }
+  joint.rows = stepped_study.rows(joint.fit.w);
+  if (joint.rows.error.squaredNorm() > out.error.squaredNorm()) return out;
+  return {joint.rows.error, linearise_model(joint, amplitudes)};
+}
+
+}  // namespace tissue_stiffness

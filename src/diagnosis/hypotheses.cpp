@@ -1,0 +1,143 @@
+#include "tissue_stiffness/diagnosis/hypotheses.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "tissue_stiffness/diagnosis/missing_force.hpp"
+#include "tissue_stiffness/diagnosis/scores.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+void find_probabilities_of(std::vector<Hypothesis>& hypotheses) {
+  double most = -std::numeric_limits<double>::infinity(), sum = 0.0;
+  for (const Hypothesis& h : hypotheses) most = std::max(most, h.log_weight);
+  for (Hypothesis& h : hypotheses) sum += h.probability = std::exp(h.log_weight - most);
+  for (Hypothesis& h : hypotheses) h.probability /= sum;
+}
+
+}  // namespace
+
+bool Hypothesis::holds(const std::string& effect) const {
+  return std::find(effects.begin(), effects.end(), effect) != effects.end();
+}
+
+bool Hypothesis::superfluous_beside(const Hypothesis& other) const {
+  const bool all = std::all_of(other.effects.begin(), other.effects.end(), [this](const auto& e) { return holds(e); });
+  return all && !other.structured && (effects.size() > other.effects.size() || random_force);
+}
+
+void Hypothesis::weigh(const Assessment& assessment, const ModelComparison& models) {
+  log_weight = assessment.log_evidence + log_prior;
+  if (random_force) log_weight += log_evidence_gained(*random_force, assessment, models);
+  z = assessment.test.z();
+  passes = !random_force && assessment.test.passes();
+  structured = random_force || assessment.test.discrepancy() > 0.0;
+}
+
+const Hypothesis& Comparison::best() const {
+  return *std::max_element(hypotheses.begin(), hypotheses.end(),
+                           [](const Hypothesis& a, const Hypothesis& b) { return a.probability < b.probability; });
+}
+
+double Comparison::none_of_these() const {
+  double sum = 0.0;
+  for (const Hypothesis& h : hypotheses) sum += h.random_force ? h.probability : 0.0;
+  return sum;
+}
+
+double Comparison::probability_of(const std::string& effect) const {
+  double sum = 0.0;
+  for (const Hypothesis& h : hypotheses) sum += h.holds(effect) && !h.random_force ? h.probability : 0.0;
+  return sum;
+}
+
+std::vector<Trace> Comparison::traces() const {
+  const Hypothesis& plain = best();
+  std::vector<Hypothesis> weighed{plain};
+  std::vector<Trace> out;
+  for (const Hypothesis& h : hypotheses) {
+    if (h.random_force || !h.superfluous_beside(plain)) continue;
+    out.push_back({&h, 0.0});
+    weighed.push_back(h);
+  }
+  find_probabilities_of(weighed);
+  const double sum = 1.0 - weighed.front().probability, together = std::min(sum, kComparison.most_traces);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i].share = sum > 0.0 ? together * weighed[i + 1].probability / sum : 0.0;
+  return out;
+}
+
+void Comparison::find_probabilities() {
+  constexpr double none = -std::numeric_limits<double>::infinity();
+  for (Hypothesis& h : hypotheses) {
+    const auto enough = [&h](const Hypothesis& other) { return h.superfluous_beside(other); };
+    h.superfluous = std::any_of(hypotheses.begin(), hypotheses.end(), enough);
+  }
+  std::vector<Hypothesis> weighed = hypotheses;
+  for (Hypothesis& h : weighed) {
+    if (h.superfluous) h.log_weight = none;
+  }
+  const Hypothesis* best = &weighed.front();
+  for (const Hypothesis& h : weighed) {
+    if (!h.random_force && h.log_weight > best->log_weight) best = &h;
+  }
+  const double model = best->log_weight - best->log_prior, more = log_bayes_factor_bound(best->z);
+  for (Hypothesis& h : weighed) {
+    if (h.random_force && h.log_weight > none && h.effects == best->effects)
+      h.log_weight = std::max(h.log_weight, model + h.log_prior + more);
+  }
+  find_probabilities_of(weighed);
+  for (std::size_t i = 0; i < weighed.size(); ++i) hypotheses[i].probability = weighed[i].probability;
+}
+
+void Comparison::assess(const ModelComparison& models) {
+  tbb::parallel_for(std::size_t{0}, hypotheses.size(), [&](std::size_t i) {
+    const Assessment assessment = models.assess(*hypotheses[i].explained);
+    hypotheses[i].weigh(assessment, models);
+  });
+  find_probabilities();
+}
+
+void Comparison::merge(const std::vector<std::string>& effects, const Comparison& deeper) {
+  const auto same = [&](const Hypothesis& h) { return h.effects == effects; };
+  const double prior = std::find_if(hypotheses.begin(), hypotheses.end(), same)->log_prior;
+  hypotheses.erase(std::remove_if(hypotheses.begin(), hypotheses.end(), same), hypotheses.end());
+  for (Hypothesis h : deeper.hypotheses) {
+    h.effects.insert(h.effects.begin(), effects.begin(), effects.end());
+    h.log_prior += prior;
+    hypotheses.push_back(std::move(h));
+  }
+}
+
+Verdict judge(const Comparison& c) {
+  const Hypothesis& given = c.given();
+  if (given.probability > 1.0 - kComparison.believed)
+    return given.passes ? (c.passes_without_mesh ? Verdict::adequate : Verdict::numerics) : Verdict::unexplained;
+  const Hypothesis& best = c.best();
+  return !best.effects.empty() && !best.random_force && best.passes ? Verdict::missing : Verdict::unexplained;
+}
+
+std::vector<std::string> believed_effects(const Comparison& comparison) {
+  std::vector<Hypothesis> named;
+  for (const Hypothesis& h : comparison.hypotheses) {
+    if (!h.effects.empty() && !h.superfluous) named.push_back(h);
+  }
+  find_probabilities_of(named);
+  std::stable_sort(named.begin(), named.end(),
+                   [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
+  std::vector<std::string> out;
+  double held = 0.0;
+  for (const Hypothesis& h : named) {
+    if (held > kComparison.believed) break;
+    held += h.probability;
+    for (const std::string& effect : h.effects) {
+      if (std::find(out.begin(), out.end(), effect) == out.end()) out.push_back(effect);
+    }
+  }
+  return out;
+}
+
+}  // namespace tissue_stiffness
