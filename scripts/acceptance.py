@@ -11,7 +11,7 @@ import yaml
 import live_run
 
 MODULUS = 'elasticity.young_modulus'
-STAGES = ('segment', 'predict', 'observe', 'update', 'revisit', 'mesh error')
+STAGES = ('segment', 'predict', 'observe', 'update', 'reprocess', 'studies')
 TIME_LIMIT = 1800  # s a recording
 
 # folder, |E - truth| [%], allowed E [Pa], rms_error within [%] of the noise

@@ -141,7 +141,7 @@ def measure(model, recording, nodelets):
         return text.split()[0] if text else '-'
     return ['nodelets' if nodelets else 'nodes', f'{times[len(times) // 2]:.1f}', f'{times[int(0.99 * (len(times) - 1))]:.1f}',
             f'{len(times)} of {count}', stages.get('frames dropped', '-')] + [
-                mean(stage) for stage in ('segment', 'predict', 'observe', 'update', 'revisit')]
+                mean(stage) for stage in ('segment', 'predict', 'observe', 'update', 'reprocess')]
 
 
 def main():
@@ -156,7 +156,7 @@ def main():
         recording = read_bag(bag)
         rows = [measure(model, recording, nodelets) for nodelets in (False, True)]
     text = measure_performance.table(
-        ['chain', 'median [ms]', 'p99 [ms]', 'answered', 'dropped', 'segment', 'predict', 'observe', 'update', 'revisit'], rows)
+        ['chain', 'median [ms]', 'p99 [ms]', 'answered', 'dropped', 'segment', 'predict', 'observe', 'update', 'reprocess'], rows)
     print(text)
     measure_performance.write(arguments.output or os.path.join(arguments.root, 'doc', 'performance.md'), {'latency': text})
 

@@ -7,7 +7,7 @@ import subprocess
 import sys
 import time
 
-STEP = 5.0  # s between looks
+STEP = 5.0  # s between samples
 
 
 def processes(launch):

@@ -26,7 +26,7 @@ STARTS = (0.5, 0.7, 1.5, 2.0)  # prior over truth
 MEMORY, MISSTATED, FEW, OUTLIER = 0.6, 1.5, 12, 12.0  # the last in standard deviations of the noise
 
 # Groups whose members explain the same recording; to name one for another is honest.
-TWINS = [
+EQUIVALENTS = [
     {'viscous_damping', 'mass_damping', 'viscoelasticity'},     # one mode that rings tells one loss, not where it rises
     {'density_error', 'force_scale'},                           # exact: mass times r, with E, is the load over r
     {'elastic_support', 'foundation', 'stiff_inclusion'},       # each makes a body softer or firmer at its clamp
@@ -52,7 +52,7 @@ NEARLY = {'two_branches': {'viscoelasticity', 'viscous_damping', 'mass_damping'}
 
 def like(effect):
     """The effect, and those that these recordings cannot tell from it."""
-    return {effect}.union(*(group for group in TWINS if effect in group))
+    return {effect}.union(*(group for group in EQUIVALENTS if effect in group))
 
 
 def fits(kind, scene):

@@ -278,8 +278,8 @@ class Simulator:
             out.append(to_surface @ body.u.x.array.reshape(-1, 3))
             if 'shake' in extra:
                 s = extra['shake']
-                way = 0.5 * s['size'] * (1 - np.cos(2 * np.pi * s['freq'] * body.t))
-                out[-1] = out[-1] + way * np.array(s['direction'])
+                shift = 0.5 * s['size'] * (1 - np.cos(2 * np.pi * s['freq'] * body.t))
+                out[-1] = out[-1] + shift * np.array(s['direction'])
         return np.array(out), getattr(body, 'patch_area', 0.0)
 
 

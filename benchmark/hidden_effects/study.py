@@ -20,7 +20,7 @@ from scenes import STEP, TRIAL_STEP, scenes, step_of
 DURATION = 1.6    # s
 TOPIC = '/tissue/markers'
 MISFITS = (0.03, 0.1, 0.3)   # of the motion
-TWINS = [{'viscous_damping', 'mass_damping', 'viscoelasticity'}, {'density_error', 'force_scale', 'image_scale', 'added_mass'},
+EQUIVALENTS = [{'viscous_damping', 'mass_damping', 'viscoelasticity'}, {'density_error', 'force_scale', 'image_scale', 'added_mass'},
          {'fibre_reinforcement', 'stiff_inclusion'},
          {'elastic_support', 'stiff_inclusion'}]  # what is soft beside the clamp, and what is soft there
 HIDDEN = {
@@ -189,7 +189,7 @@ def tasks(arguments):
 
 def like(hidden):
     """The effect, and those that these recordings cannot tell from it."""
-    return {hidden}.union(*(group for group in TWINS if hidden in group))
+    return {hidden}.union(*(group for group in EQUIVALENTS if hidden in group))
 
 
 def share(values):

@@ -100,7 +100,7 @@ def hidden(bench, times, frames):
     cushion = [{'elastic_support': {'region': 'base', 'compliance': CUSHION}}]
     slow = [{'viscoelasticity': {'gamma': 0.3, 'tau': 0.08}}]
     cases = [('nothing', 'nothing', bench.model(), bench.bag('nothing', times, frames)),
-             ('support', 'the base gives way', bench.model(), bench.bag('support', *bench.truth('support', cushion))),
+             ('support', 'the base is compliant', bench.model(), bench.bag('support', *bench.truth('support', cushion))),
              ('relaxing', 'the muscle relaxes (viscoelasticity)', bench.model(),
               bench.bag('relaxing', *bench.truth('relaxing', slow))),
              ('late', 'the recording starts in mid-beat, at speed', bench.model(onset=begun), late),

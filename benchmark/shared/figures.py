@@ -1,4 +1,4 @@
-"""Figures of one look."""
+"""The common style of all figures."""
 import matplotlib
 
 matplotlib.use('Agg')

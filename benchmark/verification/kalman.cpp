@@ -67,9 +67,9 @@ class RandomModels {
                       std::abs(root_update.nis - exact.nis) / (1.0 + exact.nis)});
       likelihood = std::max(likelihood, std::abs(update.log_likelihood - root_update.log_likelihood) / (1.0 + exact.nis));
     }
-    look(paper, exact, parameters);
-    look(root, exact, parameters);
-    look(simplex, exact, parameters);
+    compare(paper, exact, parameters);
+    compare(root, exact, parameters);
+    compare(simplex, exact, parameters);
   }
 
   /// 300 predictions and measurements of a state of l numbers.
@@ -87,7 +87,7 @@ class RandomModels {
       exact.update(y, h, r);
       filter.predict([&](const Eigen::MatrixXd& x) -> Eigen::MatrixXd { return a * x; }, q_root);
       filter.update(y, h * filter.sigma_points(), Noise::independent(sigma));
-      look(filter, exact, state);
+      compare(filter, exact, state);
     }
   }
 
@@ -95,7 +95,7 @@ class RandomModels {
 
  private:
   template <typename Filter>
-  static void look(const Filter& filter, const KalmanFilter& exact, double& worst) {
+  static void compare(const Filter& filter, const KalmanFilter& exact, double& worst) {
     const double mean = (filter.mean() - exact.mean).cwiseAbs().maxCoeff();
     const double covariance = (filter.covariance() - exact.covariance).cwiseAbs().maxCoeff();
     worst = std::max({worst, mean, covariance});

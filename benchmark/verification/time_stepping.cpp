@@ -49,9 +49,9 @@ double drift(ElasticBody& body, double acceleration, double step) {
 
 Eigen::VectorXd run(ElasticBody& body, double radius, double duration, int steps) {
   DynamicState state = released(body, 3.0);
-  GeneralizedAlpha newmark(body, radius, 1e-13);
-  newmark.initialise(state);
-  for (int k = 0; k < steps; ++k) newmark.step(state, duration / steps);
+  GeneralizedAlpha stepper(body, radius, 1e-13);
+  stepper.initialise(state);
+  for (int k = 0; k < steps; ++k) stepper.step(state, duration / steps);
   return state.displacement;
 }
 

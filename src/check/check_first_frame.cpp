@@ -67,7 +67,7 @@ Cloud make_cloud(const ObservationSettings& settings, const TetMesh& mesh, const
 }
 
 /// Returns the root mean square distance between points that both observations have [m]; 0 without identities.
-double way(const Observation& a, const Observation& b) {
+double rms_distance(const Observation& a, const Observation& b) {
   double sum = 0.0, count = 0.0;
   for (Eigen::Index i = 0; i < std::min(a.ids.size(), b.ids.size()); ++i) {
     if (a.ids[i] != b.ids[i]) continue;
@@ -82,7 +82,7 @@ double motion_since_rest(const FirstFrames& frames, const Observation& seen) {
   const double interval = frames.second->time - frames.first.time;
   for (const Observation& next : frames.second->observations) {
     if (next.source != seen.source || !(interval > 0.0)) continue;
-    return way(seen, next) * std::max(1.0, (frames.first.time - frames.rest_time) / interval);
+    return rms_distance(seen, next) * std::max(1.0, (frames.first.time - frames.rest_time) / interval);
   }
   return 0.0;
 }

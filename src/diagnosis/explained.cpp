@@ -71,21 +71,20 @@ Explained compared_residual(const FittedModel& fitted, const std::vector<std::st
   FittedModel joint;
   joint.recording_fit = std::make_unique<RecordingFit>(
       extend_model(recording_fit.model().settings(), entries_of_time_steps(recording_fit, fitted.fit.w)), recording_fit);
-  const RecordingFit& stepped_study = *joint.recording_fit;
-  const Eigen::VectorXd at = stepped_study.extend(recording_fit, fitted.fit.w), prior = stepped_study.model().prior_std();
+  const RecordingFit& stepped = *joint.recording_fit;
+  const Eigen::VectorXd at = stepped.extend(recording_fit, fitted.fit.w), prior = stepped.model().prior_std();
   const Eigen::VectorXd near = kSpread * prior;
-  if (linear) joint.fit = stepped_study.quick_fit(at + prior.cwiseProduct(u), near);
+  if (linear) joint.fit = stepped.quick_fit(at + prior.cwiseProduct(u), near);
   // Long steps lead a body that rings into another minimum, which no tangent shows.
-  const std::vector<Eigen::Index> tuning = stepped_study.tuning_shared_with(recording_fit);
+  const std::vector<Eigen::Index> tuning = stepped.tuning_shared_with(recording_fit);
   for (const double length : kSteps) {
     if (!far) break;
     Eigen::VectorXd start = at;
     start.tail(all - own) = length * prior.tail(all - own);
-    const BatchFit fit =
-        stepped_study.quick_fit(stepped_study.scan_near(start, tuning).w, stepped_study.spread_beyond(recording_fit));
+    const BatchFit fit = stepped.quick_fit(stepped.scan_near(start, tuning).w, stepped.spread_beyond(recording_fit));
     if (joint.fit.w.size() == 0 || fit.cost < joint.fit.cost) joint.fit = fit;
   }
-  joint.rows = stepped_study.rows(joint.fit.w);
+  joint.rows = stepped.rows(joint.fit.w);
   if (joint.rows.error.squaredNorm() > out.error.squaredNorm()) return out;
   return {joint.rows.error, linearise_model(joint, amplitudes)};
 }

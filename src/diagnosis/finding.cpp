@@ -11,7 +11,7 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kTwin = 0.9;  // cosine above which two effects are indistinguishable
+constexpr double kConfusable = 0.9;  // cosine above which two effects are indistinguishable
 
 void require_proposed(const Screening& screening, const std::vector<std::string>& wanted) {
   for (const std::string& effect : wanted) {
@@ -69,7 +69,7 @@ std::vector<MissingEffect> describe_candidate(const Screening& screening, const 
     for (const Ranked& other : screening.ranked) {
       if (same(other)) continue;
       const double cosine = own.cosine_with(other.score);
-      if (cosine > kTwin) effect.confusable_with.push_back({other.effect, cosine});
+      if (cosine > kConfusable) effect.confusable_with.push_back({other.effect, cosine});
     }
   }
   return out;

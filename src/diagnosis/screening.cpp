@@ -12,7 +12,7 @@ namespace {
 
 // Returns the effects that are not searched for. What a simulation puts into its recording is no missing physics, unless it
 // is asked for.
-std::vector<std::string> not_looked_for(const DiagnosisOptions& options) {
+std::vector<std::string> left_out_effects(const DiagnosisOptions& options) {
   std::vector<std::string> out = options.ignore;
   for (const EffectSpec& spec : effect_specs()) {
     if (spec.of_simulation && std::count(options.add.begin(), options.add.end(), spec.name) == 0) out.push_back(spec.name);
@@ -44,7 +44,7 @@ Screening::Screening(FittedModel& fitted, const DiagnosisOptions& options, Previ
   run_side_by_side(
       [&] {
         candidates = find_candidates(
-            *base.recording_fit, base.fit.w, not_looked_for(options),
+            *base.recording_fit, base.fit.w, left_out_effects(options),
             [&](std::size_t done, std::size_t total) { options.progress(step, done, total); }, library);
       },
       [&] { finer = finer_mesh(base, previous.finer.get()); });

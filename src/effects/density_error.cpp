@@ -25,7 +25,7 @@ EffectSpec density_error_spec() {
   spec.name = "density_error";
   spec.summary = "every mass of the model is off by the same share";
   spec.formula = "(1 + r) M";
-  spec.source = "systematic error of the density; E's twin where gravity or inertia are the only forces";
+  spec.source = "systematic error of the density; equivalent to a change of E where gravity or inertia are the only forces";
   spec.parameters = {{"relative", "r", "-", -0.99, 100.0, ParameterSpec::Default::required, 0.0, 0.0, 1}};
   spec.proposals = propose;
   return spec;

@@ -57,7 +57,7 @@ std::vector<Proposal> propose(const ProposalContext& context) {
 EffectSpec elastic_support_spec() {
   EffectSpec spec;
   spec.name = "elastic_support";
-  spec.summary = "a clamp that gives way: the region of a `fixed` effect rests on springs; rigid at compliance 0";
+  spec.summary = "a compliant clamp: the region of a `fixed` effect rests on springs; rigid at compliance 0";
   spec.formula = "-1/c int N_a N_b dA u_b on the region, instead of u = 0";
   spec.source = "Robin condition; an elastic layer of thickness h and modulus E has c = h / E";
   spec.parameters = {{"compliance", "c", "m^3/N", 0.0, 1.0, ParameterSpec::Default::required, 0.0, 0.0, 1}};

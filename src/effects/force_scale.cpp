@@ -26,7 +26,7 @@ EffectSpec force_scale_spec() {
   spec.name = "force_scale";
   spec.summary = "every measured load (pressure, traction) is off by the same share";
   spec.formula = "(1 + r) f(t)";
-  spec.source = "systematic error of a load's sensor; E's twin where no other force acts";
+  spec.source = "systematic error of a load's sensor; equivalent to a change of E where no other force acts";
   spec.parameters = {{"relative", "r", "-", -10.0, 100.0, ParameterSpec::Default::required, 0.0, 0.0, 1}};
   spec.proposals = propose;
   return spec;

@@ -8,8 +8,8 @@
 
 namespace tissue_stiffness {
 
-BackgroundReprocessing::BackgroundReprocessing(const IteratedFilter& track, std::vector<Frame> frames, Task task)
-    : frames_(std::move(frames)), outcome_{track.clone_unstarted(), std::move(task)} {
+BackgroundReprocessing::BackgroundReprocessing(const IteratedFilter& filter, std::vector<Frame> frames, Task task)
+    : frames_(std::move(frames)), outcome_{filter.clone_unstarted(), std::move(task)} {
   work_ = at_low_priority([this] { run(); });
 }
 
@@ -28,22 +28,22 @@ std::vector<Frame> BackgroundReprocessing::arrived() {
   return std::exchange(later_, {});
 }
 
-BackgroundReprocessing::Outcome BackgroundReprocessing::reprocess(std::unique_ptr<IteratedFilter> twin,
+BackgroundReprocessing::Outcome BackgroundReprocessing::reprocess(std::unique_ptr<IteratedFilter> unstarted,
                                                                   const std::vector<Frame>& frames, Task task,
                                                                   const IteratedFilter::Checkpoint& checkpoint) {
-  Outcome out{std::move(twin), std::move(task)};
+  Outcome out{std::move(unstarted), std::move(task)};
   std::unique_ptr<IteratedFilter> next;
   if (out.task.roll > 0) {
     out.first = out.task.roll;
-    next = out.track->rolled(frames, out.first, checkpoint);
+    next = out.filter->rolled(frames, out.first, checkpoint);
   } else if (out.task.change) {
-    next = out.track->changed(frames, *out.task.change, checkpoint, out.first);
+    next = out.filter->changed(frames, *out.task.change, checkpoint, out.first);
   } else {
-    out.moved = out.track->relinearize(frames, checkpoint);
+    out.moved = out.filter->relinearize(frames, checkpoint);
     return out;
   }
   out.moved = next != nullptr;
-  if (next) out.track = std::move(next);
+  if (next) out.filter = std::move(next);
   return out;
 }
 
@@ -51,12 +51,12 @@ void BackgroundReprocessing::run() {
   const auto checkpoint = [this] {
     if (given_up_) throw NumericalError("given up");
   };
-  outcome_ = reprocess(std::move(outcome_.track), frames_, std::move(outcome_.task), checkpoint);
+  outcome_ = reprocess(std::move(outcome_.filter), frames_, std::move(outcome_.task), checkpoint);
   if (!outcome_.moved) return;
   for (std::vector<Frame> more = arrived(); !more.empty(); more = arrived()) {
     for (const Frame& frame : more) {
       checkpoint();
-      outcome_.track->absorb(frame);
+      outcome_.filter->absorb(frame);
     }
   }
 }
@@ -68,7 +68,7 @@ bool BackgroundReprocessing::finished() const {
 BackgroundReprocessing::Outcome BackgroundReprocessing::take() {
   work_.get();
   if (outcome_.moved) {
-    for (const Frame& frame : arrived()) outcome_.track->absorb(frame);
+    for (const Frame& frame : arrived()) outcome_.filter->absorb(frame);
   }
   return std::move(outcome_);
 }

@@ -34,7 +34,7 @@ class PaperScheme : public Scheme {
 
   std::vector<std::string> description() const override {
     return {"paper: parameter-only unscented filter, state by finite differences, " + std::to_string(kStepsPerFrame) +
-            " GeneralizedAlpha steps a frame"};
+            " Newmark steps a frame"};
   }
   std::vector<Misfit> free_run(const FreeFrameVisitor& visit) override {
     return compare_free_run(frames_, {start()}, model_->theta(filter_.mean()), visit);

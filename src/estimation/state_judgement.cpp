@@ -41,7 +41,7 @@ std::string unlearnt(const Model& model, const Eigen::MatrixXd& covariance) {
 StateJudgement by_shape(const StateEvidence& e) {
   const MisfitTest& test = e.systematic.test();
   if (test.passes()) return {EstimateState::converged, "the misfit is noise"};
-  if (e.mesh_pending) return {EstimateState::converging, "the error of the mesh has not been studied yet"};
+  if (e.mesh_pending) return {EstimateState::converging, "the error of the mesh has not been estimated yet"};
   char text[200];
   std::snprintf(text, sizeof text,
                 "along the body's lowest modes the misfit is %.2g times the noise's variance, %.1f standard deviations "
@@ -69,8 +69,8 @@ StateJudgement judge_state(const StateEvidence& e) {
   if (!e.stale_load.empty()) return {EstimateState::stale, e.stale_load};
   const EstimateState unknown = e.changing ? EstimateState::drifting : EstimateState::converging;
   const auto& inputs = e.systematic.inputs();
-  if (!inputs) return {EstimateState::converging, "the errors of the inputs have not been studied yet"};
-  if (e.restudying) return {EstimateState::converging, "the errors of the inputs are studied anew"};
+  if (!inputs) return {EstimateState::converging, "the errors of the inputs have not been estimated yet"};
+  if (e.restudying) return {EstimateState::converging, "the errors of the inputs are estimated again"};
   if (!e.settled) return {unknown, "the estimate still moves out of its own interval"};
   if (!inputs->implausible.empty()) return {EstimateState::doubtful, inputs->implausible};
   StateJudgement of_misfit = inputs->fitted ? by_shape(e) : by_size(e);

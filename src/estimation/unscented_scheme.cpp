@@ -1,4 +1,4 @@
-// The default scheme iterates free-running sigma points. `step` reads: predict, observe, update, revisit.
+// The default scheme iterates free-running sigma points. `step` reads: predict, observe, update, reprocess.
 #include <algorithm>
 
 #include "tissue_stiffness/estimation/background_reprocessing.hpp"
@@ -26,13 +26,13 @@ constexpr double kMoved = 0.2;         // standard deviations that a corrected l
 class UnscentedScheme : public Scheme {
  public:
   UnscentedScheme(const ModelSettings& settings, const TetMesh& mesh, const ReuseSources& relatives)
-      : Scheme(settings, mesh, relatives), filter_run_(new_track()), systematic_(*model_), studies_(*model_, relatives) {}
+      : Scheme(settings, mesh, relatives), filter_run_(new_filter()), systematic_(*model_), studies_(*model_, relatives) {}
 
   std::vector<std::string> description() const override {
     const std::string why = studies_.mesh_unknown();
     return {forward_->description(),
             "mesh error: " + (!why.empty()          ? "not assessed, " + why
-                              : model_->nonlinear() ? "doubted as that of its linear form, from a mesh refined eightfold"
+                              : model_->nonlinear() ? "assessed on its linear form, from a mesh refined eightfold"
                                                     : "from a mesh refined eightfold")};
   }
 
@@ -74,7 +74,7 @@ class UnscentedScheme : public Scheme {
   void forget() override {
     frames_.clear();
     waiting_.clear();
-    filter_run_ = new_track();
+    filter_run_ = new_filter();
     studies_.reset();
     systematic_.reset();
     restudying_ = corrected_ = false;
@@ -87,7 +87,7 @@ class UnscentedScheme : public Scheme {
   }
 
  private:
-  std::shared_ptr<IteratedFilter> new_track() const {
+  std::shared_ptr<IteratedFilter> new_filter() const {
     const Eigen::VectorXd std = model_->prior_std();
     const PosteriorLinearizationFilter prior(model_->prior_mean(), std.cwiseAbs2().asDiagonal());
     return std::make_shared<IteratedFilter>(*model_, operators_, forward_, prior, RunStart{start()});
@@ -113,7 +113,7 @@ class UnscentedScheme : public Scheme {
     StepResult result;
     Stopwatch watch(result.seconds);
     if (reprocessing_ && reprocessing_->finished()) adopt(std::exchange(reprocessing_, nullptr)->take());
-    watch.lap("revisit");
+    watch.lap("reprocess");
     extend_output_to(frame);
     begin_if_needed();
     filter_run_->advance(frame.time);
@@ -124,7 +124,7 @@ class UnscentedScheme : public Scheme {
     keep(frame);
     watch.lap("update");
     if (reprocess()) predicted = filter_run_->predict(frame);
-    watch.lap("revisit");
+    watch.lap("reprocess");
     if (study()) predicted = filter_run_->predict(frame);
     watch.lap("studies");
     publish(frame, predicted, innovation, result);
@@ -134,7 +134,7 @@ class UnscentedScheme : public Scheme {
 
   void begin_if_needed() {
     if (filter_run_->begun()) return;
-    filter_run_ = new_track();  // the start, and the prior of a velocity read from frames, are known now
+    filter_run_ = new_filter();  // the start, and the prior of a velocity read from frames, are known now
     if (near() != nullptr) filter_run_->expect(*near());
     filter_run_->begin();
   }
@@ -154,7 +154,7 @@ class UnscentedScheme : public Scheme {
     if (overfull()) return reprocess(*filter_run_, frames_, {std::nullopt, frames_.size() / 2});
     if (near() != nullptr && more_follow()) return false;
     if (std::optional<ChangeQuestion> again = change_history_.closer(frames_.size())) {
-      return reprocess(change_history_.track(), change_history_.frames_since_its_start(frames_), {std::move(again)});
+      return reprocess(change_history_.filter(), change_history_.frames_since_its_start(frames_), {std::move(again)});
     }
     std::optional<ChangeQuestion> question = watch_.due();
     const bool calm = !watch_.suspicious() || watch_.searched();
@@ -166,10 +166,10 @@ class UnscentedScheme : public Scheme {
     return reprocess(*filter_run_, frames_, {std::move(question)});
   }
 
-  bool reprocess(const IteratedFilter& track, const std::vector<Frame>& frames, BackgroundReprocessing::Task task) {
+  bool reprocess(const IteratedFilter& filter, const std::vector<Frame>& frames, BackgroundReprocessing::Task task) {
     if (!hurried())
-      return adopt(BackgroundReprocessing::reprocess(track.clone_unstarted(), frames, std::move(task), [] {}));
-    reprocessing_ = std::make_unique<BackgroundReprocessing>(track, frames, std::move(task));
+      return adopt(BackgroundReprocessing::reprocess(filter.clone_unstarted(), frames, std::move(task), [] {}));
+    reprocessing_ = std::make_unique<BackgroundReprocessing>(filter, frames, std::move(task));
     return false;
   }
 
@@ -177,18 +177,18 @@ class UnscentedScheme : public Scheme {
     const BackgroundReprocessing::Task& task = outcome.task;
     if (!outcome.moved) {
       if (task.roll > 0) stop_keeping();
-      if (task.roll == 0 && !task.change) filter_run_->take_notes(*outcome.track);
+      if (task.roll == 0 && !task.change) filter_run_->take_notes(*outcome.filter);
       return false;
     }
     if (task.roll > 0) {
       frames_.erase(frames_.begin(), frames_.begin() + static_cast<std::ptrdiff_t>(outcome.first));
       change_history_ = {};
     } else if (task.change) {
-      change_history_.record_change(*filter_run_, *outcome.track, outcome.first, *task.change, frames_);
+      change_history_.record_change(*filter_run_, *outcome.filter, outcome.first, *task.change, frames_);
       systematic_.drop_fit();  // because that fit assumed no change
       if (!task.change->near) watch_.go_on();
     }
-    filter_run_ = std::move(outcome.track);
+    filter_run_ = std::move(outcome.filter);
     forward_ = filter_run_->forward();
     return true;
   }
@@ -207,8 +207,8 @@ class UnscentedScheme : public Scheme {
     prediction_ = predicted.central;
     prediction_.predicted = filter.predict(predicted.rows, w);
     const Eigen::Index points = predicted.rows.cols();
-    recover_ = [track = filter_run_, weights = filter.predict(Eigen::MatrixXd::Identity(points, points), w)](
-                   Eigen::Ref<Eigen::VectorXd> u) { track->combine(weights, u); };
+    recover_ = [run = filter_run_, weights = filter.predict(Eigen::MatrixXd::Identity(points, points), w)](
+                   Eigen::Ref<Eigen::VectorXd> u) { run->combine(weights, u); };
     if (model_->nonlinear()) displacement();  // now, because a later step may fail half-way
     result.used = true;
     result.misfit = frame_misfit(frame.time, prediction_, at_rest(frame).predicted, model_->mesh().node_count());

@@ -21,10 +21,10 @@ Eigen::MatrixXd displacements(const ForwardModel& model, const Eigen::VectorXd& 
   return u;
 }
 
-class AnchoredTrajectory : public Trajectory {
+class CorrectedTrajectory : public Trajectory {
  public:
-  AnchoredTrajectory(std::unique_ptr<Trajectory> run, const std::vector<double>& times, const Eigen::MatrixXd& difference,
-                     const Eigen::MatrixXd& change, double share)
+  CorrectedTrajectory(std::unique_ptr<Trajectory> run, const std::vector<double>& times, const Eigen::MatrixXd& difference,
+                      const Eigen::MatrixXd& change, double share)
       : run_(std::move(run)), times_(times), difference_(difference), change_(change), share_(share) {}
 
   void advance(double time) override { run_->advance(time); }
@@ -74,7 +74,7 @@ void CorrectedSurrogate::follow(const CorrectedSurrogate& before, const Eigen::V
 
 std::unique_ptr<Trajectory> CorrectedSurrogate::start(const Eigen::VectorXd& theta, double start) const {
   const double share = along_.size() > 0 ? std::clamp(along_.dot(theta - anchor_), -kFarthest, kFarthest) : 0.0;
-  return std::make_unique<AnchoredTrajectory>(cheap_->start(theta, start), times_, difference_, change_, share);
+  return std::make_unique<CorrectedTrajectory>(cheap_->start(theta, start), times_, difference_, change_, share);
 }
 
 std::string CorrectedSurrogate::description() const {

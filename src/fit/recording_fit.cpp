@@ -80,9 +80,9 @@ BasisOptions RecordingFit::keeping_root() {
 }
 
 void RecordingFit::borrow(const RecordingFit& base) {
-  if (!base.anchored_ || !quick_) return;
-  anchored_ = std::make_unique<CorrectedSurrogate>(*forward_, *quick_);
-  anchored_->move_as(*base.anchored_);
+  if (!base.surrogate_ || !quick_) return;
+  surrogate_ = std::make_unique<CorrectedSurrogate>(*forward_, *quick_);
+  surrogate_->move_as(*base.surrogate_);
 }
 
 FitProblem RecordingFit::problem(const ForwardModel& forward, const std::vector<Frame>& frames) const {
@@ -199,11 +199,11 @@ BatchFit RecordingFit::fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd s
     runs->anchor(model_.theta(w), start, times, recording_.checkpoint);
     return runs;
   };
-  anchored_ = run(at);
-  double cost = free_fit(problem(*anchored_, training_), at).cost;
+  surrogate_ = run(at);
+  double cost = free_fit(problem(*surrogate_, training_), at).cost;
   BatchFit fit;
   for (int k = 0; k < kMostRuns; ++k) {
-    fit = fit_batch(problem(*anchored_, training_), at, spread);
+    fit = fit_batch(problem(*surrogate_, training_), at, spread);
     const Eigen::VectorXd std = fit.covariance.diagonal().cwiseSqrt();
     Eigen::VectorXd move = fit.w - at;
     const bool settled = (move.array().abs() < kSettled * std.array()).all();
@@ -214,10 +214,10 @@ BatchFit RecordingFit::fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd s
       const double now = free_fit(problem(*there, training_), at + move).cost;
       gain = cost - now;
       if (!(gain > 0.0)) continue;
-      there->follow(*anchored_, (model_.theta(at + model_.prior_std()) - model_.theta(at)).cwiseAbs());
+      there->follow(*surrogate_, (model_.theta(at + model_.prior_std()) - model_.theta(at)).cwiseAbs());
       at += move;
       cost = now;
-      anchored_ = std::move(there);
+      surrogate_ = std::move(there);
     }
     if (!(gain > kGain * cost)) break;
     spread = spread.cwiseMin(kNarrower * std);

@@ -54,7 +54,7 @@ std::vector<Eigen::VectorXd> moved(const Model& model, const PriorView& prior, c
 
 // Returns whether the term is absent at the parameters p, but not elsewhere.
 template <typename Term>
-bool sleeps(const Term& term, const Eigen::VectorXd& p, const Eigen::VectorXd& elsewhere) {
+bool is_inactive(const Term& term, const Eigen::VectorXd& p, const Eigen::VectorXd& elsewhere) {
   return term.coefficient(p) == 0.0 && term.coefficient(elsewhere) != 0.0;
 }
 
@@ -113,7 +113,7 @@ Eigen::MatrixXd acting_loads(const Model& model, const PriorView& prior, const S
   return loads;
 }
 
-Eigen::MatrixXd sleeping_loads(const Model& model, const PriorView& prior, const SparseMatrix& mass, std::size_t index) {
+Eigen::MatrixXd inactive_loads(const Model& model, const PriorView& prior, const SparseMatrix& mass, std::size_t index) {
   Eigen::MatrixXd loads(mass.rows(), 0);
   const auto& part = model.parts()[index];
   const Eigen::VectorXd p = part.parameters(prior.theta), generic = part.parameters(prior.generic);
@@ -161,7 +161,7 @@ std::vector<SparseMatrix> stiffness_groups(const Model& model, const PriorView& 
   return sums;
 }
 
-std::vector<SparseMatrix> sleeping_stiffness(const Model& model, const PriorView& prior) {
+std::vector<SparseMatrix> inactive_stiffness(const Model& model, const PriorView& prior) {
   std::vector<SparseMatrix> list;
   for (const auto& part : model.parts()) {
     if (!part.effect->compliant_nodes().empty()) continue;
@@ -169,12 +169,12 @@ std::vector<SparseMatrix> sleeping_stiffness(const Model& model, const PriorView
     SparseMatrix sum = model.fem().pattern();
     bool any = false;
     for (const auto& term : part.terms.stiffness) {
-      if (!sleeps(term, p, generic)) continue;
+      if (!is_inactive(term, p, generic)) continue;
       add_scaled(sum, term.coefficient(generic), *term.matrix);
       any = true;
     }
     for (const auto& term : part.terms.strain_stiffness) {
-      if (!sleeps(term, p, generic)) continue;
+      if (!is_inactive(term, p, generic)) continue;
       add_strain_stiffness(model.fem(), term.at(p), term.coefficient(generic), sum);
       any = true;
     }
@@ -187,7 +187,7 @@ bool answers_motion(const Model& model, const PriorView& prior, std::size_t inde
   const auto& part = model.parts()[index];
   const Eigen::VectorXd p = part.parameters(prior.theta), generic = part.parameters(prior.generic);
   const auto any = [&](const auto& terms) {
-    return std::any_of(terms.begin(), terms.end(), [&](const auto& term) { return sleeps(term, p, generic); });
+    return std::any_of(terms.begin(), terms.end(), [&](const auto& term) { return is_inactive(term, p, generic); });
   };
   const auto moves = [&](const StrainTerm& term) { return model.estimated(part, term.shape); };
   const std::vector<StrainTerm>& strained = part.terms.strain_stiffness;
@@ -195,16 +195,16 @@ bool answers_motion(const Model& model, const PriorView& prior, std::size_t inde
          std::any_of(strained.begin(), strained.end(), moves) || adds_extra_force(part);
 }
 
-Eigen::MatrixXd sleeping_forces(const Model& model, const PriorView& prior, std::size_t index, const Eigen::MatrixXd& u,
+Eigen::MatrixXd inactive_forces(const Model& model, const PriorView& prior, std::size_t index, const Eigen::MatrixXd& u,
                                 const StrainRows& strains) {
   const auto& part = model.parts()[index];
   const Eigen::VectorXd p = part.parameters(prior.theta), generic = part.parameters(prior.generic);
   Eigen::MatrixXd forces(u.rows(), 0), sum = Eigen::MatrixXd::Zero(u.rows(), u.cols());
   for (const auto& term : part.terms.stiffness) {
-    if (sleeps(term, p, generic)) sum += term.coefficient(generic) * (*term.matrix * u);
+    if (is_inactive(term, p, generic)) sum += term.coefficient(generic) * (*term.matrix * u);
   }
   for (const auto& term : part.terms.strain_stiffness) {
-    if (sleeps(term, p, generic)) {
+    if (is_inactive(term, p, generic)) {
       sum += term.coefficient(generic) * apply_strain_stiffness(model.fem(), term.at(p), strains);
     }
     if (term.coefficient(generic) == 0.0) continue;
@@ -214,7 +214,7 @@ Eigen::MatrixXd sleeping_forces(const Model& model, const PriorView& prior, std:
   }
   if (!sum.isZero(0.0)) append(forces, sum);
   for (const auto& term : part.terms.mass) {
-    if (sleeps(term, p, generic)) append(forces, *term.matrix * u);
+    if (is_inactive(term, p, generic)) append(forces, *term.matrix * u);
   }
   return forces;
 }

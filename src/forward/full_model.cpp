@@ -37,7 +37,7 @@ class FullTrajectories : public Trajectories {
                    const FullModel::Options& options)
       : options_(options),
         systems_(make_systems(model, thetas)),
-        newmark_(views(systems_), options.spectral_radius, options.tolerance * body_size(model.mesh())),
+        stepper_(views(systems_), options.spectral_radius, options.tolerance * body_size(model.mesh())),
         states_(std::move(states)) {}
 
   std::size_t size() const override { return states_.size(); }
@@ -80,7 +80,7 @@ class FullTrajectories : public Trajectories {
       central_.emplace_back(*systems_.front(), states_.front().time);
       explicit_steps_ = spans.front() < kExplicitSteps * central_.front().largest_step();
     }
-    if (!explicit_steps_) return newmark_.initialise(states_);
+    if (!explicit_steps_) return stepper_.initialise(states_);
     for (std::size_t i = 1; i < systems_.size(); ++i) central_.emplace_back(*systems_[i], states_[i].time);
     for (std::size_t i = 0; i < systems_.size(); ++i) central_[i].initialise(states_[i]);
   }
@@ -93,12 +93,12 @@ class FullTrajectories : public Trajectories {
     const int count = options_.step > 0.0 ? static_cast<int>(std::ceil(spans.front() / options_.step * (1.0 - 1e-9)))
                                           : options_.steps_per_frame;
     for (double& span : spans) span /= count;
-    for (int k = 0; k < count; ++k) newmark_.step(states_, spans);
+    for (int k = 0; k < count; ++k) stepper_.step(states_, spans);
   }
 
   FullModel::Options options_;
   Systems systems_;
-  GeneralizedAlpha newmark_;
+  GeneralizedAlpha stepper_;
   std::vector<CentralDifference> central_;
   std::vector<DynamicState> states_;
   bool chosen_ = false, explicit_steps_ = false;

@@ -111,7 +111,7 @@ class Builder {
     OrthonormalBasis basis(mass_, room);
     basis.begin(root_->vectors, root_->weighted);
     const Eigen::Index awake = basis.size();
-    add_sleeping(basis, root_->loads);
+    add_inactive(basis, root_->loads);
     if (basis.size() == 0) {
       throw InputError(model_.settings().name + ": effects", "nothing that moves the body",
                        "gravity, pressure, traction or an initial velocity");
@@ -248,7 +248,7 @@ class Builder {
 
   // Adds static responses to the terms that are absent at the prior, each part's scaled to one, less their projection onto
   // the basis.
-  void add_sleeping(OrthonormalBasis& basis, const Eigen::MatrixXd& acting) const {
+  void add_inactive(OrthonormalBasis& basis, const Eigen::MatrixXd& acting) const {
     bool answered = false;
     for (std::size_t p = 0; p < model_.parts().size(); ++p) answered = answered || answers_motion(model_, prior_, p);
     const Eigen::MatrixXd motion = answered ? leading_motion(basis, acting) : Eigen::MatrixXd(mass_.rows(), 0);
@@ -260,7 +260,7 @@ class Builder {
       if (!model_.parts()[p].effect->compliant_nodes().empty()) continue;
       const std::size_t before = blocks.size();
       for (Eigen::MatrixXd block :
-           {sleeping_loads(model_, prior_, mass_, p), sleeping_forces(model_, prior_, p, motion, rows),
+           {inactive_loads(model_, prior_, mass_, p), inactive_forces(model_, prior_, p, motion, rows),
             first_order ? extra_forces(model_, prior_, p, motion, rows) : Eigen::MatrixXd()}) {
         if (block.cols() > 0) blocks.push_back(std::move(block));
       }
@@ -270,7 +270,7 @@ class Builder {
     const Eigen::Index room = std::min<Eigen::Index>(std::max(options_.largest - options_.size, 0),
                                                      static_cast<Eigen::Index>(options_.per_part) * parts);
     std::vector<SparseMatrix> groups;
-    if (parts <= kFew) groups = sleeping_stiffness(model_, prior_);
+    if (parts <= kFew) groups = inactive_stiffness(model_, prior_);
     add_common(basis, scaled_responses(blocks), groups, basis.size() + room);
   }
 

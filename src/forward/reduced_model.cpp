@@ -223,7 +223,7 @@ std::unique_ptr<ReducedModel> ReducedModel::grown() const {
   options.adopt = false;
   auto out = std::make_unique<ReducedModel>(model_, options, this);
   if (out->basis_.vectors.cols() <= basis_.vectors.cols()) return nullptr;
-  out->restrict_output_to(focus_);
+  out->restrict_output_to(output_nodes_);
   return out;
 }
 
@@ -382,8 +382,8 @@ Eigen::MatrixXd ReducedModel::basis_at(const std::vector<int>& nodes) const {
 }
 
 void ReducedModel::restrict_output_to(const std::vector<int>& nodes) {
-  focus_ = nodes;
-  in_focus_ = PackedMatrix(basis_at(nodes));
+  output_nodes_ = nodes;
+  basis_at_output_ = PackedMatrix(basis_at(nodes));
 }
 
 Eigen::VectorXd ReducedModel::displacement(const Eigen::VectorXd& coordinates) const {
@@ -393,16 +393,16 @@ Eigen::VectorXd ReducedModel::displacement(const Eigen::VectorXd& coordinates) c
 }
 
 void ReducedModel::displacements(const Eigen::MatrixXd& coordinates, Eigen::MatrixXd& out) const {
-  if (focus_.empty()) {
+  if (output_nodes_.empty()) {
     multiply(basis_.vectors, coordinates, out.leftCols(coordinates.cols()));
     return;
   }
-  VectorPool::Loan scratch(scratch_, in_focus_.rows() * coordinates.cols());
-  Eigen::Map<Eigen::MatrixXd> seen(scratch->data(), in_focus_.rows(), coordinates.cols());
-  in_focus_.multiply(coordinates, seen);
+  VectorPool::Loan scratch(scratch_, basis_at_output_.rows() * coordinates.cols());
+  Eigen::Map<Eigen::MatrixXd> seen(scratch->data(), basis_at_output_.rows(), coordinates.cols());
+  basis_at_output_.multiply(coordinates, seen);
   for (Eigen::Index k = 0; k < seen.cols(); ++k) {
-    for (std::size_t i = 0; i < focus_.size(); ++i) {
-      out.block<3, 1>(3 * focus_[i], k) = seen.block<3, 1>(3 * static_cast<Eigen::Index>(i), k);
+    for (std::size_t i = 0; i < output_nodes_.size(); ++i) {
+      out.block<3, 1>(3 * output_nodes_[i], k) = seen.block<3, 1>(3 * static_cast<Eigen::Index>(i), k);
     }
   }
 }

@@ -20,9 +20,9 @@ MissingEffectMessage to_message(const MissingEffect& effect) {
   out.explained = effect.explained;
   out.held_out_rms_before = effect.held_out_rms_before;
   out.held_out_rms_after = effect.held_out_rms_after;
-  for (const MissingEffect::Twin& twin : effect.confusable_with) {
-    out.confusable_with.push_back(twin.effect);
-    out.cosines.push_back(twin.cosine);
+  for (const MissingEffect::Confusable& other : effect.confusable_with) {
+    out.confusable_with.push_back(other.effect);
+    out.cosines.push_back(other.cosine);
   }
   return out;
 }

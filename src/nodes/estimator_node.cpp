@@ -124,7 +124,7 @@ void EstimatorNode::work() {
         mark_stale();
       }
       diagnostics_.set("frames waiting", std::to_string(queue_.waiting()));
-      diagnostics_.set("looking back", estimator_->reprocesses() ? "yes" : "no");
+      diagnostics_.set("reprocessing", estimator_->reprocesses() ? "yes" : "no");
     }
   }
 }
@@ -183,7 +183,7 @@ void EstimatorNode::run_again() {
   last_stamp_ = ros::Time(last->time);
 }
 
-void EstimatorNode::start_lap(const ros::Time& first_stamp) {
+void EstimatorNode::start_epoch(const ros::Time& first_stamp) {
   const Estimate& previous = estimator_->estimate();
   if (previous.state != EstimateState::no_data) {
     ROS_INFO("starting again from the prior; the run before found %s", shown(previous).c_str());
@@ -193,12 +193,12 @@ void EstimatorNode::start_lap(const ros::Time& first_stamp) {
   estimator_->reset();
   last_.reset();
   estimator_->set_first_stamp(first_stamp.toSec());
-  services_->check().start_lap(first_stamp.toSec());
-  map_.start_lap();
+  services_->check().start_epoch(first_stamp.toSec());
+  map_.start_epoch();
 }
 
 void EstimatorNode::process(const FrameQueue::Work& work) {
-  if (work.new_lap) start_lap(work.first_stamp);
+  if (work.new_epoch) start_epoch(work.first_stamp);
   const auto left_out = [this](const auto& convert) {
     try {
       convert();

@@ -23,7 +23,7 @@ void FrameQueue::expect(const std::string& topic) {
 void FrameQueue::add_observation(const std::string& topic, const ros::Time& stamp, MakeObservation make) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const Place where = place(topic, stamp);
-  if (where.first < taken_lap_) {
+  if (where.first < taken_epoch_) {
     ++dropped_;
     return;
   }
@@ -40,34 +40,34 @@ void FrameQueue::add_observation(const std::string& topic, const ros::Time& stam
 void FrameQueue::add_load(const std::string& topic, const ros::Time& stamp, MakeLoad make) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const Place where = place(topic, stamp);
-  if (where.first < taken_lap_) return;
+  if (where.first < taken_epoch_) return;
   loads_.emplace(where, std::move(make));
   if (loads_.size() > kMostLoads) loads_.erase(loads_.begin());
   changed_.notify_one();
 }
 
-// Returns the lap that a message belongs to. When its topic's stamps jump, the topic enters the next lap.
+// Returns the epoch that a message belongs to. When its topic's stamps jump, the topic enters the next epoch.
 FrameQueue::Place FrameQueue::place(const std::string& name, const ros::Time& stamp) {
   Topic& topic = topics_[name];
-  const auto lap = laps_.find(topic.lap);
+  const auto epoch = epochs_.find(topic.epoch);
   if (!topic.seen) {
-    topic = {true, newest_lap_, stamp, stamp};
-  } else if (stamp + kJumpBack < topic.last || (stamp <= topic.first && lap->second.last > stamp) ||
-             stamp > lap->second.last + kJumpAhead) {
-    if (topic.lap == newest_lap_) ++newest_lap_;
-    topic = {true, newest_lap_, stamp, stamp};
+    topic = {true, newest_epoch_, stamp, stamp};
+  } else if (stamp + kJumpBack < topic.last || (stamp <= topic.first && epoch->second.last > stamp) ||
+             stamp > epoch->second.last + kJumpAhead) {
+    if (topic.epoch == newest_epoch_) ++newest_epoch_;
+    topic = {true, newest_epoch_, stamp, stamp};
   }
   topic.last = std::max(topic.last, stamp);
-  const auto [span, is_new] = laps_.try_emplace(topic.lap, Span{stamp, stamp});
+  const auto [span, is_new] = epochs_.try_emplace(topic.epoch, Span{stamp, stamp});
   span->second.first = std::min(span->second.first, stamp);
   span->second.last = std::max(span->second.last, stamp);
-  return {topic.lap, stamp};
+  return {topic.epoch, stamp};
 }
 
 bool FrameQueue::complete(const Place& frame) const {
   return std::all_of(topics_.begin(), topics_.end(), [&](const auto& entry) {
     const Topic& topic = entry.second;
-    return topic.seen && Place(topic.lap, topic.last) >= frame;
+    return topic.seen && Place(topic.epoch, topic.last) >= frame;
   });
 }
 
@@ -89,28 +89,28 @@ std::optional<FrameQueue::Work> FrameQueue::take() {
 
 FrameQueue::Work FrameQueue::take_front() {
   const auto front = frames_.begin();
-  const int lap = front->first.first;
+  const int epoch = front->first.first;
   Work work;
-  work.new_lap = lap != taken_lap_;
-  work.first_stamp = laps_.at(lap).first;
+  work.new_epoch = epoch != taken_epoch_;
+  work.first_stamp = epochs_.at(epoch).first;
   work.stamp = front->first.second;
   work.observations = std::move(front->second.observations);
   frames_.erase(front);
   // Samples later than the frame are included, because the estimator interpolates up to the next one.
-  const auto end = loads_.lower_bound(Place(lap + 1, ros::Time()));
+  const auto end = loads_.lower_bound(Place(epoch + 1, ros::Time()));
   for (auto load = loads_.begin(); load != end; ++load) {
-    if (load->first.first == lap) work.loads.push_back(std::move(load->second));
+    if (load->first.first == epoch) work.loads.push_back(std::move(load->second));
   }
   loads_.erase(loads_.begin(), end);
-  laps_.erase(laps_.begin(), laps_.lower_bound(std::min(lap, oldest_lap())));
-  taken_lap_ = lap;
+  epochs_.erase(epochs_.begin(), epochs_.lower_bound(std::min(epoch, oldest_epoch())));
+  taken_epoch_ = epoch;
   return work;
 }
 
-int FrameQueue::oldest_lap() const {
-  int oldest = newest_lap_;
+int FrameQueue::oldest_epoch() const {
+  int oldest = newest_epoch_;
   for (const auto& [name, topic] : topics_) {
-    if (topic.seen) oldest = std::min(oldest, topic.lap);
+    if (topic.seen) oldest = std::min(oldest, topic.epoch);
   }
   return oldest;
 }
@@ -121,7 +121,7 @@ void FrameQueue::restart() {
   frames_.clear();
   loads_.clear();
   for (auto& [name, topic] : topics_) topic.seen = false;
-  ++newest_lap_;
+  ++newest_epoch_;
 }
 
 void FrameQueue::wake() {

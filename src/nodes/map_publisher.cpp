@@ -24,7 +24,7 @@ void MapPublisher::give_up() {
 }
 
 void MapPublisher::start(const ModelSettings& settings, const TetMesh& mesh) {
-  start_lap();
+  start_epoch();
   settings_ = settings;
   mesh_ = mesh;
   if (!settings.map || marker_) return;
@@ -32,7 +32,7 @@ void MapPublisher::start(const ModelSettings& settings, const TetMesh& mesh) {
   patches_ = node_.advertise<StiffnessMapMessage>("stiffness_patches", 1, true);
 }
 
-void MapPublisher::start_lap() {
+void MapPublisher::start_epoch() {
   give_up();
   frames_ = 0;
   due_ = kFirst;

@@ -55,7 +55,7 @@ void ModelCheck::start(const ModelSettings& settings, const TetMesh& mesh) {
   changed_.notify_all();
 }
 
-void ModelCheck::start_lap(double first_stamp) {
+void ModelCheck::start_epoch(double first_stamp) {
   const std::lock_guard<std::mutex> lock(mutex_);
   first_stamp_ = first_stamp;
   frames_.clear();

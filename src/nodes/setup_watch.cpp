@@ -44,7 +44,7 @@ void warn_of(const SetupFindings& findings) {
 SetupWatch::SetupWatch(ros::NodeHandle node, const ModelSettings& settings, Diagnostics& diagnostics)
     : node_(std::move(node)), settings_(settings), diagnostics_(diagnostics) {
   say(check_numbers(settings_));
-  timer_ = node_.createWallTimer(kPeriod, [this](const ros::WallTimerEvent&) { look_at_topics(); });
+  timer_ = node_.createWallTimer(kPeriod, [this](const ros::WallTimerEvent&) { watch_topics(); });
 }
 
 void SetupWatch::mesh_came(const TetMesh& mesh) {
@@ -56,7 +56,7 @@ void SetupWatch::frame_used(const Frame& frame, const TetMesh& mesh, double rest
   if (!frame_seen_.exchange(true)) say(check_first_frame(settings_, mesh, {rest_time, frame}));
 }
 
-void SetupWatch::look_at_topics() {
+void SetupWatch::watch_topics() {
   if (frame_seen_) return;
   const std::vector<Topic> there = published_topics();
   if (there.empty()) return;  // no master

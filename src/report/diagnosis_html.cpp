@@ -175,8 +175,8 @@ std::string story(const MissingEffect& c) {
   }
   text += ".";
   std::vector<std::string> alike;
-  for (const auto& twin : c.confusable_with) alike.push_back(twin.effect);
-  if (!alike.empty()) text += " In this recording it looks like " + effect_list(alike) + ".";
+  for (const auto& other : c.confusable_with) alike.push_back(other.effect);
+  if (!alike.empty()) text += " In this recording it is confusable with " + effect_list(alike) + ".";
   return text;
 }
 
@@ -188,10 +188,10 @@ std::string parameter_words(const MissingEffect& c) {
   return text;
 }
 
-std::string twin_words(const MissingEffect& c) {
+std::string confusable_words(const MissingEffect& c) {
   std::string text;
-  for (const auto& twin : c.confusable_with) {
-    text += (text.empty() ? "" : ", ") + effect_title(twin.effect) + " (" + short_number(twin.cosine, 2) + ")";
+  for (const auto& other : c.confusable_with) {
+    text += (text.empty() ? "" : ", ") + effect_title(other.effect) + " (" + short_number(other.cosine, 2) + ")";
   }
   return text;
 }
@@ -209,7 +209,7 @@ std::string effect_row(const MissingEffect& c) {
   const auto cell = [](const std::string& text) { return "<td class=\"n\">" + escape_html(text) + "</td>"; };
   return "<tr><td>" + escape_html(effect_title(c.effect)) + "</td>" + cell(percent(c.explained)) +
          cell(millimetres(c.held_out_rms_after)) + cell(short_number(100.0 * c.probability, 2) + " %") +
-         cell(short_number(c.z, 2)) + "<td>" + escape_html(twin_words(c)) + "</td></tr>";
+         cell(short_number(c.z, 2)) + "<td>" + escape_html(confusable_words(c)) + "</td></tr>";
 }
 
 std::string ranking(const Diagnosis& d) {
@@ -229,7 +229,7 @@ std::string ranking(const Diagnosis& d) {
       "<ol class=\"effects\">" + cards + "</ol>" + apart + "<details><summary>All " + std::to_string(d.candidates.size()) +
           " effects that were tried</summary><div class=\"scroll\"><table><tr><th>effect</th><th "
           "class=\"n\">explains</th><th class=\"n\">held-out error after</th><th class=\"n\">probability</th><th "
-          "class=\"n\">z</th><th>looks like (cosine)</th></tr>" +
+          "class=\"n\">z</th><th>confusable with (cosine)</th></tr>" +
           rows + "</table></div></details>");
 }
 

@@ -19,8 +19,9 @@ json numbers(const std::map<std::string, double>& values) {
 }
 
 json candidate_json(const MissingEffect& c) {
-  json twins = json::array();
-  for (const auto& twin : c.confusable_with) twins.push_back({{"effect", twin.effect}, {"cosine", number(twin.cosine)}});
+  json confusable = json::array();
+  for (const auto& other : c.confusable_with)
+    confusable.push_back({{"effect", other.effect}, {"cosine", number(other.cosine)}});
   return {{"effect", c.effect},
           {"entry", c.entry},
           {"parameters", numbers(c.parameters)},
@@ -32,7 +33,7 @@ json candidate_json(const MissingEffect& c) {
           {"z", number(c.z)},
           {"held_out_rms_before", number(c.held_out_rms_before)},
           {"held_out_rms_after", number(c.held_out_rms_after)},
-          {"confusable_with", twins}};
+          {"confusable_with", confusable}};
 }
 
 json numbers(const std::vector<double>& values) {

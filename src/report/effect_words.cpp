@@ -20,7 +20,7 @@ std::string effect_sign(const std::string& effect) {
       {"mass_damping", "the motion dies away faster than the model's, slow swings most of all"},
       {"viscous_damping", "the motion dies away faster than the model's, quick vibrations most of all"},
       {"viscoelasticity", "the tissue creeps under a load that lasts and comes back late: stiff when fast, soft when slow"},
-      {"elastic_support", "the body moves at its clamp, which gives way"},
+      {"elastic_support", "the body moves at its clamp, which is not rigid"},
       {"foundation", "the body is held back where the model leaves it free, as by soft surroundings"},
       {"stiff_inclusion", "one spot deforms less (or more) than the tissue around it, as a lump would"},
       {"fibre_reinforcement", "the tissue resists more along one direction than across it"},

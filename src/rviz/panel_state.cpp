@@ -30,8 +30,8 @@ std::string details(const MissingEffectMessage& effect) {
   }
   text += "\nlog Bayes factor " + short_number(effect.log_bayes_factor, 3) + ", p = " + short_number(effect.p_value, 2);
   for (std::size_t i = 0; i < effect.confusable_with.size() && i < effect.cosines.size(); ++i) {
-    text +=
-        "\nlooks like " + effect_title(effect.confusable_with[i]) + " (cosine " + short_number(effect.cosines[i], 2) + ")";
+    text += "\nconfusable with " + effect_title(effect.confusable_with[i]) + " (cosine " +
+            short_number(effect.cosines[i], 2) + ")";
   }
   return text;
 }
@@ -153,8 +153,8 @@ Badge PanelState::verdict() const {
                                                    {"missing", {"found", 0xc77700}},
                                                    {"numerics", {"adequate but for the numerics", 0x7a8088}},
                                                    {"unexplained", {"unexplained", 0xc0392b}}};
-  if (!diagnosed_) return {"not looked yet", 0x7a8088};
-  if (stale()) return {"changed since the last look", 0x7a8088};
+  if (!diagnosed_) return {"not diagnosed yet", 0x7a8088};
+  if (stale()) return {"changed since the last diagnosis", 0x7a8088};
   const auto found = badges.find(diagnosis_.verdict);
   return found == badges.end() ? Badge{diagnosis_.verdict, 0x7a8088} : found->second;
 }

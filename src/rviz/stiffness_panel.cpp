@@ -130,7 +130,8 @@ void StiffnessPanel::build_buttons() {
     row->addWidget(out);
     return out;
   };
-  diagnose_ = button("diagnose", "Diagnose", "Look now for what the running model misses", &StiffnessPanel::on_diagnose);
+  diagnose_ = button("diagnose", "Diagnose", "Search now for the effect that the running model misses",
+                     &StiffnessPanel::on_diagnose);
   add_ = button("add", "Add", "Put the selected effect, or the best, into the running model", &StiffnessPanel::on_add);
   remove_ =
       button("remove", "Remove", "Take the selected added effect, or the last, out again", &StiffnessPanel::on_remove);
@@ -227,7 +228,7 @@ std::string StiffnessPanel::chosen(bool added) const {
 }
 
 void StiffnessPanel::on_diagnose() {
-  wait_for("looking for what the model misses ...");
+  wait_for("searching for the effect that the model misses ...");
   calls_->diagnose(*node_, when_answered());
 }
 

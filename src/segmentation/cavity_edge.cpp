@@ -14,7 +14,8 @@ constexpr double speckle_decibel = 5.57;    // standard deviation of log-compres
 constexpr double stretch_fraction = 0.045;  // of the outline, over which levels and mean profiles are averaged (Gaussian)
 constexpr double typical_fraction = 0.5;    // of the median contrast that a wall must have; leaflets have less
 constexpr double smallest_contrast = 0.2;   // (wall - pool) / (wall + pool)
-constexpr double doubt = 0.25;  // of the step from half grey to half power, because the compression is not known exactly
+constexpr double step_uncertainty =
+    0.25;  // of the step from half grey to half power, because the compression is not known exactly
 constexpr double contrast_floor = 2.0;    // [grey] on top of it
 constexpr double farthest_offset = 0.15;  // of the radius, from the path
 constexpr double smallest_scatter = 0.3;  // [pixel]
@@ -54,8 +55,8 @@ struct Surroundings {
   Eigen::Array<bool, 1, Eigen::Dynamic> thick;  ///< bright everywhere from near to far: no leaflet, no drop-out
 };
 
-Surroundings look_around(const cv::Mat& grey, const Eigen::Matrix2Xd& outline, const Eigen::Matrix2Xd& normals,
-                         double radius) {
+Surroundings measure_surroundings(const cv::Mat& grey, const Eigen::Matrix2Xd& outline, const Eigen::Matrix2Xd& normals,
+                                  double radius) {
   Surroundings s;
   s.stretch = stretch_fraction * static_cast<double>(outline.cols());
   s.reach = std::max(8, static_cast<int>(0.3 * radius));
@@ -153,7 +154,7 @@ double advance_to_half_power(const Eigen::VectorXd& profile, double pool, double
 }  // namespace
 
 WallEdges wall_edges(const cv::Mat& grey, const Eigen::Matrix2Xd& outline, const Eigen::Matrix2Xd& normals, double radius) {
-  const Surroundings s = look_around(grey, outline, normals, radius);
+  const Surroundings s = measure_surroundings(grey, outline, normals, radius);
   WallEdges edges = half_grey(s, radius);
   const double decibel = grey_per_decibel(grey, outline, normals, s);
   const Eigen::VectorXd course = smooth_known(edges, s.stretch);
@@ -163,7 +164,7 @@ WallEdges wall_edges(const cv::Mat& grey, const Eigen::Matrix2Xd& outline, const
     const Eigen::VectorXd outward = aligned.col(i).segment(s.reach, 2 * s.near + 1);
     const double advance = advance_to_half_power(outward, s.pool(i), decibel, std::max(1, s.near / 2));
     edges.offsets(i) += advance;
-    edges.sigma(i) = std::hypot(edges.sigma(i), doubt * advance);
+    edges.sigma(i) = std::hypot(edges.sigma(i), step_uncertainty * advance);
   }
   return edges;
 }

@@ -128,7 +128,7 @@ std::vector<KeySpec> run_keys() {
       number_key("stale_after", "s", kPositive, kInfinity, 2,
                  "without a measurement or a load for so long the state is `stale`"),
       integer_key("window", 100, 1000000, 4000,
-                  "frames that are kept to be looked at again; when they are too many, the older half becomes the prior"),
+                  "frames that are kept to be reprocessed; when they are too many, the older half becomes the prior"),
       plain_key("map", Kind::map, "",
                 "how the modulus varies over the body: in place of the one estimated `young_modulus`, one a patch"),
       integer_key("map.cells", 2, 100, 24, "most patches that the body is divided into"),

@@ -72,7 +72,7 @@ void print_map(const StiffnessMap& map, std::ostream& out) {
 
 void print_stages(const EstimationRun& run, const Paint& paint, std::ostream& out) {
   out << paint.bold(formatted("%-12s %12s %12s %12s", "stage", "median [ms]", "p99 [ms]", "total [s]")) << "\n";
-  for (const char* stage : {"segment", "predict", "observe", "update", "revisit", "studies"}) {
+  for (const char* stage : {"segment", "predict", "observe", "update", "reprocess", "studies"}) {
     const auto samples = run.stage_samples.find(stage);
     if (samples == run.stage_samples.end()) continue;
     double sum = 0.0;

@@ -165,7 +165,7 @@ TEST(Diagnose, TakesTheTimeStepsOfASimulationForNumerics) {
 }
 
 // Late fast swings resemble the other damping more.
-TEST(Diagnose, TellsTwinsApartBesideTheTimeStepsOfASimulation) {
+TEST(Diagnose, TellsEquivalentEffectsApartBesideTheTimeStepsOfASimulation) {
   for (const std::string alpha : {"2", "3"}) {
     const Diagnosis d = diagnose_bar(simulate({"mass_damping: {alpha: " + alpha + "}"}, 0.02, 9), {});
     const auto explained = [&](const std::string& effect) {
@@ -183,7 +183,7 @@ TEST(Diagnose, TellsTwinsApartBesideTheTimeStepsOfASimulation) {
 }
 
 // E compensates for most of the springs below the clamp; what it leaves is within what may be noise.
-TEST(Diagnose, LooksForWhatHidesInTheModulus) {
+TEST(Diagnose, FindsWhatTheModulusCompensatesFor) {
   const std::string sensor = "[{vertices: {topic: /vertices, noise: 4.0e-3}}]";
   std::vector<std::string> effects = bar("{prior: 20.0e3, factor: 3}");
   effects.push_back("elastic_support: {region: clamp, compliance: 2.0e-7}");
@@ -191,7 +191,7 @@ TEST(Diagnose, LooksForWhatHidesInTheModulus) {
   Recording recording;
   recording.frames = see_all(experiment, experiment.film(0.0, 0.02, 60), 4e-3, 10);
   const Diagnosis d = diagnose(box_settings(bar("{prior: 35.0e3, factor: 3}"), sensor), bar_mesh(), recording, {});
-  std::printf("a support that gives way: E %.1f kPa for 20 without it, %.3f sigma rms\n",
+  std::printf("a compliant support: E %.1f kPa for 20 without it, %.3f sigma rms\n",
               1e-3 * d.steps.front().parameters.at("elasticity.young_modulus"), d.sigmas.total);
   EXPECT_LT(d.sigmas.total, 1.1);
   EXPECT_LT(d.steps.front().parameters.at("elasticity.young_modulus"), 0.9 * kTruth);
@@ -331,7 +331,7 @@ TEST(Diagnose, NamesAnEffectBesideTheErrorOfTheMesh) {
   EXPECT_EQ(d.set.front(), "foundation");
 }
 
-TEST(Diagnose, SplitsTheErrorAndLooksAtItFromAllSides) {
+TEST(Diagnose, SplitsTheErrorByPlaceTimeFrequencyAndAmplitude) {
   const Diagnosis d = diagnose_bar(film({"viscous_damping: {beta: 6.0e-3}"}, 4), {});
   EXPECT_NEAR(d.metres.noise, kNoise, 1e-12);
   EXPECT_NEAR(std::pow(d.metres.structured, 2) + std::pow(kNoise, 2), std::pow(d.metres.total, 2), 1e-14);

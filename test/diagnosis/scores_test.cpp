@@ -65,7 +65,7 @@ TEST(Scores, GiveNothingToWhatIsAlreadyEstimated) {
   EXPECT_EQ(score.log_bayes_factor, 0.0);
 }
 
-TEST(Scores, SeeTwinsAsTwins) {
+TEST(Scores, GiveEquivalentEffectsALargeCosine) {
   std::mt19937 engine(5);
   const Eigen::MatrixXd a = ringing(0.3, 30.0), b = ringing(0.3, 33.0), c = ringing(0.9, 30.0, 7);
   const Scorer scorer(a.col(0) + noise(engine), Eigen::MatrixXd(kRows, 0), 1.0);

@@ -41,15 +41,15 @@ class BarWithADamping : public ::testing::Test {
 
 // Amplitudes of tangents are counted from where the effect is absent: a scale is 1 there.
 TEST_F(BarWithADamping, CountsAmplitudesFromWhereAnEffectIsAbsent) {
-  const Screening look(base_, {});
+  const Screening screening(base_, {});
   std::map<std::string, double> absent;
-  for (const Candidate& candidate : look.candidates) absent[candidate.effect] = candidate.absent;
+  for (const Candidate& candidate : screening.candidates) absent[candidate.effect] = candidate.absent;
   EXPECT_EQ(absent.at("image_scale"), 1.0);
   EXPECT_EQ(absent.at("viscous_damping"), 0.0);
 }
 
 // What an earlier round's models hold, they also hold once one of its effects has been added.
-TEST_F(BarWithADamping, ReadsTangentsInTheVectorsOfAnEarlierLook) {
+TEST_F(BarWithADamping, ReadsTangentsInTheVectorsOfAnEarlierScreening) {
   const Screening first(base_, {});
   ModelSettings damped = given_;
   add_effect(damped, "viscous_damping: {beta: {prior: 5.0e-3, factor: 2}}");
@@ -66,7 +66,7 @@ TEST_F(BarWithADamping, ReadsTangentsInTheVectorsOfAnEarlierLook) {
     EXPECT_NE(a, b) << alone.candidates[c].effect;
     worst = std::max(worst, (a - b).norm() / a.norm());
   }
-  std::printf("tangents in an earlier look's vectors: off by %.1e at most\n", worst);
+  std::printf("tangents in an earlier screening's vectors: off by %.1e at most\n", worst);
   EXPECT_LT(worst, 0.02);
 }
 

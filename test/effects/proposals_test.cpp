@@ -195,7 +195,7 @@ TEST(Proposals, CoverTheHalfSphereWithStraightFibres) {
   }
 }
 
-TEST(Proposals, DoubtADeclaredGravityButNoEstimatedOne) {
+TEST(Proposals, TestADeclaredGravityButNoEstimatedOne) {
   const TetMesh mesh = bar_mesh(2);
   for (const EffectSpec& spec : effect_specs()) {
     if (spec.name != "gravity") continue;

@@ -100,7 +100,7 @@ TEST(Background, HoldsUpNoFrame) {
   Estimator estimator(box_settings(kPulled), bar_mesh()), waiting(box_settings(kPulled), bar_mesh());
   estimator.work_in_background();
   const double beside = spent_on(estimator, frames), at_once = spent_on(waiting, frames);
-  std::printf("processor time of the frames: %.2f ms with looks back in the background, %.2f ms with them at once\n",
+  std::printf("processor time of the frames: %.2f ms with reprocessing in the background, %.2f ms with them at once\n",
               1e3 * beside, 1e3 * at_once);
   EXPECT_LT(beside, 0.5 * at_once);
 }

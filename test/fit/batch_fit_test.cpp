@@ -32,7 +32,7 @@ ModelSettings bar_with_ball(const std::string& young_modulus, const std::string&
   return box_settings(effects);
 }
 
-ModelSettings looks_for(const Ball& ball) {
+ModelSettings model_of(const Ball& ball) {
   return bar_with_ball(prior(25e3, 3.0), "{center: {mean: " + text(ball.center) +
                                              ", std: 0.008}, radius: " + prior(ball.radius, 1.5) +
                                              ", excess: {mean: " + std::to_string(ball.excess) + ", std: 3}}");
@@ -68,7 +68,7 @@ TEST(BatchFit, FollowsValleysOfParametersThatMakeUpForOneAnother) {
     for (int axis = 0; axis < 3; ++axis) ball.center[axis] += 0.004 * either(engine);
     ball.radius *= std::exp(0.3 * either(engine));
     ball.excess *= 1.0 + 0.5 * either(engine);
-    const Model model(looks_for(ball), mesh);
+    const Model model(model_of(ball), mesh);
     const ReducedModel runs(model);
     const auto operators = make_observation_operators(model);
     const FitProblem problem{model, runs, operators, frames, 0.0};

@@ -14,9 +14,9 @@
 namespace tissue_stiffness {
 namespace {
 
-class Anchored : public ::testing::Test {
+class CorrectedSurrogateTest : public ::testing::Test {
  protected:
-  Anchored() : full_(model_, FullModel::Options()), reduced_(model_, linear()) {
+  CorrectedSurrogateTest() : full_(model_, FullModel::Options()), reduced_(model_, linear()) {
     for (int k = 1; k <= 20; ++k) times_.push_back(0.02 * k);
   }
   static BasisOptions linear() {
@@ -57,12 +57,12 @@ class Anchored : public ::testing::Test {
   std::vector<double> times_;
 };
 
-TEST_F(Anchored, AgreesAtItsAnchor) {
+TEST_F(CorrectedSurrogateTest, AgreesAtItsAnchor) {
   EXPECT_GT(error(reduced_, 0.1), 0.03);  // there is a difference to correct
   EXPECT_LT(error(at(0.1), 0.1), 1e-9);
 }
 
-TEST_F(Anchored, FollowsTheLineThroughTheAnchorBefore) {
+TEST_F(CorrectedSurrogateTest, FollowsTheLineThroughTheAnchorBefore) {
   const CorrectedSurrogate before = at(0.0), alone = at(0.3);
   CorrectedSurrogate both = at(0.3);
   both.follow(before, (theta(1.0) - theta(0.0)).cwiseAbs());

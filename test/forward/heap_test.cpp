@@ -41,22 +41,22 @@ class HeapInSteps : public testing::TestWithParam<Case> {
       systems_.push_back(std::make_unique<ModelSystem>(model_, model_.theta(Eigen::VectorXd::Constant(1, w))));
       views.push_back(systems_.back().get());
     }
-    newmark_ = std::make_unique<GeneralizedAlpha>(views, 0.9, 1e-7);
+    stepper_ = std::make_unique<GeneralizedAlpha>(views, 0.9, 1e-7);
     DynamicState rest;
     rest.displacement = rest.velocity = Eigen::VectorXd::Zero(model_.fem().dof_count());
     states_.assign(systems_.size(), rest);
-    newmark_->initialise(states_);
+    stepper_->initialise(states_);
   }
 
   void take_steps() {
     const std::vector<double> steps(states_.size(), kStep);
     for (int k = 0; k < kSteps; ++k) {
-      const int factors = newmark_->factorisations();
+      const int factors = stepper_->factorisations();
       const Heap before = heap();
-      newmark_->step(states_, steps);
+      stepper_->step(states_, steps);
       const Heap after = heap();
       moved_ = std::max(moved_, states_.front().displacement.cwiseAbs().maxCoeff());
-      if (k < kWarm || newmark_->factorisations() > factors) continue;
+      if (k < kWarm || stepper_->factorisations() > factors) continue;
       ++watched_;
       EXPECT_EQ(after.requests, before.requests) << "step " << k << ", " << after.bytes - before.bytes << " bytes";
     }
@@ -71,7 +71,7 @@ class HeapInSteps : public testing::TestWithParam<Case> {
 
   Model model_;
   std::vector<std::unique_ptr<ModelSystem>> systems_;
-  std::unique_ptr<GeneralizedAlpha> newmark_;
+  std::unique_ptr<GeneralizedAlpha> stepper_;
   std::vector<DynamicState> states_;
   int watched_ = 0;
   double moved_ = 0.0;

@@ -56,7 +56,7 @@ TEST(ReducedEffects, SeveralBranchesAddUp) {
             1e-3);
 }
 
-TEST(ReducedEffects, AClampGivesWay) {
+TEST(ReducedEffects, AClampIsCompliant) {
   EXPECT_LT(worst({"elastic_support: {region: clamp, compliance: {mean: 0, std: 1.0e-7}}"},
                   {at({0.0}), at({1e-9}), at({1e-7}), at({1e-6})}),
             5e-3);

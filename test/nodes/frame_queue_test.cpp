@@ -85,18 +85,18 @@ TEST_F(FrameQueueTest, TheFirstStampIsTheEarliestOfAnyTopic) {
   load(0.05);
   frame(0.1);
   const auto work = queue.take();
-  EXPECT_TRUE(work->new_lap);
+  EXPECT_TRUE(work->new_epoch);
   EXPECT_NEAR((work->first_stamp - at(0.05)).toSec(), 0.0, 1e-9);
 }
 
-TEST_F(FrameQueueTest, ALoopStartsANewLap) {
+TEST_F(FrameQueueTest, ALoopStartsANewEpoch) {
   frame(0.0);
   frame(0.01);
-  EXPECT_TRUE(queue.take()->new_lap);
-  EXPECT_FALSE(queue.take()->new_lap);
+  EXPECT_TRUE(queue.take()->new_epoch);
+  EXPECT_FALSE(queue.take()->new_epoch);
   frame(0.0);  // a recording of 0.01 s that starts again
   const auto work = queue.take();
-  EXPECT_TRUE(work->new_lap);
+  EXPECT_TRUE(work->new_epoch);
   EXPECT_NEAR((work->first_stamp - at(0.0)).toSec(), 0.0, 1e-9);
 }
 
@@ -107,7 +107,7 @@ TEST_F(FrameQueueTest, ALateFrameDoesNot) {
   take();
   take();
   frame(0.1);
-  EXPECT_FALSE(queue.take()->new_lap);
+  EXPECT_FALSE(queue.take()->new_epoch);
 }
 
 TEST_F(FrameQueueTest, LoadsOfTheNextLapWaitForItsFrames) {
@@ -121,7 +121,7 @@ TEST_F(FrameQueueTest, LoadsOfTheNextLapWaitForItsFrames) {
   EXPECT_TRUE(queue.take()->loads.empty());
   frame(0.0);
   const auto work = queue.take();
-  EXPECT_TRUE(work->new_lap);
+  EXPECT_TRUE(work->new_epoch);
   EXPECT_EQ(work->loads.size(), 2U);
 }
 
@@ -131,21 +131,21 @@ TEST_F(FrameQueueTest, ATopicThatMissedALapJoinsTheNewest) {
   load(1.0);
   load(0.0);
   load(1.0);
-  load(0.0);  // third lap of the load
+  load(0.0);  // third epoch of the load
   take();
   frame(-0.6);  // the frame's topic jumps for the first time
   const auto work = queue.take();
-  EXPECT_TRUE(work->new_lap);
+  EXPECT_TRUE(work->new_epoch);
   EXPECT_EQ(work->loads.size(), 1U);
 }
 
-TEST_F(FrameQueueTest, AMinuteOfSilenceStartsANewLap) {
+TEST_F(FrameQueueTest, AMinuteOfSilenceStartsANewEpoch) {
   frame(0.0);
   take();
   frame(59.0);
-  EXPECT_FALSE(queue.take()->new_lap);
+  EXPECT_FALSE(queue.take()->new_epoch);
   frame(200.0);
-  EXPECT_TRUE(queue.take()->new_lap);
+  EXPECT_TRUE(queue.take()->new_epoch);
 }
 
 TEST_F(FrameQueueTest, RestartForgetsWhatWaits) {
@@ -156,7 +156,7 @@ TEST_F(FrameQueueTest, RestartForgetsWhatWaits) {
   EXPECT_EQ(queue.waiting(), 0U);
   frame(0.2);
   const auto work = queue.take();
-  EXPECT_TRUE(work->new_lap);
+  EXPECT_TRUE(work->new_epoch);
   EXPECT_NEAR((work->first_stamp - at(0.2)).toSec(), 0.0, 1e-9);
 }
 
@@ -165,7 +165,7 @@ TEST_F(FrameQueueTest, WakeEndsTheWaitOnceAndLosesNothing) {
     const auto work = queue.take();
     ASSERT_TRUE(work);
     EXPECT_TRUE(work->observations.empty());
-    EXPECT_FALSE(work->new_lap);
+    EXPECT_FALSE(work->new_epoch);
   });
   queue.wake();
   worker.join();

@@ -48,7 +48,7 @@ class Replay:
                 if topic in ('/camera/image_raw', '/contour'):
                     self.listeners.update(nodes)
         self.estimates.append(message)
-        # A busy machine looks back at the recording later than it sees the last frame.
+        # A busy machine reprocesses the recording later than it sees the last frame.
         if len(self.estimates) >= FRAMES and abs(message.mean[0] / TRUTH - 1.0) < 0.1:
             self.enough.set()
 
@@ -70,11 +70,11 @@ class NodeletsTest(unittest.TestCase):
         self.assertGreaterEqual(len(self.nodelets.estimates), FRAMES, self.nodelets.output)
         stamps = [{e.header.stamp for e in replay.estimates} for replay in (self.nodes, self.nodelets)]
         self.assertGreaterEqual(len(stamps[0] & stamps[1]), FRAMES - 1)
-        # Which frame first sees another look at the past is a matter of timing, and shows a little.
+        # Which frame is the first after a reprocessing is a matter of timing, and changes the estimate a little.
         one, other = self.nodes.estimates[-1], self.nodelets.estimates[-1]
         self.assertAlmostEqual(one.mean[0] / other.mean[0], 1.0, delta=0.01)
         self.assertAlmostEqual(math.log(one.covariance[0] / other.covariance[0]), 0.0, delta=math.log(4.0))
-        for estimate in (one, other):  # whether it has settled depends on when looks ended
+        for estimate in (one, other):  # whether it has settled depends on when reprocessings ended
             self.assertIn(estimate.state, ('converging', 'converged'), estimate.state_reason)
 
     def test_the_nodelets_are_one_process(self):

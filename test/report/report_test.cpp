@@ -293,8 +293,8 @@ TEST(DiagnosisHtml, TellsTheStoryInOrder) {
   for (const std::string fragment :
        {"an effect is missing", "12.00 kPa", "95 %: 11.85 to 12.15 kPa", "The given model says 19.00 kPa", "id=\"replay\"",
         "id=\"fails\"", "quick vibrations", "would remove 91.0 % of the squared error", "0.300 mm to 0.110 mm",
-        "it looks like mass damping", "probability 94 %, leaves z = 1.2", "would remove nothing", "excite two modes",
-        "id=\"staircase\"", "<ins>  - &lt;b&gt;</ins>", "diagnose model.yaml x.bag"}) {
+        "it is confusable with mass damping", "probability 94 %, leaves z = 1.2", "would remove nothing",
+        "excite two modes", "id=\"staircase\"", "<ins>  - &lt;b&gt;</ins>", "diagnose model.yaml x.bag"}) {
     const std::size_t found = page.find(fragment, at);
     EXPECT_NE(found, std::string::npos) << fragment;
     if (found != std::string::npos) at = found;

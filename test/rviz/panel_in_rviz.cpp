@@ -94,7 +94,7 @@ TEST_F(PanelInRviz, T1_ShowsTheEstimateOfTheRun) {
   EXPECT_NE(label("headline").find("kPa"), std::string::npos) << label("headline");
   EXPECT_NE(label("interval").find("95 %"), std::string::npos) << label("interval");
   EXPECT_GT(misfit(), 0.0) << label("misfit");
-  EXPECT_EQ(label("verdict"), "not looked yet");
+  EXPECT_EQ(label("verdict"), "not diagnosed yet");
   EXPECT_FALSE(part<QPushButton>("add")->isEnabled());
   EXPECT_FALSE(part<QPushButton>("remove")->isEnabled());
 }
@@ -126,7 +126,7 @@ TEST_F(PanelInRviz, T3_DiagnoseNamesTheHiddenEffectAndNeverBlocksTheWindow) {
   press("diagnose");
   EXPECT_LT(pressed.elapsed(), 500) << "the button waited";
   EXPECT_FALSE(part<QPushButton>("diagnose")->isEnabled());
-  EXPECT_NE(label("status").find("looking"), std::string::npos) << label("status");
+  EXPECT_NE(label("status").find("searching"), std::string::npos) << label("status");
   ASSERT_TRUE(wait_for([] { return part<QPushButton>("diagnose")->isEnabled(); })) << label("status");
   std::printf("the answer took %lld ms, the window's longest pause was %lld ms\n",
               static_cast<long long>(pressed.elapsed()), static_cast<long long>(longest));
@@ -158,7 +158,7 @@ TEST_F(PanelInRviz, T5_RemoveBringsItBack) {
   press("remove");
   ASSERT_TRUE(wait_for([&] { return misfit() > 3.0 * low; })) << label("misfit") << ", " << label("status");
   ASSERT_TRUE(wait_for([] { return !part<QPushButton>("remove")->isEnabled(); }));
-  EXPECT_EQ(label("verdict"), "changed since the last look");
+  EXPECT_EQ(label("verdict"), "changed since the last diagnosis");
 }
 
 TEST_F(PanelInRviz, T6_ResetAnswers) {

@@ -21,7 +21,7 @@ class BackgroundReprocessing {
     std::size_t roll = 0;
   };
   /// Starts at once, on copies.
-  BackgroundReprocessing(const IteratedFilter& track, std::vector<Frame> frames, Task task);
+  BackgroundReprocessing(const IteratedFilter& filter, std::vector<Frame> frames, Task task);
   /// Ends the work early.
   ~BackgroundReprocessing();
   BackgroundReprocessing(const BackgroundReprocessing&) = delete;
@@ -32,7 +32,7 @@ class BackgroundReprocessing {
   bool finished() const;
   /// This is the result of a reprocessing.
   struct Outcome {
-    std::unique_ptr<IteratedFilter> track;
+    std::unique_ptr<IteratedFilter> filter;
     Task task;
     bool moved = false;     ///< true: the runs changed; false: only the notes are new
     std::size_t first = 0;  ///< frame that the filter begins with; 0 unless parameters changed or frames were left behind
@@ -41,8 +41,8 @@ class BackgroundReprocessing {
   /// follow.
   Outcome take();
 
-  /// Reprocesses at once, with `twin`, an unstarted copy of the filter that goes on.
-  static Outcome reprocess(std::unique_ptr<IteratedFilter> twin, const std::vector<Frame>& frames, Task task,
+  /// Reprocesses at once, with `unstarted`, the clone_unstarted() of the filter that goes on.
+  static Outcome reprocess(std::unique_ptr<IteratedFilter> unstarted, const std::vector<Frame>& frames, Task task,
                            const IteratedFilter::Checkpoint& checkpoint);
 
  private:

@@ -24,7 +24,7 @@ class ChangeHistory {
   /// Asks for the last change anew, once the filter after it holds `count` frames and knows more about it.
   std::optional<ChangeQuestion> closer(std::size_t count);
   /// These are the filter before the last change, not started, and the frames since its start.
-  const IteratedFilter& track() const { return *filter_run_; }
+  const IteratedFilter& filter() const { return *filter_run_; }
   std::vector<Frame> frames_since_its_start(const std::vector<Frame>& frames) const;
 
   /// The free run needs every frame, the parameters at the start, and each change. `theta` holds the parameters after the

@@ -25,7 +25,7 @@ struct StepResult {
   std::string reason;
   Estimate estimate;
   Misfit misfit;
-  std::map<std::string, double> seconds;  ///< wall time of each stage [s]: predict, observe, update, revisit, ...
+  std::map<std::string, double> seconds;  ///< wall time of each stage [s]: predict, observe, update, reprocess, ...
 };
 
 /// It tells whether the data determine a parameter, and why.

@@ -56,7 +56,8 @@ class RecordingFit {
   /// Returns d rows / d amplitude of each of `shapes` (3n x count), as a further displacement of the free run at w, N x
   /// count.
   Eigen::MatrixXd rows_along(const Eigen::VectorXd& w, const Eigen::MatrixXd& shapes, const Rows& rows) const;
-  /// Fits the training frames. `rival` is explained at fit_batch. A nonlinear model ends where quick runs promise no better.
+  /// Fits the training frames. `rival` is explained at fit_batch. A nonlinear model ends where quick runs promise no
+  /// better.
   BatchFit fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread, double rival = no_rival) const;
   /// Fits the first `share` of the training frames without full runs. `rival` is explained at fit_batch.
   BatchFit quick_fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread, double share = 1.0,
@@ -96,14 +97,14 @@ class RecordingFit {
   /// Returns all training frames, or the first of them copied into `room`.
   const std::vector<Frame>& first_of_training(double share, std::vector<Frame>& room) const;
   BatchFit fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd spread, double rival) const;
-  const ForwardModel& quick() const { return anchored_ ? *anchored_ : quick_ ? *quick_ : *forward_; }
+  const ForwardModel& quick() const { return surrogate_ ? *surrogate_ : quick_ ? *quick_ : *forward_; }
 
   const Recording& recording_;
   std::vector<Frame> training_;
   mutable Model model_;
   std::shared_ptr<ForwardModel> forward_;
-  std::unique_ptr<ForwardModel> quick_;                   ///< null: forward_ is quick itself
-  mutable std::unique_ptr<CorrectedSurrogate> anchored_;  ///< at the last full run; null: none yet
+  std::unique_ptr<ForwardModel> quick_;                    ///< null: forward_ is quick itself
+  mutable std::unique_ptr<CorrectedSurrogate> surrogate_;  ///< at the last full run; null: none yet
   std::vector<std::unique_ptr<ObservationOperator>> operators_;
 };
 

@@ -118,8 +118,8 @@ class ReducedModel : public ForwardModel {
   const Model& model_;
   BasisOptions options_;
   ReducedBasis basis_;
-  std::vector<int> focus_;            ///< nodes of the output; empty: all
-  PackedMatrix in_focus_;             ///< rows of the basis at these nodes
+  std::vector<int> output_nodes_;     ///< nodes of the output; empty: all
+  PackedMatrix basis_at_output_;      ///< rows of the basis at these nodes
   std::vector<Projected> projected_;  ///< one for each part
   StrainRows strains_;                ///< strains of the basis, if a term needs them for each theta
   mutable std::mutex mutex_;

@@ -55,7 +55,7 @@ class EstimatorNode {
   bool take_changes();
   void build(const TetMesh& mesh);
   void run_again();
-  void start_lap(const ros::Time& first_stamp);
+  void start_epoch(const ros::Time& first_stamp);
   void process(const FrameQueue::Work& work);
   void catch_up();
   void mark_stale();

@@ -30,7 +30,7 @@ class MapPublisher {
   /// Sets the running model and its mesh. Without `map` in the model nothing is published.
   void start(const ModelSettings& settings, const TetMesh& mesh);
   /// Starts another run of the experiment.
-  void start_lap();
+  void start_epoch();
   /// Must be called after each frame that was used. `recording` is called when a map is due.
   void add_frame(const Estimate& estimate, const std::function<Recording()>& recording);
 

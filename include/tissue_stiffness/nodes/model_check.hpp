@@ -39,11 +39,11 @@ class ModelCheck {
   /// Sets the running model. A check in progress is cancelled, and the next one is due.
   void start(const ModelSettings& settings, const TetMesh& mesh);
   /// Starts another run of the experiment. Frames and loads are forgotten.
-  void start_lap(double first_stamp);
+  void start_epoch(double first_stamp);
   void add(const LoadSample& load);
   void add(const Frame& frame);
 
-  /// Returns what is kept of this lap.
+  /// Returns what is kept of this epoch.
   Recording recording() const;
   /// Returns false when loads since the start were dropped, so that nothing can be run again.
   bool complete() const;
@@ -73,7 +73,7 @@ class ModelCheck {
   double first_stamp_ = 0.0;
   std::deque<Frame> frames_;
   std::deque<LoadSample> loads_;
-  bool complete_ = true;  ///< no load of this lap was dropped
+  bool complete_ = true;  ///< no load of this epoch was dropped
   bool news_ = false;     ///< a frame or model came since the last check
   bool stopped_ = false;
   unsigned requests_ = 0, served_ = 0;  ///< requests by check(), and the last one that was served

@@ -31,7 +31,7 @@ class SetupWatch {
   void frame_used(const Frame& frame, const TetMesh& mesh, double rest_time);
 
  private:
-  void look_at_topics();
+  void watch_topics();
   void say(const SetupFindings& findings);
 
   ros::NodeHandle node_;

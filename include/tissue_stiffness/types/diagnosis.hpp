@@ -23,11 +23,11 @@ struct MissingEffect {
   double z = std::numeric_limits<double>::quiet_NaN();  ///< statistic of the residual's test, for the most probable one
   double held_out_rms_before = 0.0;                     ///< [m]
   double held_out_rms_after = std::numeric_limits<double>::quiet_NaN();  ///< [m]; NaN without a refit
-  struct Twin {
+  struct Confusable {
     std::string effect;
     double cosine = 0.0;
   };
-  std::vector<Twin> confusable_with;
+  std::vector<Confusable> confusable_with;
 };
 
 /// One model in the sequence from the given model to the proposed one.
