@@ -91,8 +91,8 @@ int main(int argc, char** argv) {
   app.add_option("RECORDING", texts.recording, "rosbag")->required();
   app.add_option("--output", output, "folder for diagnosis.json, model_next.yaml and report.html")->required();
   app.add_option("--add", options.add, "add this effect and fit again (may be given several times)")->take_all();
-  app.add_option("--ignore", options.ignore, "do not look for this effect (may be given several times)")->take_all();
-  app.add_flag("--auto", options.automatic, "keep adding the best effect while the held-out error proves it");
+  app.add_option("--ignore", options.ignore, "do not search for this effect (may be given several times)")->take_all();
+  app.add_flag("--auto", options.automatic, "keep adding the most probable effect while the verdict is `missing`");
   app.add_option("--time-limit", time_limit, "end after so many seconds with what is known then")
       ->check(CLI::PositiveNumber);
   app.add_flag("--quiet", quiet, "no progress and no table");

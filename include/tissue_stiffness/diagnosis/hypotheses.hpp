@@ -58,9 +58,9 @@ struct Comparison {
   void merge(const std::vector<std::string>& effects, const Comparison& deeper);
 };
 
-/// Returns `adequate` if the given model is within the believed set and its residual passes, `numerics` if it passes only
-/// with the mesh's error allowed for. Returns `missing` if it is not in that set, named effects alone are the most probable
-/// hypothesis, and what they leave passes. Otherwise it returns `unexplained`.
+/// Returns `adequate` if the given model is believed (P(given) > 1 - `believed`) and its residual passes, `numerics` if it
+/// passes only with the mesh's error allowed for. Returns `missing` if it is not believed, named effects alone are the most
+/// probable hypothesis, and what they leave passes. Otherwise it returns `unexplained`.
 Verdict judge(const Comparison& comparison);
 
 /// Returns the effects of the fewest hypotheses that hold the believed part of the probability of all that name any effect,

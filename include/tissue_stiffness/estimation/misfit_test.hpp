@@ -24,11 +24,13 @@ class MisfitTest {
   /// cannot hold more noise, so they are tested too.
   void set_noise(double level) { known_noise_ = level; }
 
-  /// Returns the mean square along the modes a degree of freedom beyond what noise and numerics leave [noise variances].
+  /// Returns the mean square along the modes a degree of freedom, less noise_level() and what the numerics leave [stated
+  /// noise variances].
   double excess() const;
   /// Returns the standard deviation of `excess` under noise alone.
   double deviation() const;
-  /// Returns (excess - tolerated) / deviation; where the noise is known, the larger one of both parts.
+  /// Returns (excess - tolerated v) / deviation with v = noise_level(). After set_noise() it returns the larger one of this
+  /// and the same statistic across the modes.
   double z() const;
   /// The test passes while z <= bound.
   bool passes() const { return z() <= bound; }
@@ -44,7 +46,7 @@ class MisfitTest {
   bool empty() const { return frames_ == 0; }
 
   static constexpr double most_noise = 9.0;  ///< noise variances: noise beyond three times the stated one is a misfit
-  static constexpr double tolerated = 1.0;   ///< noise variances: unexplained motion below one frame's noise
+  static constexpr double tolerated = 1.0;   ///< of noise_level(): an excess that counts as no misfit
   static constexpr double bound = 3.0;       ///< standard deviations
 
  private:

@@ -16,8 +16,8 @@ struct Recording {
   /// It is called before every frame of every run; what it throws ends the fit.
   std::function<void()> checkpoint = [] {};
 
-  /// Returns the frames to fit. Every third ninth of the recording is held out, so that no fit is judged by what it saw.
-  /// Longer blocks would each fall into one part of a body's rhythm.
+  /// Returns the frames to fit. Every third ninth of the recording is held out, so that an error can be reported on frames
+  /// that no fit saw. Longer blocks would each fall into one part of a body's rhythm.
   std::vector<Frame> training() const;
   bool held_out(std::size_t frame) const { return (9 * frame / frames.size()) % 3 == 2; }
 };
