@@ -62,7 +62,7 @@ def cost_table(runs, law):
                          digits(r['replay_s']), f"{r['heap_kB']:,.0f}", f"{r['heap_requests']:,.0f}",
                          f"{r['peak_MB']:,.0f}", f"{r['basis_um']:.1f}" if r['basis_um'] > 0 else '-',
                          f"{r['error_pct']:+.3f} %"])
-    return table(['nodes', 'frame, median [ms]', 'p99 [ms]', 'first estimate [s]', 'past run again [s]',
+    return table(['nodes', 'frame, median [ms]', 'p99 [ms]', 'first estimate [s]', 'reprocessing [s]',
                   'heap [kB a frame]', 'requests', 'peak memory [MB]', 'basis error [um]', 'E off'], rows)
 
 

@@ -284,9 +284,9 @@ def page(arguments, rows, doc):
     classes = collections.Counter(row['class'] for row in good)
     bins, _ = reliability(statements(good))
     lines = ['# How honest a diagnosis of foreign recordings is', '',
-             'Written by `scripts/hidden_effects foreign`; `benchmark/hidden_effects/foreign_truths.py` says what is '
-             'simulated, `foreign_draws.py` what is made wrong and what an honest answer is, '
-             '`doc/hidden_effects_foreign.json` what came of each draw.', '',
+             '`scripts/hidden_effects foreign` writes this page. `benchmark/hidden_effects/foreign_truths.py` says what is '
+             'simulated. `foreign_draws.py` says what is made wrong and what an honest answer is. '
+             '`doc/hidden_effects_foreign.json` holds the result of each draw.', '',
              'Draws: %s.' % ', '.join('%d %s' % (count, name) for name, count in classes.items()),
              '', *figures_page, '', '* failed: %d of %d' % (len(broken), len(rows))]
     lines += ['  * draw %d, %s, %s: %s' % (row['number'], row['truth'], row['kind'], row['failed']) for row in broken]

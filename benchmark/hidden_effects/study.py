@@ -308,8 +308,9 @@ def main():
     lines, (names, found, counts) = tables(rows)
     with open(os.path.join(doc, 'hidden_effects.md'), 'w') as file:
         file.write('\n'.join(['# How often the hidden effect is found', '',
-                              'Written by `scripts/hidden_effects --draws %d`; `benchmark/hidden_effects/scenes.py` says what is '
-                              'hidden and how, `doc/hidden_effects.json` what came of each draw.' % arguments.draws, ''] + lines +
+                              '`scripts/hidden_effects --draws %d` writes this page. `benchmark/hidden_effects/scenes.py` says what '
+                              'is hidden and how, and `doc/hidden_effects.json` holds the result of each draw.' % arguments.draws,
+                              ''] + lines +
                              ['', '![confusion](hidden_effects.png)', ''] + confusion_table(names, found, counts)) + '\n')
     picture(names, found, counts, os.path.join(doc, 'hidden_effects.png'))
     print('\n'.join(lines))

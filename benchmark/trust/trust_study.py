@@ -314,8 +314,8 @@ def main():
     lines = page(rows)
     with open(os.path.join(doc, 'trust.md'), 'w') as file:
         file.write('\n'.join(['# How far a published interval is to be trusted', '',
-                              'Written by `scripts/measure_trust`: `benchmark/trust` says what is made wrong and how, `doc/trust.json` what '
-                              'came of each draw. In brackets stand 95 % intervals of the shares.', '',
+                              '`scripts/measure_trust` writes this page. `benchmark/trust` says what is made wrong and how, and '
+                              '`doc/trust.json` holds the result of each draw. Brackets hold 95 % intervals of the shares.', '',
                               '![E and its interval against the truth](trust.png)', ''] + lines) + '\n')
     picture(rows, os.path.join(doc, 'trust.png'))
     print('\n'.join(lines))

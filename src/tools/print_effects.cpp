@@ -58,13 +58,13 @@ void print_effects(std::ostream& out) {
 }
 
 void print_effects_markdown(std::ostream& out) {
-  out << "# The library of effects\n\nWritten by `effects --markdown`; every row comes from the effect's own "
+  out << "# The library of effects\n\n`effects --markdown` writes this page. Every row comes from the effect's own "
          "specification.\n\n"
          "A parameter is a number, which is known, or estimated: `{prior: m, factor: f}` (log-normal: median, 1-sigma "
          "factor) or\n"
          "`{mean: m, std: s}` (normal). With `drift: d` it may change while the body moves, like a random walk: after t "
          "seconds\n"
-         "the logarithm of the former, the value of the latter, has gone d sqrt(t) (1 sigma).\n";
+         "the logarithm of the former, or the value of the latter, has changed by d sqrt(t) (1 sigma).\n";
   for (const EffectSpec& effect : effect_specs()) {
     out << "\n## `" << effect.name << "`\n\n"
         << sentence(effect.summary) << "\n\nFormula: `" << effect.formula << "`. Source: " << effect.source << ".\n";

@@ -92,20 +92,18 @@ void print_keys(std::ostream& out) {
 }
 
 void print_keys_markdown(std::ostream& out) {
-  out << "# Parameters\n\nWritten by `parameters --markdown` from what the readers check against. A key that is not here "
-         "is an "
-         "error, and the\nmessage says which were meant. SI units throughout; [effects.md](effects.md) has the keys of "
-         "each "
-         "effect.\n\n"
+  out << "# Parameters\n\n`parameters --markdown` writes this page from what the readers check against. A key that is "
+         "not here is an error, and the\nmessage says which were meant. All units are SI. [effects.md](effects.md) has the "
+         "keys of each effect.\n\n"
          "## The model file\n\n`*` stands for a name of your own, `[]` for an entry of a list. A key is required where the "
          "map "
          "that holds it is there.\n\n";
   print_table(model_keys(), out);
-  out << "\n## A scene file, for `simulate`\n\nA model file whose numbers are all known, and how it is run and recorded. "
-         "Under "
-         "`sensors` the keys of a cloud, of a\npinhole camera or of a B-mode slice.\n\n";
+  out << "\n## A scene file, for `simulate`\n\nA scene file is a model file whose numbers are all known. It also says how "
+         "the model is run and recorded. `sensors` takes\nthe keys of a cloud, of a pinhole camera or of a B-mode "
+         "slice.\n\n";
   print_table(scene_keys(), out);
-  out << "\n## Private parameters of the nodes\n\nEvery node takes\n\n";
+  out << "\n## Private parameters of the nodes\n\nEvery node takes these keys:\n\n";
   print_table(common_node_keys(), out);
   for (const std::string& node : node_names()) {
     out << "\n### `" << node << "`\n\n";
