@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "tissue_stiffness/meshing/box_mesh.hpp"
+#include "meshing/box_mesh.hpp"
 #include "tissue_stiffness/settings/model_settings.hpp"
 #include "tissue_stiffness/types/error.hpp"
 

@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "tissue_stiffness/filter/consistency.hpp"
-#include "tissue_stiffness/meshing/box_mesh.hpp"
-#include "tissue_stiffness/observation/observation_operator.hpp"
+#include "filter/consistency.hpp"
+#include "meshing/box_mesh.hpp"
+#include "observation/observation_operator.hpp"
 #include "verification/experiment.hpp"
 
 namespace tissue_stiffness {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tissue_stiffness/segmentation/overlay.hpp"
+#include "segmentation/overlay.hpp"
 #include "tissue_stiffness/segmentation/segmenter.hpp"
 
 namespace ts = tissue_stiffness;

@@ -13,10 +13,10 @@
 #include <exception>
 
 #include "export.hpp"
+#include "fem/sparse_solver.hpp"
 #include "heap/heap.hpp"
 #include "memory.hpp"
 #include "scene.hpp"
-#include "tissue_stiffness/fem/sparse_solver.hpp"
 
 namespace {
 

@@ -2,8 +2,8 @@
 
 #include <sstream>
 
-#include "tissue_stiffness/meshing/box_mesh.hpp"
-#include "tissue_stiffness/observation/observation_operator.hpp"
+#include "meshing/box_mesh.hpp"
+#include "observation/observation_operator.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -4,8 +4,8 @@
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "elastic_body.hpp"
+#include "fem/facet_quadrature.hpp"
 #include "figures.hpp"
-#include "tissue_stiffness/fem/facet_quadrature.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

@@ -5,8 +5,8 @@
 
 #include "experiment.hpp"
 #include "figures.hpp"
-#include "tissue_stiffness/filter/consistency.hpp"
-#include "tissue_stiffness/meshing/box_mesh.hpp"
+#include "filter/consistency.hpp"
+#include "meshing/box_mesh.hpp"
 
 namespace tissue_stiffness {
 namespace {

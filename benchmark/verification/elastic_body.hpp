@@ -5,12 +5,12 @@
 #include <random>
 #include <vector>
 
-#include "tissue_stiffness/fem/discretisation.hpp"
-#include "tissue_stiffness/fem/generalized_alpha.hpp"
-#include "tissue_stiffness/fem/neo_hookean.hpp"
-#include "tissue_stiffness/fem/products.hpp"
-#include "tissue_stiffness/meshing/box_mesh.hpp"
-#include "tissue_stiffness/meshing/elevate.hpp"
+#include "fem/discretisation.hpp"
+#include "fem/generalized_alpha.hpp"
+#include "fem/neo_hookean.hpp"
+#include "fem/products.hpp"
+#include "meshing/box_mesh.hpp"
+#include "meshing/elevate.hpp"
 
 namespace tissue_stiffness {
 

@@ -4,9 +4,9 @@
 #include <random>
 #include <vector>
 
+#include "forward/forward_model.hpp"
+#include "forward/reduced_basis.hpp"
 #include "tissue_stiffness/estimation/estimator.hpp"
-#include "tissue_stiffness/forward/forward_model.hpp"
-#include "tissue_stiffness/forward/reduced_basis.hpp"
 
 namespace tissue_stiffness {
 

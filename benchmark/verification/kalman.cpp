@@ -5,7 +5,7 @@
 #include <random>
 
 #include "figures.hpp"
-#include "tissue_stiffness/filter/unscented_filter.hpp"
+#include "filter/unscented_filter.hpp"
 
 namespace tissue_stiffness {
 namespace {

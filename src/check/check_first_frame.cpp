@@ -1,11 +1,11 @@
-#include "tissue_stiffness/check/check_first_frame.hpp"
+#include "check/check_first_frame.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "tissue_stiffness/check/rigid_fit.hpp"
-#include "tissue_stiffness/check/words.hpp"
-#include "tissue_stiffness/meshing/surface.hpp"
+#include "check/rigid_fit.hpp"
+#include "check/words.hpp"
+#include "meshing/surface.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,8 +1,8 @@
-#include "tissue_stiffness/check/check_images.hpp"
+#include "check/check_images.hpp"
 
 #include <algorithm>
 
-#include "tissue_stiffness/segmentation/brightness.hpp"
+#include "segmentation/brightness.hpp"
 
 namespace tissue_stiffness {
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <optional>
 
-#include "tissue_stiffness/check/check_motion.hpp"
-#include "tissue_stiffness/check/words.hpp"
+#include "check/check_motion.hpp"
+#include "check/words.hpp"
 
 namespace tissue_stiffness {
 namespace {

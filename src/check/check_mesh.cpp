@@ -1,11 +1,11 @@
-#include "tissue_stiffness/check/check_mesh.hpp"
+#include "check/check_mesh.hpp"
 
 #include <cmath>
 
-#include "tissue_stiffness/check/words.hpp"
+#include "check/words.hpp"
+#include "meshing/surface.hpp"
+#include "meshing/triangle_surface.hpp"
 #include "tissue_stiffness/meshing/mesh_io.hpp"
-#include "tissue_stiffness/meshing/surface.hpp"
-#include "tissue_stiffness/meshing/triangle_surface.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tissue_stiffness/check/check_motion.hpp"
-#include "tissue_stiffness/check/words.hpp"
+#include "check/check_motion.hpp"
+#include "check/words.hpp"
 
 namespace tissue_stiffness {
 namespace {

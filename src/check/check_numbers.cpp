@@ -1,10 +1,10 @@
-#include "tissue_stiffness/check/check_numbers.hpp"
+#include "check/check_numbers.hpp"
 
 #include <algorithm>
 #include <array>
 #include <limits>
 
-#include "tissue_stiffness/check/words.hpp"
+#include "check/words.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "tissue_stiffness/check/check_topics.hpp"
-#include "tissue_stiffness/check/words.hpp"
+#include "check/check_topics.hpp"
+#include "check/words.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,8 +1,8 @@
-#include "tissue_stiffness/check/check_topics.hpp"
+#include "check/check_topics.hpp"
 
 #include <algorithm>
 
-#include "tissue_stiffness/settings/suggestion.hpp"
+#include "settings/suggestion.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,11 +1,11 @@
-#include "tissue_stiffness/check/motion_study.hpp"
+#include "check/motion_study.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "tissue_stiffness/fit/ensemble.hpp"
-#include "tissue_stiffness/forward/reduced_model.hpp"
+#include "fit/ensemble.hpp"
+#include "forward/reduced_model.hpp"
 
 namespace tissue_stiffness {
 namespace {

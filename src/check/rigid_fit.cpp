@@ -1,10 +1,10 @@
-#include "tissue_stiffness/check/rigid_fit.hpp"
+#include "check/rigid_fit.hpp"
 
 #include <Eigen/SVD>
 #include <cmath>
 #include <limits>
 
-#include "tissue_stiffness/observation/closest_point.hpp"
+#include "observation/closest_point.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,12 +1,12 @@
-#include "tissue_stiffness/diagnosis/belief_map.hpp"
+#include "diagnosis/belief_map.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <vector>
 
-#include "tissue_stiffness/diagnosis/scores.hpp"
-#include "tissue_stiffness/meshing/farthest_nodes.hpp"
+#include "diagnosis/scores.hpp"
+#include "meshing/farthest_nodes.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/diagnosis/candidates.hpp"
+#include "diagnosis/candidates.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,10 +6,10 @@
 #include <mutex>
 #include <set>
 
-#include "tissue_stiffness/effects/registry.hpp"
-#include "tissue_stiffness/forward/extra_force.hpp"
-#include "tissue_stiffness/forward/for_each_index.hpp"
-#include "tissue_stiffness/settings/extend_model.hpp"
+#include "effects/registry.hpp"
+#include "forward/extra_force.hpp"
+#include "forward/for_each_index.hpp"
+#include "settings/extend_model.hpp"
 
 namespace tissue_stiffness {
 namespace {

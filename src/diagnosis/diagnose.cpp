@@ -8,20 +8,20 @@
 #include <optional>
 #include <utility>
 
-#include "tissue_stiffness/diagnosis/belief_map.hpp"
-#include "tissue_stiffness/diagnosis/finding.hpp"
-#include "tissue_stiffness/diagnosis/fit_entries.hpp"
-#include "tissue_stiffness/diagnosis/missing_force.hpp"
-#include "tissue_stiffness/diagnosis/mix_explanations.hpp"
-#include "tissue_stiffness/diagnosis/residual_views.hpp"
-#include "tissue_stiffness/diagnosis/screening.hpp"
-#include "tissue_stiffness/effects/registry.hpp"
-#include "tissue_stiffness/estimation/mesh_error.hpp"
-#include "tissue_stiffness/estimation/posterior.hpp"
-#include "tissue_stiffness/forward/extra_force.hpp"
-#include "tissue_stiffness/settings/extend_model.hpp"
+#include "diagnosis/belief_map.hpp"
+#include "diagnosis/finding.hpp"
+#include "diagnosis/fit_entries.hpp"
+#include "diagnosis/missing_force.hpp"
+#include "diagnosis/mix_explanations.hpp"
+#include "diagnosis/residual_views.hpp"
+#include "diagnosis/screening.hpp"
+#include "effects/registry.hpp"
+#include "estimation/mesh_error.hpp"
+#include "estimation/posterior.hpp"
+#include "forward/extra_force.hpp"
+#include "settings/extend_model.hpp"
 #include "tissue_stiffness/types/error.hpp"
-#include "tissue_stiffness/types/stop_request.hpp"
+#include "types/stop_request.hpp"
 
 namespace tissue_stiffness {
 namespace {

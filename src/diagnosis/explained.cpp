@@ -1,10 +1,10 @@
-#include "tissue_stiffness/diagnosis/explained.hpp"
+#include "diagnosis/explained.hpp"
 
 #include <Eigen/Cholesky>
 
-#include "tissue_stiffness/diagnosis/candidates.hpp"
-#include "tissue_stiffness/diagnosis/comparison_numbers.hpp"
-#include "tissue_stiffness/settings/extend_model.hpp"
+#include "diagnosis/candidates.hpp"
+#include "diagnosis/comparison_numbers.hpp"
+#include "settings/extend_model.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,11 +1,11 @@
-#include "tissue_stiffness/diagnosis/finding.hpp"
+#include "diagnosis/finding.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "tissue_stiffness/diagnosis/refit_list.hpp"
-#include "tissue_stiffness/diagnosis/refit_search.hpp"
+#include "diagnosis/refit_list.hpp"
+#include "diagnosis/refit_search.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

@@ -1,11 +1,11 @@
-#include "tissue_stiffness/diagnosis/finer_mesh.hpp"
+#include "diagnosis/finer_mesh.hpp"
 
 #include <Eigen/Cholesky>
 
-#include "tissue_stiffness/diagnosis/candidates.hpp"
-#include "tissue_stiffness/estimation/mesh_error.hpp"
-#include "tissue_stiffness/fit/coordinate_scan.hpp"
-#include "tissue_stiffness/meshing/refine.hpp"
+#include "diagnosis/candidates.hpp"
+#include "estimation/mesh_error.hpp"
+#include "fit/coordinate_scan.hpp"
+#include "meshing/refine.hpp"
 
 namespace tissue_stiffness {
 namespace {

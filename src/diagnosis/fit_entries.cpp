@@ -1,4 +1,4 @@
-#include "tissue_stiffness/diagnosis/fit_entries.hpp"
+#include "diagnosis/fit_entries.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tissue_stiffness/diagnosis/refit.hpp"
+#include "diagnosis/refit.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/diagnosis/force_smoother.hpp"
+#include "diagnosis/force_smoother.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -6,7 +6,7 @@
 #include <iterator>
 #include <utility>
 
-#include "tissue_stiffness/forward/for_each_index.hpp"
+#include "forward/for_each_index.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/diagnosis/hypotheses.hpp"
+#include "diagnosis/hypotheses.hpp"
 
 #include <tbb/parallel_for.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "tissue_stiffness/diagnosis/missing_force.hpp"
-#include "tissue_stiffness/diagnosis/scores.hpp"
+#include "diagnosis/missing_force.hpp"
+#include "diagnosis/scores.hpp"
 
 namespace tissue_stiffness {
 namespace {

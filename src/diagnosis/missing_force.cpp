@@ -1,12 +1,12 @@
-#include "tissue_stiffness/diagnosis/missing_force.hpp"
+#include "diagnosis/missing_force.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <set>
 
-#include "tissue_stiffness/forward/reduced_trajectory.hpp"
-#include "tissue_stiffness/meshing/farthest_nodes.hpp"
+#include "forward/reduced_trajectory.hpp"
+#include "meshing/farthest_nodes.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,10 +1,10 @@
-#include "tissue_stiffness/diagnosis/mix_explanations.hpp"
+#include "diagnosis/mix_explanations.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "tissue_stiffness/filter/consistency.hpp"
-#include "tissue_stiffness/filter/interval.hpp"
+#include "filter/consistency.hpp"
+#include "filter/interval.hpp"
 
 namespace tissue_stiffness {
 namespace {

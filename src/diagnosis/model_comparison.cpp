@@ -1,4 +1,4 @@
-#include "tissue_stiffness/diagnosis/model_comparison.hpp"
+#include "diagnosis/model_comparison.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "tissue_stiffness/diagnosis/scores.hpp"
-#include "tissue_stiffness/forward/reduced_trajectory.hpp"
+#include "diagnosis/scores.hpp"
+#include "forward/reduced_trajectory.hpp"
 
 namespace tissue_stiffness {
 namespace {

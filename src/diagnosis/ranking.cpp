@@ -1,4 +1,4 @@
-#include "tissue_stiffness/diagnosis/ranking.hpp"
+#include "diagnosis/ranking.hpp"
 
 #include <tbb/parallel_for.h>
 

@@ -1,12 +1,12 @@
-#include "tissue_stiffness/diagnosis/refit.hpp"
+#include "diagnosis/refit.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 
-#include "tissue_stiffness/diagnosis/fit_entries.hpp"
-#include "tissue_stiffness/diagnosis/model_comparison.hpp"
+#include "diagnosis/fit_entries.hpp"
+#include "diagnosis/model_comparison.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

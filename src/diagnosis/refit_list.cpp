@@ -1,4 +1,4 @@
-#include "tissue_stiffness/diagnosis/refit_list.hpp"
+#include "diagnosis/refit_list.hpp"
 
 #include <tbb/parallel_for.h>
 
@@ -8,11 +8,11 @@
 #include <mutex>
 #include <utility>
 
-#include "tissue_stiffness/diagnosis/missing_force.hpp"
-#include "tissue_stiffness/effects/registry.hpp"
-#include "tissue_stiffness/forward/for_each_index.hpp"
+#include "diagnosis/missing_force.hpp"
+#include "effects/registry.hpp"
+#include "forward/for_each_index.hpp"
 #include "tissue_stiffness/types/error.hpp"
-#include "tissue_stiffness/types/stop_request.hpp"
+#include "types/stop_request.hpp"
 
 namespace tissue_stiffness {
 namespace {

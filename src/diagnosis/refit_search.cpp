@@ -1,4 +1,4 @@
-#include "tissue_stiffness/diagnosis/refit_search.hpp"
+#include "diagnosis/refit_search.hpp"
 
 #include <algorithm>
 #include <map>

@@ -1,6 +1,6 @@
-#include "tissue_stiffness/diagnosis/replay_model.hpp"
+#include "diagnosis/replay_model.hpp"
 
-#include "tissue_stiffness/estimation/replay_recorder.hpp"
+#include "estimation/replay_recorder.hpp"
 
 namespace tissue_stiffness {
 

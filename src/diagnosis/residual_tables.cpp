@@ -4,7 +4,7 @@
 #include <map>
 #include <numeric>
 
-#include "tissue_stiffness/diagnosis/residual_views.hpp"
+#include "diagnosis/residual_views.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/diagnosis/residual_views.hpp"
+#include "diagnosis/residual_views.hpp"
 
 #include <algorithm>
 #include <cmath>

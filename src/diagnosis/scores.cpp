@@ -1,11 +1,11 @@
-#include "tissue_stiffness/diagnosis/scores.hpp"
+#include "diagnosis/scores.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
-#include "tissue_stiffness/filter/consistency.hpp"
+#include "filter/consistency.hpp"
 
 namespace tissue_stiffness {
 namespace {

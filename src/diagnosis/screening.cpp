@@ -1,11 +1,11 @@
-#include "tissue_stiffness/diagnosis/screening.hpp"
+#include "diagnosis/screening.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "tissue_stiffness/effects/registry.hpp"
-#include "tissue_stiffness/forward/for_each_index.hpp"
+#include "effects/registry.hpp"
+#include "forward/for_each_index.hpp"
 
 namespace tissue_stiffness {
 namespace {

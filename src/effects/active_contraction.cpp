@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tissue_stiffness/effects/fibre_field.hpp"
-#include "tissue_stiffness/effects/registry.hpp"
+#include "effects/fibre_field.hpp"
+#include "effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {
@@ -19,7 +19,7 @@ double twitch(double time, const Parameters& p) {
   return part < 1.0 ? std::pow(std::sin(M_PI * part), p[kSharpness]) : 0.0;
 }
 
-class ActiveContraction : public Effect {
+class ActiveContraction : public Effect, public FiniteStrainForm {
  public:
   ActiveContraction(const Value& arguments, const EffectContext& context) : fem_(context.fem), fibres_(arguments, context) {
     if (arguments.has("course")) course_ = load_csv(arguments.at("course"), 1, context);
@@ -38,7 +38,7 @@ class ActiveContraction : public Effect {
     load.shape = {kAngle, kTilt};
     out.loads.push_back(std::move(load));
   }
-  bool has_finite_form() const override { return true; }
+  const FiniteStrainForm* finite_strain() const override { return this; }
   void add_finite_force(const Motion& motion, const Parameters& p, Eigen::VectorXd& force) const override {
     const double now = p[kAmplitude] * activation(motion.since, p);
     if (now != 0.0) add_fibre_force(fem_, directions(p), constant(now), motion.displacement, force);

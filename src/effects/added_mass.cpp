@@ -1,6 +1,6 @@
 // Extra mass is attached to the surface. It slows the motion, and gravity acts on it.
-#include "tissue_stiffness/effects/registry.hpp"
-#include "tissue_stiffness/fem/facet_quadrature.hpp"
+#include "effects/registry.hpp"
+#include "fem/facet_quadrature.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {

@@ -1,8 +1,8 @@
 // Poisson's ratio differs from that of the model file.
 #include <algorithm>
 
-#include "tissue_stiffness/effects/registry.hpp"
-#include "tissue_stiffness/effects/solids.hpp"
+#include "effects/registry.hpp"
+#include "effects/solids.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {
@@ -15,7 +15,7 @@ Lame change(double modulus, double ratio, double shift) {
   return {after.lambda - before.lambda, after.mu - before.mu};
 }
 
-class Compressibility : public Effect {
+class Compressibility : public Effect, public FiniteStrainForm {
  public:
   explicit Compressibility(const EffectContext& context) : solids_(context, 1) {}
 
@@ -27,7 +27,7 @@ class Compressibility : public Effect {
       add(out, s, isotropic_factor(0.0, 1.0), [here](const Parameters& p) { return here(p).mu; });
     }
   }
-  bool has_finite_form() const override { return true; }
+  const FiniteStrainForm* finite_strain() const override { return this; }
   void add_finite_force(const Motion& motion, const Parameters& p, Eigen::VectorXd& force) const override {
     for (std::size_t s = 0; p[0] != 0.0 && s < solids_.count(); ++s) {
       solids_.finite(s).add_force(change(solids_.modulus(s, p), solids_.ratio(s, p), p[0]), motion.displacement, force);

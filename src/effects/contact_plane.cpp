@@ -1,8 +1,8 @@
 // The surface is in contact with a rigid plane, by penalty at its quadrature points, with Coulomb's friction.
 #include <cmath>
 
-#include "tissue_stiffness/effects/registry.hpp"
-#include "tissue_stiffness/fem/facet_quadrature.hpp"
+#include "effects/registry.hpp"
+#include "fem/facet_quadrature.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness::effects {
@@ -23,7 +23,7 @@ double body_size(const TetMesh& mesh) {
   return (mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff()).norm();
 }
 
-class ContactPlane : public Effect {
+class ContactPlane : public Effect, public NonlinearForce {
  public:
   ContactPlane(const Value& arguments, const EffectContext& context)
       : mesh_(context.mesh),
@@ -40,7 +40,7 @@ class ContactPlane : public Effect {
     for (int f = 0; f < mesh_.facet_count(); ++f) local_.push_back(facet_local_nodes(mesh_, f));
   }
 
-  bool nonlinear() const override { return true; }
+  const NonlinearForce* nonlinear_force() const override { return this; }
   bool has_velocity_tangent(const Parameters& p) const override { return p[2] > 0.0; }
 
   void add_force(const Motion& motion, const Parameters& p, Eigen::VectorXd& force) const override {

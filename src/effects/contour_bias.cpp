@@ -1,12 +1,12 @@
 // Outlines and surface points are measured outside the surface, or inside it.
-#include "tissue_stiffness/effects/registry.hpp"
+#include "effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {
 
-class ContourBias : public Effect {
+class ContourBias : public Effect, public Sensor {
  public:
-  bool observes() const override { return true; }
+  const Sensor* sensor() const override { return this; }
   void observe(const Parameters& p, ObservedMotion& motion) const override { motion.outward += p[0]; }
 };
 

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/effects/course.hpp"
+#include "effects/course.hpp"
 
 #include <algorithm>
 #include <fstream>

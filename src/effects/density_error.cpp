@@ -1,5 +1,5 @@
 // Every mass differs from that of the model file.
-#include "tissue_stiffness/effects/registry.hpp"
+#include "effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {

@@ -1,8 +1,8 @@
 // A clamp is compliant: springs per area replace held nodes.
 #include <algorithm>
 
-#include "tissue_stiffness/effects/registry.hpp"
-#include "tissue_stiffness/fem/facet_quadrature.hpp"
+#include "effects/registry.hpp"
+#include "fem/facet_quadrature.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness::effects {
@@ -14,7 +14,7 @@ bool is_fixed(const ModelSettings& settings, const std::string& region) {
   });
 }
 
-class ElasticSupport : public Effect {
+class ElasticSupport : public Effect, public Support {
  public:
   ElasticSupport(const Value& arguments, const EffectContext& context) {
     const Value& name = arguments.at("region");
@@ -29,6 +29,7 @@ class ElasticSupport : public Effect {
   void linear_terms(LinearTerms& out) const override {
     out.stiffness.push_back({unit_, [](const Parameters& p) { return p[0] > 0.0 ? 1.0 / p[0] : 0.0; }});
   }
+  const Support* support() const override { return this; }
   std::vector<int> compliant_nodes() const override { return nodes_; }
   bool is_compliant(const Parameters& p) const override { return p[0] > 0.0; }
 

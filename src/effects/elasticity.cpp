@@ -1,14 +1,14 @@
 // Elastic resistance, at small strain (linear) or finite strain (neo_hookean).
 #include <numeric>
 
-#include "tissue_stiffness/effects/registry.hpp"
-#include "tissue_stiffness/fem/neo_hookean.hpp"
+#include "effects/registry.hpp"
+#include "fem/neo_hookean.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {
 
-class Elasticity : public Effect {
+class Elasticity : public Effect, public FiniteStrainForm {
  public:
   Elasticity(const Value& arguments, const EffectContext& context)
       : elements_(solid_elements(arguments, context.fem.element_count(), context.regions)), solid_(context.fem, elements_) {
@@ -40,7 +40,7 @@ class Elasticity : public Effect {
   void linear_terms(LinearTerms& out) const override {
     out.stiffness.insert(out.stiffness.end(), linear_.begin(), linear_.end());
   }
-  bool has_finite_form() const override { return true; }
+  const FiniteStrainForm* finite_strain() const override { return this; }
   bool always_finite() const override { return finite_strain_; }
   void add_finite_force(const Motion& motion, const Parameters& p, Eigen::VectorXd& force) const override {
     solid_.add_force(lame(p[0], p[1]), motion.displacement, force);

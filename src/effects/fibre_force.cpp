@@ -1,4 +1,4 @@
-#include "tissue_stiffness/effects/fibre_field.hpp"
+#include "effects/fibre_field.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,11 +1,11 @@
 // One family of fibres resists stretching.
-#include "tissue_stiffness/effects/fibre_field.hpp"
-#include "tissue_stiffness/effects/registry.hpp"
+#include "effects/fibre_field.hpp"
+#include "effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {
 
-class FibreReinforcement : public Effect {
+class FibreReinforcement : public Effect, public FiniteStrainForm {
  public:
   FibreReinforcement(const Value& arguments, const EffectContext& context)
       : fem_(context.fem), fibres_(arguments, context) {}
@@ -19,7 +19,7 @@ class FibreReinforcement : public Effect {
     term.shape = {1, 2};
     out.strain_stiffness.push_back(std::move(term));
   }
-  bool has_finite_form() const override { return true; }
+  const FiniteStrainForm* finite_strain() const override { return this; }
   void add_finite_force(const Motion& motion, const Parameters& p, Eigen::VectorXd& force) const override {
     if (p[0] != 0.0) add_fibre_force(fem_, directions(p), law(p[0]), motion.displacement, force);
   }

@@ -1,12 +1,13 @@
 // Nodes of a region are held at rest.
-#include "tissue_stiffness/effects/registry.hpp"
+#include "effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {
 
-class Fixed : public Effect {
+class Fixed : public Effect, public Support {
  public:
   Fixed(const Value& arguments, const EffectContext& context) : nodes_(context.region(arguments.at("region")).nodes) {}
+  const Support* support() const override { return this; }
   std::vector<int> fixed_nodes() const override { return nodes_; }
 
  private:

@@ -1,5 +1,5 @@
 // All measured loads are wrong by the same factor, as from a sensor that is out of calibration.
-#include "tissue_stiffness/effects/registry.hpp"
+#include "effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {

@@ -1,5 +1,5 @@
 // Finite strain replaces small strain.
-#include "tissue_stiffness/effects/registry.hpp"
+#include "effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {

@@ -1,5 +1,5 @@
 // Uniform gravity acts on every mass of the model.
-#include "tissue_stiffness/effects/registry.hpp"
+#include "effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {

@@ -1,12 +1,12 @@
 // All measured positions are too large or too small by one factor.
-#include "tissue_stiffness/effects/registry.hpp"
+#include "effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {
 
-class ImageScale : public Effect {
+class ImageScale : public Effect, public Sensor {
  public:
-  bool observes() const override { return true; }
+  const Sensor* sensor() const override { return this; }
   void observe(const Parameters& p, ObservedMotion& motion) const override {
     const Eigen::Map<const Eigen::VectorXd> rest(motion.mesh.nodes.data(), motion.mesh.nodes.size());
     if (p[0] != 1.0) motion.displacement += (p[0] - 1.0) * (rest + motion.displacement);

@@ -1,5 +1,5 @@
 // The body's inertia is the force -M a with M_ab = rho int N_a N_b dV.
-#include "tissue_stiffness/effects/registry.hpp"
+#include "effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "tissue_stiffness/effects/registry.hpp"
+#include "effects/registry.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

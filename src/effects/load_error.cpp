@@ -1,4 +1,4 @@
-#include "tissue_stiffness/effects/load_error.hpp"
+#include "effects/load_error.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>

@@ -1,8 +1,8 @@
 // A force sensor has a wrong zero: a constant force acts in addition to the measured one.
 #include <algorithm>
 
-#include "tissue_stiffness/effects/registry.hpp"
-#include "tissue_stiffness/fem/facet_quadrature.hpp"
+#include "effects/registry.hpp"
+#include "fem/facet_quadrature.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {

@@ -2,8 +2,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "tissue_stiffness/effects/registry.hpp"
-#include "tissue_stiffness/fem/facet_quadrature.hpp"
+#include "effects/registry.hpp"
+#include "fem/facet_quadrature.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness::effects {

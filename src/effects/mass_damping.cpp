@@ -1,5 +1,5 @@
 // Damping is proportional to mass, so slow motions decay first.
-#include "tissue_stiffness/effects/registry.hpp"
+#include "effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {

@@ -1,5 +1,5 @@
 // The recording is itself a simulation, whose finite time step makes fast oscillations slower.
-#include "tissue_stiffness/effects/registry.hpp"
+#include "effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {

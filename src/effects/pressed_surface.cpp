@@ -1,8 +1,8 @@
-#include "tissue_stiffness/effects/pressed_surface.hpp"
+#include "effects/pressed_surface.hpp"
 
 #include <Eigen/Geometry>
 
-#include "tissue_stiffness/effects/registry.hpp"
+#include "effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {

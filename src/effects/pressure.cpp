@@ -1,11 +1,11 @@
 // A fluid presses on a surface, as a dead load for small strain and a follower load for finite strain.
-#include "tissue_stiffness/effects/pressed_surface.hpp"
-#include "tissue_stiffness/effects/registry.hpp"
+#include "effects/pressed_surface.hpp"
+#include "effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {
 
-class Pressure : public Effect {
+class Pressure : public Effect, public FiniteStrainForm {
  public:
   Pressure(const Value& arguments, const EffectContext& context)
       : surface_(arguments.at("region"), context), course_(load_course(arguments, LoadInput::Kind::pressure, context)) {}
@@ -17,7 +17,7 @@ class Pressure : public Effect {
     load.course = course_;
     out.loads.push_back(std::move(load));
   }
-  bool has_finite_form() const override { return true; }
+  const FiniteStrainForm* finite_strain() const override { return this; }
 
   void add_finite_force(const Motion& motion, const Parameters& p, Eigen::VectorXd& force) const override {
     surface_.add_force(&motion.displacement, pressure(motion, p), force);

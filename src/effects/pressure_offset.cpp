@@ -1,13 +1,13 @@
 // A pressure transducer has a wrong zero: a constant pressure acts in addition to the measured one.
-#include "tissue_stiffness/effects/pressed_surface.hpp"
-#include "tissue_stiffness/effects/registry.hpp"
+#include "effects/pressed_surface.hpp"
+#include "effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {
 
 constexpr double kScale = 5e-3;  // of Young's modulus: strains of a few per cent in a wall that is a tenth of its radius
 
-class PressureOffset : public Effect {
+class PressureOffset : public Effect, public FiniteStrainForm {
  public:
   PressureOffset(const Value& arguments, const EffectContext& context) : surface_(arguments.at("region"), context) {}
 
@@ -18,7 +18,7 @@ class PressureOffset : public Effect {
     load.coefficient = [](const Parameters& p) { return p[0]; };
     out.loads.push_back(std::move(load));
   }
-  bool has_finite_form() const override { return true; }
+  const FiniteStrainForm* finite_strain() const override { return this; }
 
   void add_finite_force(const Motion& motion, const Parameters& p, Eigen::VectorXd& force) const override {
     surface_.add_force(&motion.displacement, p[0], force);

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/effects/proposal.hpp"
+#include "effects/proposal.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/effects/registry.hpp"
+#include "effects/registry.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@ using Maker = std::unique_ptr<Effect> (*)(const Value&, const EffectContext&);
 const std::vector<Maker>& makers() {
   static const std::vector<Maker> list = {
 #define EFFECT(name) &effects::make_##name,
-#include "tissue_stiffness/effects/effects.def"
+#include "effects/effects.def"
 #undef EFFECT
   };
   return list;
@@ -65,7 +65,7 @@ void read_vector(const Value& value, const ParameterSpec& spec, std::vector<Quan
 const std::vector<EffectSpec>& effect_specs() {
   static const std::vector<EffectSpec> list = {
 #define EFFECT(name) effects::name##_spec(),
-#include "tissue_stiffness/effects/effects.def"
+#include "effects/effects.def"
 #undef EFFECT
   };
   return list;

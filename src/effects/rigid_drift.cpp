@@ -1,14 +1,14 @@
 // The sensor, or the base of the body, moves slowly.
 #include <Eigen/Geometry>
 
-#include "tissue_stiffness/effects/registry.hpp"
+#include "effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {
 
-class RigidDrift : public Effect {
+class RigidDrift : public Effect, public Sensor {
  public:
-  bool observes() const override { return true; }
+  const Sensor* sensor() const override { return this; }
   void observe(const Parameters& p, ObservedMotion& motion) const override {
     const Eigen::Vector3d shift = motion.time * p.head<3>(), turn = motion.time * p.tail<3>();
     const double angle = turn.norm();

@@ -1,14 +1,14 @@
 // The axes of a sensor differ from the model's.
 #include <Eigen/Geometry>
 
-#include "tissue_stiffness/effects/registry.hpp"
+#include "effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {
 
-class SensorRotation : public Effect {
+class SensorRotation : public Effect, public Sensor {
  public:
-  bool observes() const override { return true; }
+  const Sensor* sensor() const override { return this; }
   void observe(const Parameters& p, ObservedMotion& motion) const override {
     const Eigen::Vector3d turn = p.head<3>();
     const double angle = turn.norm();

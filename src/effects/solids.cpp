@@ -1,4 +1,4 @@
-#include "tissue_stiffness/effects/solids.hpp"
+#include "effects/solids.hpp"
 
 namespace tissue_stiffness {
 

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/effects/spread_points.hpp"
+#include "effects/spread_points.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

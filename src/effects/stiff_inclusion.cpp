@@ -2,9 +2,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "tissue_stiffness/effects/registry.hpp"
-#include "tissue_stiffness/effects/solids.hpp"
-#include "tissue_stiffness/effects/spread_points.hpp"
+#include "effects/registry.hpp"
+#include "effects/solids.hpp"
+#include "effects/spread_points.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {
@@ -18,7 +18,7 @@ double mean_edge(const Discretisation& fem) {
   return std::cbrt(6.0 * std::sqrt(2.0) * fem.volume() / fem.element_count());
 }
 
-class StiffInclusion : public Effect {
+class StiffInclusion : public Effect, public FiniteStrainForm {
  public:
   explicit StiffInclusion(const EffectContext& context)
       : fem_(context.fem), solids_(context, kOwn), half_width_(kEdge * mean_edge(context.fem)) {}
@@ -38,7 +38,7 @@ class StiffInclusion : public Effect {
       out.strain_stiffness.push_back(std::move(term));
     }
   }
-  bool has_finite_form() const override { return true; }
+  const FiniteStrainForm* finite_strain() const override { return this; }
   void add_finite_force(const Motion& motion, const Parameters& p, Eigen::VectorXd& force) const override {
     for (std::size_t s = 0; p[kExcess] != 0.0 && s < solids_.count(); ++s) {
       const Lame c = lame(solids_.modulus(s, p), solids_.ratio(s, p));

@@ -2,8 +2,8 @@
 #include <Eigen/Cholesky>
 #include <functional>
 
-#include "tissue_stiffness/effects/registry.hpp"
-#include "tissue_stiffness/effects/solids.hpp"
+#include "effects/registry.hpp"
+#include "effects/solids.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness::effects {
@@ -18,13 +18,13 @@ StressScale excess(double b, double modulus, double psi) {
   return {std::expm1(exponent), 2.0 * b / modulus * std::exp(exponent)};
 }
 
-class StrainStiffening : public Effect {
+class StrainStiffening : public Effect, public FiniteStrainForm, public NonlinearForce {
  public:
   explicit StrainStiffening(const EffectContext& context) : fem_(context.fem), solids_(context, 1) {}
 
   bool needs_elasticity() const override { return true; }
-  bool nonlinear() const override { return true; }
-  bool has_finite_form() const override { return true; }
+  const NonlinearForce* nonlinear_force() const override { return this; }
+  const FiniteStrainForm* finite_strain() const override { return this; }
 
   // This and add_stiffness are the small-strain form.
   void add_force(const Motion& motion, const Parameters& p, Eigen::VectorXd& force) const override {

@@ -1,12 +1,12 @@
 // Measurements are stamped late or early relative to the loads.
-#include "tissue_stiffness/effects/registry.hpp"
+#include "effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {
 
-class TimeOffset : public Effect {
+class TimeOffset : public Effect, public Sensor {
  public:
-  bool observes() const override { return true; }
+  const Sensor* sensor() const override { return this; }
   double delay(const Parameters& p) const override { return p[0]; }
 };
 

@@ -1,6 +1,6 @@
 // A measured total force is spread evenly over a patch of the surface.
-#include "tissue_stiffness/effects/registry.hpp"
-#include "tissue_stiffness/fem/facet_quadrature.hpp"
+#include "effects/registry.hpp"
+#include "fem/facet_quadrature.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {

@@ -1,5 +1,5 @@
 // Part of the stiffness relaxes (standard linear solid).
-#include "tissue_stiffness/effects/registry.hpp"
+#include "effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {

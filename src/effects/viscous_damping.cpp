@@ -1,5 +1,5 @@
 // Kelvin-Voigt damping acts, so fast motions decay first.
-#include "tissue_stiffness/effects/registry.hpp"
+#include "effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {

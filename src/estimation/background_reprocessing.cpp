@@ -1,9 +1,9 @@
-#include "tissue_stiffness/estimation/background_reprocessing.hpp"
+#include "estimation/background_reprocessing.hpp"
 
 #include <chrono>
 #include <utility>
 
-#include "tissue_stiffness/estimation/low_priority.hpp"
+#include "estimation/low_priority.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

@@ -1,11 +1,11 @@
-#include "tissue_stiffness/estimation/basis_error.hpp"
+#include "estimation/basis_error.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "tissue_stiffness/filter/posterior_linearization_filter.hpp"
-#include "tissue_stiffness/forward/reduced_trajectory.hpp"
+#include "filter/posterior_linearization_filter.hpp"
+#include "forward/reduced_trajectory.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,10 +1,10 @@
-#include "tissue_stiffness/estimation/change.hpp"
+#include "estimation/change.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "tissue_stiffness/fit/coordinate_scan.hpp"
-#include "tissue_stiffness/forward/for_each_index.hpp"
+#include "fit/coordinate_scan.hpp"
+#include "forward/for_each_index.hpp"
 
 namespace tissue_stiffness {
 namespace {

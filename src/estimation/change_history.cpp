@@ -1,4 +1,4 @@
-#include "tissue_stiffness/estimation/change_history.hpp"
+#include "estimation/change_history.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/estimation/change_watch.hpp"
+#include "estimation/change_watch.hpp"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 #include "tissue_stiffness/estimation/estimator.hpp"
 
-#include "tissue_stiffness/estimation/identify.hpp"
-#include "tissue_stiffness/estimation/scheme.hpp"
+#include "estimation/identify.hpp"
+#include "estimation/scheme.hpp"
 
 namespace tissue_stiffness {
 
@@ -11,6 +11,8 @@ class Estimator::Implementation {
   std::unique_ptr<Scheme> scheme;
 };
 
+Estimator::Estimator(const ModelSettings& settings, const TetMesh& mesh) : Estimator(settings, mesh, {}) {}
+
 Estimator::Estimator(const ModelSettings& settings, const TetMesh& mesh, const ReuseSources& relatives)
     : implementation_(std::make_unique<Implementation>(settings.estimator == EstimatorKind::paper
                                                            ? make_paper_scheme(settings, mesh)
@@ -19,7 +21,7 @@ Estimator::~Estimator() = default;
 Estimator::Estimator(Estimator&&) noexcept = default;
 
 const std::vector<LoadInput>& Estimator::load_inputs() const {
-  return implementation_->scheme->model().load_inputs();
+  return implementation_->scheme->model().loads().inputs();
 }
 void Estimator::set_first_stamp(double time) {
   implementation_->scheme->set_first_stamp(time);

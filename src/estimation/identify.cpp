@@ -1,10 +1,10 @@
-#include "tissue_stiffness/estimation/identify.hpp"
+#include "estimation/identify.hpp"
 
 #include <Eigen/LU>
 #include <cmath>
 #include <vector>
 
-#include "tissue_stiffness/effects/registry.hpp"
+#include "effects/registry.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/estimation/initial_velocity.hpp"
+#include "estimation/initial_velocity.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

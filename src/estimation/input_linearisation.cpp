@@ -1,15 +1,15 @@
-#include "tissue_stiffness/estimation/input_linearisation.hpp"
+#include "estimation/input_linearisation.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "tissue_stiffness/effects/registry.hpp"
-#include "tissue_stiffness/fit/ensemble.hpp"
-#include "tissue_stiffness/forward/load_error_response.hpp"
-#include "tissue_stiffness/forward/reduced_trajectory.hpp"
-#include "tissue_stiffness/observation/frame_misfit.hpp"
+#include "effects/registry.hpp"
+#include "fit/ensemble.hpp"
+#include "forward/load_error_response.hpp"
+#include "forward/reduced_trajectory.hpp"
+#include "observation/frame_misfit.hpp"
 
 namespace tissue_stiffness {
 namespace {

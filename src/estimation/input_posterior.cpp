@@ -1,4 +1,4 @@
-#include "tissue_stiffness/estimation/input_posterior.hpp"
+#include "estimation/input_posterior.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>

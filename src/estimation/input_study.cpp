@@ -1,4 +1,4 @@
-#include "tissue_stiffness/estimation/input_study.hpp"
+#include "estimation/input_study.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <utility>
 
-#include "tissue_stiffness/estimation/input_linearisation.hpp"
-#include "tissue_stiffness/estimation/input_posterior.hpp"
-#include "tissue_stiffness/fit/ensemble.hpp"
+#include "estimation/input_linearisation.hpp"
+#include "estimation/input_posterior.hpp"
+#include "fit/ensemble.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,14 +1,14 @@
-#include "tissue_stiffness/estimation/iterated_filter.hpp"
+#include "estimation/iterated_filter.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "tissue_stiffness/estimation/basis_error.hpp"
-#include "tissue_stiffness/fit/coordinate_scan.hpp"
-#include "tissue_stiffness/forward/reduced_model.hpp"
-#include "tissue_stiffness/meshing/surface.hpp"
-#include "tissue_stiffness/observation/frame_misfit.hpp"
+#include "estimation/basis_error.hpp"
+#include "fit/coordinate_scan.hpp"
+#include "forward/reduced_model.hpp"
+#include "meshing/surface.hpp"
+#include "observation/frame_misfit.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/estimation/low_priority.hpp"
+#include "estimation/low_priority.hpp"
 
 #include <sys/resource.h>
 #include <tbb/task_arena.h>

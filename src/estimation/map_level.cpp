@@ -1,14 +1,14 @@
-#include "tissue_stiffness/estimation/map_level.hpp"
+#include "estimation/map_level.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "tissue_stiffness/estimation/basis_error.hpp"
-#include "tissue_stiffness/estimation/identify.hpp"
-#include "tissue_stiffness/filter/interval.hpp"
-#include "tissue_stiffness/fit/batch_fit.hpp"
+#include "estimation/basis_error.hpp"
+#include "estimation/identify.hpp"
+#include "filter/interval.hpp"
+#include "fit/batch_fit.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/estimation/map_stiffness.hpp"
+#include "estimation/map_stiffness.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "tissue_stiffness/estimation/map_level.hpp"
+#include "estimation/map_level.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/estimation/mesh_error.hpp"
+#include "estimation/mesh_error.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,13 +7,13 @@
 #include <limits>
 #include <utility>
 
-#include "tissue_stiffness/filter/posterior_linearization_filter.hpp"
-#include "tissue_stiffness/fit/coordinate_scan.hpp"
-#include "tissue_stiffness/fit/ensemble.hpp"
-#include "tissue_stiffness/forward/reduced_model.hpp"
-#include "tissue_stiffness/meshing/bend_boundary.hpp"
+#include "filter/posterior_linearization_filter.hpp"
+#include "fit/coordinate_scan.hpp"
+#include "fit/ensemble.hpp"
+#include "forward/reduced_model.hpp"
+#include "meshing/bend_boundary.hpp"
+#include "meshing/refine.hpp"
 #include "tissue_stiffness/meshing/build_mesh.hpp"
-#include "tissue_stiffness/meshing/refine.hpp"
 #include "tissue_stiffness/types/error.hpp"
 #include "tissue_stiffness/types/estimate.hpp"
 

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/estimation/misfit_test.hpp"
+#include "estimation/misfit_test.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>

@@ -3,14 +3,14 @@
 #include <cmath>
 #include <deque>
 
-#include "tissue_stiffness/estimation/posterior.hpp"
-#include "tissue_stiffness/estimation/scheme.hpp"
-#include "tissue_stiffness/estimation/stopwatch.hpp"
-#include "tissue_stiffness/fem/sparse_solver.hpp"
-#include "tissue_stiffness/filter/unscented_filter.hpp"
-#include "tissue_stiffness/fit/ensemble.hpp"
-#include "tissue_stiffness/forward/full_model.hpp"
-#include "tissue_stiffness/observation/frame_misfit.hpp"
+#include "estimation/posterior.hpp"
+#include "estimation/scheme.hpp"
+#include "estimation/stopwatch.hpp"
+#include "fem/sparse_solver.hpp"
+#include "filter/unscented_filter.hpp"
+#include "fit/ensemble.hpp"
+#include "forward/full_model.hpp"
+#include "observation/frame_misfit.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

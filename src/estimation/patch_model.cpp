@@ -1,10 +1,10 @@
-#include "tissue_stiffness/estimation/patch_model.hpp"
+#include "estimation/patch_model.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "tissue_stiffness/effects/registry.hpp"
+#include "effects/registry.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

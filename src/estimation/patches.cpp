@@ -1,4 +1,4 @@
-#include "tissue_stiffness/estimation/patches.hpp"
+#include "estimation/patches.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "tissue_stiffness/meshing/surface.hpp"
+#include "meshing/surface.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,9 +1,9 @@
-#include "tissue_stiffness/estimation/posterior.hpp"
+#include "estimation/posterior.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "tissue_stiffness/filter/interval.hpp"
+#include "filter/interval.hpp"
 
 namespace tissue_stiffness {
 namespace {

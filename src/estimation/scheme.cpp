@@ -1,14 +1,14 @@
-#include "tissue_stiffness/estimation/scheme.hpp"
+#include "estimation/scheme.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
 
-#include "tissue_stiffness/estimation/posterior.hpp"
-#include "tissue_stiffness/fit/ensemble.hpp"
-#include "tissue_stiffness/forward/reduced_model.hpp"
-#include "tissue_stiffness/observation/frame_misfit.hpp"
+#include "estimation/posterior.hpp"
+#include "fit/ensemble.hpp"
+#include "forward/reduced_model.hpp"
+#include "observation/frame_misfit.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

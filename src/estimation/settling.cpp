@@ -1,4 +1,4 @@
-#include "tissue_stiffness/estimation/settling.hpp"
+#include "estimation/settling.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/estimation/state_judgement.hpp"
+#include "estimation/state_judgement.hpp"
 
 #include <cmath>
 #include <cstdio>

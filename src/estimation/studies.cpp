@@ -1,11 +1,11 @@
-#include "tissue_stiffness/estimation/studies.hpp"
+#include "estimation/studies.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <exception>
 #include <utility>
 
-#include "tissue_stiffness/estimation/low_priority.hpp"
+#include "estimation/low_priority.hpp"
 
 namespace tissue_stiffness {
 namespace {

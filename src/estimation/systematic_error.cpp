@@ -1,4 +1,4 @@
-#include "tissue_stiffness/estimation/systematic_error.hpp"
+#include "estimation/systematic_error.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

@@ -3,8 +3,8 @@
 #include <limits>
 #include <map>
 
-#include "tissue_stiffness/estimation/replay_recorder.hpp"
-#include "tissue_stiffness/observation/closest_point.hpp"
+#include "estimation/replay_recorder.hpp"
+#include "observation/closest_point.hpp"
 
 namespace tissue_stiffness {
 namespace {

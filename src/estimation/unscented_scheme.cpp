@@ -1,19 +1,19 @@
 // The default scheme iterates free-running sigma points. `step` reads: predict, observe, update, reprocess.
 #include <algorithm>
 
-#include "tissue_stiffness/estimation/background_reprocessing.hpp"
-#include "tissue_stiffness/estimation/change_history.hpp"
-#include "tissue_stiffness/estimation/change_watch.hpp"
-#include "tissue_stiffness/estimation/initial_velocity.hpp"
-#include "tissue_stiffness/estimation/posterior.hpp"
-#include "tissue_stiffness/estimation/scheme.hpp"
-#include "tissue_stiffness/estimation/settling.hpp"
-#include "tissue_stiffness/estimation/state_judgement.hpp"
-#include "tissue_stiffness/estimation/stopwatch.hpp"
-#include "tissue_stiffness/estimation/studies.hpp"
-#include "tissue_stiffness/estimation/systematic_error.hpp"
-#include "tissue_stiffness/estimation/validity.hpp"
-#include "tissue_stiffness/observation/frame_misfit.hpp"
+#include "estimation/background_reprocessing.hpp"
+#include "estimation/change_history.hpp"
+#include "estimation/change_watch.hpp"
+#include "estimation/initial_velocity.hpp"
+#include "estimation/posterior.hpp"
+#include "estimation/scheme.hpp"
+#include "estimation/settling.hpp"
+#include "estimation/state_judgement.hpp"
+#include "estimation/stopwatch.hpp"
+#include "estimation/studies.hpp"
+#include "estimation/systematic_error.hpp"
+#include "estimation/validity.hpp"
+#include "observation/frame_misfit.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

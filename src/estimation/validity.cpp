@@ -1,4 +1,4 @@
-#include "tissue_stiffness/estimation/validity.hpp"
+#include "estimation/validity.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/fem/bfgs_updates.hpp"
+#include "fem/bfgs_updates.hpp"
 
 #include <algorithm>
 

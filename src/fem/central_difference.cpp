@@ -1,8 +1,8 @@
-#include "tissue_stiffness/fem/central_difference.hpp"
+#include "fem/central_difference.hpp"
 
 #include <cmath>
 
-#include "tissue_stiffness/fem/products.hpp"
+#include "fem/products.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/fem/discretisation.hpp"
+#include "fem/discretisation.hpp"
 
 #include <tbb/parallel_for.h>
 

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/fem/facet_quadrature.hpp"
+#include "fem/facet_quadrature.hpp"
 
 #include <Eigen/Geometry>
 

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/fem/generalized_alpha.hpp"
+#include "fem/generalized_alpha.hpp"
 
 #include <tbb/parallel_for.h>
 
@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-#include "tissue_stiffness/fem/products.hpp"
+#include "fem/products.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/fem/neo_hookean.hpp"
+#include "fem/neo_hookean.hpp"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>

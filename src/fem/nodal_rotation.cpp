@@ -1,4 +1,4 @@
-#include "tissue_stiffness/fem/nodal_rotation.hpp"
+#include "fem/nodal_rotation.hpp"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>

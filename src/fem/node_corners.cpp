@@ -1,4 +1,4 @@
-#include "tissue_stiffness/fem/node_corners.hpp"
+#include "fem/node_corners.hpp"
 
 #include <numeric>
 

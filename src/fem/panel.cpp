@@ -1,6 +1,6 @@
 // These are the inner loops of SingleFactor and of products of tall matrices, compiled for several instruction sets. The
 // machine selects one at load time.
-#include "tissue_stiffness/fem/panel.hpp"
+#include "fem/panel.hpp"
 
 #include <cstring>
 

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/fem/products.hpp"
+#include "fem/products.hpp"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "tissue_stiffness/fem/panel.hpp"
+#include "fem/panel.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/fem/relaxation.hpp"
+#include "fem/relaxation.hpp"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/fem/discretisation.hpp"
+#include "fem/discretisation.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/fem/single_factor.hpp"
+#include "fem/single_factor.hpp"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -7,7 +7,7 @@
 #include <queue>
 #include <utility>
 
-#include "tissue_stiffness/fem/panel.hpp"
+#include "fem/panel.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,8 +1,8 @@
-#include "tissue_stiffness/fem/single_matrix.hpp"
+#include "fem/single_matrix.hpp"
 
 #include <algorithm>
 
-#include "tissue_stiffness/fem/panel.hpp"
+#include "fem/panel.hpp"
 
 namespace tissue_stiffness {
 

@@ -1,5 +1,5 @@
 // This is the only file that uses CHOLMOD. Its supernodal part is GPL; TISSUE_STIFFNESS_CHOLMOD_SUPERNODAL=OFF avoids it.
-#include "tissue_stiffness/fem/sparse_solver.hpp"
+#include "fem/sparse_solver.hpp"
 
 #include <cholmod.h>
 #include <tbb/blocked_range.h>
@@ -9,7 +9,7 @@
 #include <mutex>
 #include <thread>
 
-#include "tissue_stiffness/fem/single_factor.hpp"
+#include "fem/single_factor.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 // Trajectories run in parallel with one solver each, so threads inside BLAS or CHOLMOD would only disturb them. Everything

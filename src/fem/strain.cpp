@@ -1,11 +1,11 @@
-#include "tissue_stiffness/fem/strain.hpp"
+#include "fem/strain.hpp"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <cmath>
 
-#include "tissue_stiffness/fem/products.hpp"
+#include "fem/products.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/fem/two_grid.hpp"
+#include "fem/two_grid.hpp"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -8,8 +8,8 @@
 #include <cmath>
 #include <utility>
 
-#include "tissue_stiffness/fem/panel.hpp"
-#include "tissue_stiffness/fem/products.hpp"
+#include "fem/panel.hpp"
+#include "fem/products.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/fem/vector_pool.hpp"
+#include "fem/vector_pool.hpp"
 
 #include <utility>
 

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/filter/consistency.hpp"
+#include "filter/consistency.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/filter/interval.hpp"
+#include "filter/interval.hpp"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/filter/noise.hpp"
+#include "filter/noise.hpp"
 
 #include <Eigen/Cholesky>
 #include <cmath>

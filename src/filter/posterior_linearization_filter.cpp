@@ -1,4 +1,4 @@
-#include "tissue_stiffness/filter/posterior_linearization_filter.hpp"
+#include "filter/posterior_linearization_filter.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

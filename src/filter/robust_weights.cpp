@@ -1,11 +1,11 @@
-#include "tissue_stiffness/filter/robust_weights.hpp"
+#include "filter/robust_weights.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
 
-#include "tissue_stiffness/filter/consistency.hpp"
+#include "filter/consistency.hpp"
 
 namespace tissue_stiffness {
 namespace {

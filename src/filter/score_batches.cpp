@@ -1,4 +1,4 @@
-#include "tissue_stiffness/filter/score_batches.hpp"
+#include "filter/score_batches.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/filter/sigma_points.hpp"
+#include "filter/sigma_points.hpp"
 
 #include <Eigen/QR>
 #include <cmath>

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "tissue_stiffness/filter/unscented_filter.hpp"
-#include "tissue_stiffness/filter/usable_rows.hpp"
+#include "filter/unscented_filter.hpp"
+#include "filter/usable_rows.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

@@ -1,11 +1,11 @@
-#include "tissue_stiffness/filter/unscented_filter.hpp"
+#include "filter/unscented_filter.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <cmath>
 #include <stdexcept>
 
-#include "tissue_stiffness/filter/usable_rows.hpp"
+#include "filter/usable_rows.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

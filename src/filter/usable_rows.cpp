@@ -1,4 +1,4 @@
-#include "tissue_stiffness/filter/usable_rows.hpp"
+#include "filter/usable_rows.hpp"
 
 #include <cmath>
 #include <limits>

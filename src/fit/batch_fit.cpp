@@ -1,8 +1,8 @@
-#include "tissue_stiffness/fit/batch_fit.hpp"
+#include "fit/batch_fit.hpp"
 
 #include <algorithm>
 
-#include "tissue_stiffness/observation/frame_misfit.hpp"
+#include "observation/frame_misfit.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,6 +1,6 @@
-#include "tissue_stiffness/fit/coordinate_scan.hpp"
+#include "fit/coordinate_scan.hpp"
 
-#include "tissue_stiffness/forward/for_each_index.hpp"
+#include "forward/for_each_index.hpp"
 
 namespace tissue_stiffness {
 namespace {

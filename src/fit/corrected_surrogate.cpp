@@ -1,8 +1,8 @@
-#include "tissue_stiffness/fit/corrected_surrogate.hpp"
+#include "fit/corrected_surrogate.hpp"
 
 #include <algorithm>
 
-#include "tissue_stiffness/forward/for_each_index.hpp"
+#include "forward/for_each_index.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,8 +1,8 @@
-#include "tissue_stiffness/fit/ensemble.hpp"
+#include "fit/ensemble.hpp"
 
 #include <utility>
 
-#include "tissue_stiffness/forward/for_each_index.hpp"
+#include "forward/for_each_index.hpp"
 
 namespace tissue_stiffness {
 

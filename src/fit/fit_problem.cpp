@@ -1,6 +1,6 @@
-#include "tissue_stiffness/fit/fit_problem.hpp"
+#include "fit/fit_problem.hpp"
 
-#include "tissue_stiffness/observation/frame_misfit.hpp"
+#include "observation/frame_misfit.hpp"
 
 namespace tissue_stiffness {
 namespace {

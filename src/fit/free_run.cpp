@@ -1,7 +1,7 @@
-#include "tissue_stiffness/fit/free_run.hpp"
+#include "fit/free_run.hpp"
 
-#include "tissue_stiffness/fit/ensemble.hpp"
-#include "tissue_stiffness/observation/frame_misfit.hpp"
+#include "fit/ensemble.hpp"
+#include "observation/frame_misfit.hpp"
 
 namespace tissue_stiffness {
 

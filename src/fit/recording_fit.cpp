@@ -1,13 +1,13 @@
-#include "tissue_stiffness/fit/recording_fit.hpp"
+#include "fit/recording_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "tissue_stiffness/fit/coordinate_scan.hpp"
-#include "tissue_stiffness/forward/extra_force.hpp"
+#include "fit/coordinate_scan.hpp"
+#include "forward/extra_force.hpp"
+#include "observation/frame_misfit.hpp"
 #include "tissue_stiffness/meshing/build_mesh.hpp"
-#include "tissue_stiffness/observation/frame_misfit.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,12 +1,12 @@
-#include "tissue_stiffness/forward/basis_seed_vectors.hpp"
+#include "forward/basis_seed_vectors.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <utility>
 
-#include "tissue_stiffness/effects/registry.hpp"
-#include "tissue_stiffness/forward/extra_force.hpp"
+#include "effects/registry.hpp"
+#include "forward/extra_force.hpp"
 
 namespace tissue_stiffness {
 namespace {

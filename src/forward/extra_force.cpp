@@ -1,8 +1,8 @@
-#include "tissue_stiffness/forward/extra_force.hpp"
+#include "forward/extra_force.hpp"
 
 #include <algorithm>
 
-#include "tissue_stiffness/forward/basis_seed_vectors.hpp"
+#include "forward/basis_seed_vectors.hpp"
 
 namespace tissue_stiffness {
 namespace {

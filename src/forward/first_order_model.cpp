@@ -1,11 +1,11 @@
-#include "tissue_stiffness/forward/first_order_model.hpp"
+#include "forward/first_order_model.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "tissue_stiffness/forward/extra_force.hpp"
-#include "tissue_stiffness/forward/for_each_index.hpp"
-#include "tissue_stiffness/forward/reduced_trajectory.hpp"
+#include "forward/extra_force.hpp"
+#include "forward/for_each_index.hpp"
+#include "forward/reduced_trajectory.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,13 +1,13 @@
-#include "tissue_stiffness/forward/full_model.hpp"
+#include "forward/full_model.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
 
-#include "tissue_stiffness/fem/central_difference.hpp"
-#include "tissue_stiffness/fem/products.hpp"
-#include "tissue_stiffness/forward/for_each_index.hpp"
+#include "fem/central_difference.hpp"
+#include "fem/products.hpp"
+#include "forward/for_each_index.hpp"
 
 namespace tissue_stiffness {
 namespace {

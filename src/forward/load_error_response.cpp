@@ -1,4 +1,4 @@
-#include "tissue_stiffness/forward/load_error_response.hpp"
+#include "forward/load_error_response.hpp"
 
 #include <tbb/parallel_for.h>
 

@@ -1,6 +1,6 @@
-#include "tissue_stiffness/forward/first_order_model.hpp"
-#include "tissue_stiffness/forward/full_model.hpp"
-#include "tissue_stiffness/forward/reduced_model.hpp"
+#include "forward/first_order_model.hpp"
+#include "forward/full_model.hpp"
+#include "forward/reduced_model.hpp"
 
 namespace tissue_stiffness {
 

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/forward/modal_step.hpp"
+#include "forward/modal_step.hpp"
 
 #include <cmath>
 #include <string>

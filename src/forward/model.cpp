@@ -1,9 +1,9 @@
-#include "tissue_stiffness/forward/model.hpp"
+#include "forward/model.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "tissue_stiffness/effects/registry.hpp"
+#include "effects/registry.hpp"
 #include "tissue_stiffness/meshing/build_mesh.hpp"
 #include "tissue_stiffness/types/error.hpp"
 

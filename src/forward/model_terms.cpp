@@ -1,7 +1,7 @@
 // This file computes the model's sums at theta.
 #include <algorithm>
 
-#include "tissue_stiffness/forward/model.hpp"
+#include "forward/model.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/forward/reduced_basis.hpp"
+#include "forward/reduced_basis.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -6,9 +6,9 @@
 #include <numeric>
 #include <utility>
 
-#include "tissue_stiffness/forward/basis_seed_vectors.hpp"
-#include "tissue_stiffness/forward/orthonormal_basis.hpp"
-#include "tissue_stiffness/forward/static_response.hpp"
+#include "forward/basis_seed_vectors.hpp"
+#include "forward/orthonormal_basis.hpp"
+#include "forward/static_response.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

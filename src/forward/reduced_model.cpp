@@ -1,4 +1,4 @@
-#include "tissue_stiffness/forward/reduced_model.hpp"
+#include "forward/reduced_model.hpp"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tissue_stiffness/forward/reduced_trajectory.hpp"
+#include "forward/reduced_trajectory.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/forward/reduced_trajectory.hpp"
+#include "forward/reduced_trajectory.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/forward/static_response.hpp"
+#include "forward/static_response.hpp"
 
 #include <algorithm>
 #include <utility>

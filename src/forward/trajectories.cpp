@@ -1,7 +1,7 @@
 #include <stdexcept>
 
-#include "tissue_stiffness/forward/for_each_index.hpp"
-#include "tissue_stiffness/forward/forward_model.hpp"
+#include "forward/for_each_index.hpp"
+#include "forward/forward_model.hpp"
 
 namespace tissue_stiffness {
 

@@ -1,12 +1,12 @@
 #include "tissue_stiffness/meshing/build_mesh.hpp"
 
-#include "tissue_stiffness/meshing/bodies.hpp"
-#include "tissue_stiffness/meshing/file_ending.hpp"
+#include "meshing/bodies.hpp"
+#include "meshing/file_ending.hpp"
+#include "meshing/tet_file_check.hpp"
+#include "meshing/tetgen_mesher.hpp"
+#include "meshing/triangle_surface.hpp"
+#include "meshing/viewing_rays.hpp"
 #include "tissue_stiffness/meshing/mesh_io.hpp"
-#include "tissue_stiffness/meshing/tet_file_check.hpp"
-#include "tissue_stiffness/meshing/tetgen_mesher.hpp"
-#include "tissue_stiffness/meshing/triangle_surface.hpp"
-#include "tissue_stiffness/meshing/viewing_rays.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

@@ -1,10 +1,10 @@
 #include <limits>
 #include <vector>
 
-#include "tissue_stiffness/meshing/bend_boundary.hpp"
-#include "tissue_stiffness/meshing/bodies.hpp"
-#include "tissue_stiffness/meshing/quality.hpp"
-#include "tissue_stiffness/meshing/surface.hpp"
+#include "meshing/bend_boundary.hpp"
+#include "meshing/bodies.hpp"
+#include "meshing/quality.hpp"
+#include "meshing/surface.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,10 +1,10 @@
-#include "tissue_stiffness/meshing/elevate.hpp"
+#include "meshing/elevate.hpp"
 
 #include <algorithm>
 #include <map>
 #include <utility>
 
-#include "tissue_stiffness/meshing/surface.hpp"
+#include "meshing/surface.hpp"
 
 namespace tissue_stiffness {
 

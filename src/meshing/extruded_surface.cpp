@@ -4,8 +4,8 @@
 #include <numeric>
 #include <vector>
 
-#include "tissue_stiffness/meshing/bodies.hpp"
-#include "tissue_stiffness/meshing/polygon.hpp"
+#include "meshing/bodies.hpp"
+#include "meshing/polygon.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

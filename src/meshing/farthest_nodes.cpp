@@ -1,4 +1,4 @@
-#include "tissue_stiffness/meshing/farthest_nodes.hpp"
+#include "meshing/farthest_nodes.hpp"
 
 #include <algorithm>
 #include <limits>

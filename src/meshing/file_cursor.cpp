@@ -1,4 +1,4 @@
-#include "tissue_stiffness/meshing/file_cursor.hpp"
+#include "meshing/file_cursor.hpp"
 
 #include <algorithm>
 #include <cctype>

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "tissue_stiffness/meshing/file_cursor.hpp"
-#include "tissue_stiffness/meshing/revolution_profile.hpp"
+#include "meshing/file_cursor.hpp"
+#include "meshing/revolution_profile.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

@@ -6,10 +6,10 @@
 #include <limits>
 #include <ostream>
 
-#include "tissue_stiffness/meshing/file_ending.hpp"
-#include "tissue_stiffness/meshing/tet_file_check.hpp"
+#include "meshing/file_ending.hpp"
+#include "meshing/tet_file_check.hpp"
 #include "tissue_stiffness/types/error.hpp"
-#include "tissue_stiffness/types/pending_file.hpp"
+#include "types/pending_file.hpp"
 
 namespace tissue_stiffness {
 namespace {

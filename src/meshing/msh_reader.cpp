@@ -3,7 +3,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "tissue_stiffness/meshing/file_cursor.hpp"
+#include "meshing/file_cursor.hpp"
 #include "tissue_stiffness/meshing/mesh_io.hpp"
 
 namespace tissue_stiffness {

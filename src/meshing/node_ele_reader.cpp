@@ -1,6 +1,6 @@
 #include <array>
 
-#include "tissue_stiffness/meshing/file_cursor.hpp"
+#include "meshing/file_cursor.hpp"
 #include "tissue_stiffness/meshing/mesh_io.hpp"
 
 namespace tissue_stiffness {

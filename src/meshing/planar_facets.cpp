@@ -1,4 +1,4 @@
-#include "tissue_stiffness/meshing/planar_facets.hpp"
+#include "meshing/planar_facets.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <numeric>
 #include <utility>
 
-#include "tissue_stiffness/meshing/polygon.hpp"
+#include "meshing/polygon.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/meshing/polygon.hpp"
+#include "meshing/polygon.hpp"
 
 #include <algorithm>
 #include <cmath>

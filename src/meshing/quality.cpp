@@ -1,4 +1,4 @@
-#include "tissue_stiffness/meshing/quality.hpp"
+#include "meshing/quality.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <limits>
 #include <sstream>
 
-#include "tissue_stiffness/meshing/surface.hpp"
+#include "meshing/surface.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/meshing/refine.hpp"
+#include "meshing/refine.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "tissue_stiffness/meshing/elevate.hpp"
-#include "tissue_stiffness/meshing/surface.hpp"
+#include "meshing/elevate.hpp"
+#include "meshing/surface.hpp"
 
 namespace tissue_stiffness {
 namespace {

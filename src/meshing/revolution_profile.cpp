@@ -1,4 +1,4 @@
-#include "tissue_stiffness/meshing/revolution_profile.hpp"
+#include "meshing/revolution_profile.hpp"
 
 #include <Eigen/Geometry>
 #include <cmath>

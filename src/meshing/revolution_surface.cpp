@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "tissue_stiffness/meshing/bodies.hpp"
+#include "meshing/bodies.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/meshing/run_apart.hpp"
+#include "meshing/run_apart.hpp"
 
 #include <fcntl.h>
 #include <poll.h>

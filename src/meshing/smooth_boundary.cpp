@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "tissue_stiffness/meshing/bend_boundary.hpp"
+#include "meshing/bend_boundary.hpp"
 
 namespace tissue_stiffness {
 namespace {

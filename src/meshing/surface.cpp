@@ -1,10 +1,10 @@
-#include "tissue_stiffness/meshing/surface.hpp"
+#include "meshing/surface.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <vector>
 
-#include "tissue_stiffness/meshing/file_cursor.hpp"
+#include "meshing/file_cursor.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

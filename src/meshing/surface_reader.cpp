@@ -7,9 +7,9 @@
 #include <cstring>
 #include <fstream>
 
-#include "tissue_stiffness/meshing/file_cursor.hpp"
-#include "tissue_stiffness/meshing/file_ending.hpp"
-#include "tissue_stiffness/meshing/triangle_surface.hpp"
+#include "meshing/file_cursor.hpp"
+#include "meshing/file_ending.hpp"
+#include "meshing/triangle_surface.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/meshing/tet_file_check.hpp"
+#include "meshing/tet_file_check.hpp"
 
 #include <pcl/kdtree/kdtree_flann.h>
 #include <pcl/point_cloud.h>
@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <vector>
 
-#include "tissue_stiffness/meshing/elevate.hpp"
-#include "tissue_stiffness/meshing/file_cursor.hpp"
-#include "tissue_stiffness/meshing/surface.hpp"
+#include "meshing/elevate.hpp"
+#include "meshing/file_cursor.hpp"
+#include "meshing/surface.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

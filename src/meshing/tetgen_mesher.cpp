@@ -1,6 +1,6 @@
 // This is the only file that uses TetGen, whose licence is the AGPL. Without TetGen surfaces are refused with a message
 // that says so.
-#include "tissue_stiffness/meshing/tetgen_mesher.hpp"
+#include "meshing/tetgen_mesher.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,9 @@
 #include <sstream>
 #include <vector>
 
-#include "tissue_stiffness/meshing/file_cursor.hpp"
-#include "tissue_stiffness/meshing/planar_facets.hpp"
-#include "tissue_stiffness/meshing/run_apart.hpp"
+#include "meshing/file_cursor.hpp"
+#include "meshing/planar_facets.hpp"
+#include "meshing/run_apart.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 #ifdef TISSUE_STIFFNESS_TETGEN

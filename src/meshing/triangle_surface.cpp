@@ -1,4 +1,4 @@
-#include "tissue_stiffness/meshing/triangle_surface.hpp"
+#include "meshing/triangle_surface.hpp"
 
 #include <pcl/kdtree/kdtree_flann.h>
 #include <pcl/point_cloud.h>
@@ -9,7 +9,7 @@
 #include <array>
 #include <cmath>
 
-#include "tissue_stiffness/meshing/file_cursor.hpp"
+#include "meshing/file_cursor.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

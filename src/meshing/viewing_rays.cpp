@@ -1,9 +1,9 @@
-#include "tissue_stiffness/meshing/viewing_rays.hpp"
+#include "meshing/viewing_rays.hpp"
 
 #include <cmath>
 #include <sstream>
 
-#include "tissue_stiffness/meshing/polygon.hpp"
+#include "meshing/polygon.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

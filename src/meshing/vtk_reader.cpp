@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "tissue_stiffness/meshing/file_cursor.hpp"
+#include "meshing/file_cursor.hpp"
 #include "tissue_stiffness/meshing/mesh_io.hpp"
 
 namespace tissue_stiffness {

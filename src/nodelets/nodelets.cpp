@@ -5,8 +5,8 @@
 #include <memory>
 #include <pluginlib/class_list_macros.hpp>
 
-#include "tissue_stiffness/nodes/estimator_node.hpp"
-#include "tissue_stiffness/nodes/segmentation_node.hpp"
+#include "nodes/estimator_node.hpp"
+#include "nodes/segmentation_node.hpp"
 
 namespace tissue_stiffness {
 

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "tissue_stiffness/nodes/sensor_conversions.hpp"
+#include "nodes/sensor_conversions.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

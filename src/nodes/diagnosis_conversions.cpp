@@ -1,6 +1,6 @@
-#include "tissue_stiffness/nodes/diagnosis_conversions.hpp"
+#include "nodes/diagnosis_conversions.hpp"
 
-#include "tissue_stiffness/report/write_diagnosis.hpp"
+#include "report/write_diagnosis.hpp"
 
 namespace tissue_stiffness {
 namespace {

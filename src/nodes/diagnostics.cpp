@@ -1,4 +1,4 @@
-#include "tissue_stiffness/nodes/diagnostics.hpp"
+#include "nodes/diagnostics.hpp"
 
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <ros/ros.h>

@@ -1,11 +1,11 @@
-#include "tissue_stiffness/nodes/estimator_inputs.hpp"
+#include "nodes/estimator_inputs.hpp"
 
 #include <ros/ros.h>
 
 #include <algorithm>
 #include <memory>
 
-#include "tissue_stiffness/nodes/message_conversions.hpp"
+#include "nodes/message_conversions.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

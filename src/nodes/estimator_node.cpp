@@ -1,4 +1,4 @@
-#include "tissue_stiffness/nodes/estimator_node.hpp"
+#include "nodes/estimator_node.hpp"
 
 #include <ros/ros.h>
 
@@ -6,9 +6,9 @@
 #include <chrono>
 #include <sstream>
 
-#include "tissue_stiffness/estimation/patch_model.hpp"
-#include "tissue_stiffness/nodes/message_conversions.hpp"
-#include "tissue_stiffness/nodes/node_keys.hpp"
+#include "estimation/patch_model.hpp"
+#include "nodes/message_conversions.hpp"
+#include "nodes/node_keys.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

@@ -1,5 +1,5 @@
-#include "tissue_stiffness/nodes/estimator_node.hpp"
-#include "tissue_stiffness/nodes/run_node.hpp"
+#include "nodes/estimator_node.hpp"
+#include "nodes/run_node.hpp"
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "estimator_node");

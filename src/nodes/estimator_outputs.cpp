@@ -1,9 +1,9 @@
-#include "tissue_stiffness/nodes/estimator_outputs.hpp"
+#include "nodes/estimator_outputs.hpp"
 
 #include <utility>
 
-#include "tissue_stiffness/nodes/message_conversions.hpp"
-#include "tissue_stiffness/nodes/surface_view.hpp"
+#include "nodes/message_conversions.hpp"
+#include "nodes/surface_view.hpp"
 
 namespace tissue_stiffness {
 

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/nodes/force_view.hpp"
+#include "nodes/force_view.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,12 +1,12 @@
-#include "tissue_stiffness/nodes/map_publisher.hpp"
+#include "nodes/map_publisher.hpp"
 
 #include <ros/console.h>
 
 #include <chrono>
 #include <utility>
 
-#include "tissue_stiffness/estimation/low_priority.hpp"
-#include "tissue_stiffness/nodes/map_view.hpp"
+#include "estimation/low_priority.hpp"
+#include "nodes/map_view.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

@@ -1,9 +1,9 @@
-#include "tissue_stiffness/nodes/map_view.hpp"
+#include "nodes/map_view.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "tissue_stiffness/nodes/surface_view.hpp"
+#include "nodes/surface_view.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,14 +1,14 @@
-#include "tissue_stiffness/nodes/mesh_node.hpp"
+#include "nodes/mesh_node.hpp"
 
 #include <ros/ros.h>
 
-#include "tissue_stiffness/check/check_mesh.hpp"
+#include "check/check_mesh.hpp"
+#include "nodes/message_conversions.hpp"
+#include "nodes/node_keys.hpp"
+#include "nodes/sensor_conversions.hpp"
+#include "nodes/setup_watch.hpp"
 #include "tissue_stiffness/meshing/build_mesh.hpp"
 #include "tissue_stiffness/meshing/mesh_io.hpp"
-#include "tissue_stiffness/nodes/message_conversions.hpp"
-#include "tissue_stiffness/nodes/node_keys.hpp"
-#include "tissue_stiffness/nodes/sensor_conversions.hpp"
-#include "tissue_stiffness/nodes/setup_watch.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

@@ -1,11 +1,11 @@
-#include "tissue_stiffness/nodes/model_check.hpp"
+#include "nodes/model_check.hpp"
 
 #include <algorithm>
 
+#include "estimation/low_priority.hpp"
 #include "tissue_stiffness/diagnosis/diagnose.hpp"
-#include "tissue_stiffness/estimation/low_priority.hpp"
 #include "tissue_stiffness/types/error.hpp"
-#include "tissue_stiffness/types/freed_memory.hpp"
+#include "types/freed_memory.hpp"
 
 namespace tissue_stiffness {
 namespace {

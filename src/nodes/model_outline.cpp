@@ -1,4 +1,4 @@
-#include "tissue_stiffness/nodes/model_outline.hpp"
+#include "nodes/model_outline.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,12 @@
-#include "tissue_stiffness/nodes/model_services.hpp"
+#include "nodes/model_services.hpp"
 
 #include <algorithm>
 
-#include "tissue_stiffness/effects/registry.hpp"
-#include "tissue_stiffness/forward/model.hpp"
-#include "tissue_stiffness/nodes/diagnosis_conversions.hpp"
-#include "tissue_stiffness/nodes/estimator_inputs.hpp"
-#include "tissue_stiffness/nodes/force_view.hpp"
+#include "effects/registry.hpp"
+#include "forward/model.hpp"
+#include "nodes/diagnosis_conversions.hpp"
+#include "nodes/estimator_inputs.hpp"
+#include "nodes/force_view.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

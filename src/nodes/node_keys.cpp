@@ -1,4 +1,4 @@
-#include "tissue_stiffness/nodes/node_keys.hpp"
+#include "nodes/node_keys.hpp"
 
 #include <map>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/nodes/ros_settings.hpp"
+#include "nodes/ros_settings.hpp"
 
 #include <XmlRpcValue.h>
 

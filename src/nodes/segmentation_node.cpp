@@ -1,14 +1,14 @@
-#include "tissue_stiffness/nodes/segmentation_node.hpp"
+#include "nodes/segmentation_node.hpp"
 
 #include <cv_bridge/cv_bridge.h>
 #include <ros/ros.h>
 
 #include <boost/make_shared.hpp>
 
-#include "tissue_stiffness/nodes/message_conversions.hpp"
-#include "tissue_stiffness/nodes/node_keys.hpp"
-#include "tissue_stiffness/nodes/sensor_conversions.hpp"
-#include "tissue_stiffness/segmentation/overlay.hpp"
+#include "nodes/message_conversions.hpp"
+#include "nodes/node_keys.hpp"
+#include "nodes/sensor_conversions.hpp"
+#include "segmentation/overlay.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

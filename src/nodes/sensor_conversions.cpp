@@ -1,4 +1,4 @@
-#include "tissue_stiffness/nodes/sensor_conversions.hpp"
+#include "nodes/sensor_conversions.hpp"
 
 #include <cv_bridge/cv_bridge.h>
 

@@ -1,11 +1,11 @@
-#include "tissue_stiffness/nodes/sensor_poses.hpp"
+#include "nodes/sensor_poses.hpp"
 
 #include <ros/ros.h>
 
 #include <chrono>
 #include <thread>
 
-#include "tissue_stiffness/nodes/sensor_conversions.hpp"
+#include "nodes/sensor_conversions.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

@@ -1,14 +1,14 @@
-#include "tissue_stiffness/nodes/setup_watch.hpp"
+#include "nodes/setup_watch.hpp"
 
 #include <diagnostic_msgs/DiagnosticStatus.h>
 #include <ros/ros.h>
 
 #include <algorithm>
 
-#include "tissue_stiffness/check/check_first_frame.hpp"
-#include "tissue_stiffness/check/check_mesh.hpp"
-#include "tissue_stiffness/check/check_numbers.hpp"
-#include "tissue_stiffness/check/check_topics.hpp"
+#include "check/check_first_frame.hpp"
+#include "check/check_mesh.hpp"
+#include "check/check_numbers.hpp"
+#include "check/check_topics.hpp"
 
 namespace tissue_stiffness {
 namespace {

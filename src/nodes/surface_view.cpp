@@ -1,4 +1,4 @@
-#include "tissue_stiffness/nodes/surface_view.hpp"
+#include "nodes/surface_view.hpp"
 
 #include <sensor_msgs/point_cloud2_iterator.h>
 

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/observation/closest_point.hpp"
+#include "observation/closest_point.hpp"
 
 #include <Eigen/Geometry>
 #include <array>

@@ -5,8 +5,8 @@
 #include <limits>
 #include <vector>
 
-#include "tissue_stiffness/observation/observation_operator.hpp"
-#include "tissue_stiffness/observation/outline.hpp"
+#include "observation/observation_operator.hpp"
+#include "observation/outline.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

@@ -1,8 +1,8 @@
-#include "tissue_stiffness/observation/frame_misfit.hpp"
+#include "observation/frame_misfit.hpp"
 
 #include <cmath>
 
-#include "tissue_stiffness/filter/robust_weights.hpp"
+#include "filter/robust_weights.hpp"
 
 namespace tissue_stiffness {
 Eigen::VectorXd row_weights(const Prediction& p) {

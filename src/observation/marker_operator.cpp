@@ -4,9 +4,9 @@
 #include <Eigen/SVD>
 #include <limits>
 
-#include "tissue_stiffness/observation/closest_point.hpp"
-#include "tissue_stiffness/observation/named_points.hpp"
-#include "tissue_stiffness/observation/observation_operator.hpp"
+#include "observation/closest_point.hpp"
+#include "observation/named_points.hpp"
+#include "observation/observation_operator.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/observation/named_points.hpp"
+#include "observation/named_points.hpp"
 
 namespace tissue_stiffness {
 

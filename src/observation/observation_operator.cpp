@@ -1,4 +1,4 @@
-#include "tissue_stiffness/observation/observation_operator.hpp"
+#include "observation/observation_operator.hpp"
 
 #include <set>
 #include <utility>

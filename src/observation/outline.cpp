@@ -1,4 +1,4 @@
-#include "tissue_stiffness/observation/outline.hpp"
+#include "observation/outline.hpp"
 
 #include <Eigen/Geometry>
 #include <array>

@@ -6,8 +6,8 @@
 #include <Eigen/Geometry>
 #include <limits>
 
-#include "tissue_stiffness/observation/closest_point.hpp"
-#include "tissue_stiffness/observation/observation_operator.hpp"
+#include "observation/closest_point.hpp"
+#include "observation/observation_operator.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,9 +1,9 @@
-#include "tissue_stiffness/observation/predict_frame.hpp"
+#include "observation/predict_frame.hpp"
 
 #include <algorithm>
 #include <utility>
 
-#include "tissue_stiffness/forward/for_each_index.hpp"
+#include "forward/for_each_index.hpp"
 
 namespace tissue_stiffness {
 namespace {

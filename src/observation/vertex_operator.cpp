@@ -1,6 +1,6 @@
 // This sensor tracks mesh vertices: h = X + u.
-#include "tissue_stiffness/observation/named_points.hpp"
-#include "tissue_stiffness/observation/observation_operator.hpp"
+#include "observation/named_points.hpp"
+#include "observation/observation_operator.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

@@ -1,10 +1,10 @@
-#include "tissue_stiffness/report/course.hpp"
+#include "report/course.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "tissue_stiffness/report/text.hpp"
+#include "report/text.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tissue_stiffness/report/course.hpp"
-#include "tissue_stiffness/report/effect_words.hpp"
-#include "tissue_stiffness/report/page.hpp"
-#include "tissue_stiffness/report/text.hpp"
-#include "tissue_stiffness/report/write_diagnosis.hpp"
+#include "report/course.hpp"
+#include "report/effect_words.hpp"
+#include "report/page.hpp"
+#include "report/text.hpp"
+#include "report/write_diagnosis.hpp"
 
 namespace tissue_stiffness {
 namespace {

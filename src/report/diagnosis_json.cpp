@@ -1,7 +1,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "tissue_stiffness/report/write_diagnosis.hpp"
+#include "report/write_diagnosis.hpp"
 
 namespace tissue_stiffness {
 namespace {

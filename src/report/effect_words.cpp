@@ -1,4 +1,4 @@
-#include "tissue_stiffness/report/effect_words.hpp"
+#include "report/effect_words.hpp"
 
 #include <map>
 

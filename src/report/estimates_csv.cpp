@@ -1,5 +1,5 @@
-#include "tissue_stiffness/report/text.hpp"
-#include "tissue_stiffness/report/write_results.hpp"
+#include "report/text.hpp"
+#include "report/write_results.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,11 +1,11 @@
-#include "tissue_stiffness/report/input_table.hpp"
+#include "report/input_table.hpp"
 
 #include <cmath>
 #include <utility>
 #include <vector>
 
-#include "tissue_stiffness/report/page.hpp"
-#include "tissue_stiffness/report/text.hpp"
+#include "report/page.hpp"
+#include "report/text.hpp"
 
 namespace tissue_stiffness {
 namespace {

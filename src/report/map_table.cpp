@@ -1,9 +1,9 @@
-#include "tissue_stiffness/report/map_table.hpp"
+#include "report/map_table.hpp"
 
 #include <algorithm>
 
-#include "tissue_stiffness/report/page.hpp"
-#include "tissue_stiffness/report/text.hpp"
+#include "report/page.hpp"
+#include "report/text.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/report/map_vtk.hpp"
+#include "report/map_vtk.hpp"
 
 #include <functional>
 #include <sstream>

@@ -1,12 +1,12 @@
-#include "tissue_stiffness/report/page.hpp"
+#include "report/page.hpp"
 
 #include <filesystem>
 #include <map>
 #include <set>
 #include <sstream>
 
-#include "tissue_stiffness/report/assets.hpp"
-#include "tissue_stiffness/report/text.hpp"
+#include "report/assets.hpp"
+#include "report/text.hpp"
 
 namespace tissue_stiffness {
 namespace {

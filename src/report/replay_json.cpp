@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
-#include "tissue_stiffness/report/page.hpp"
+#include "report/page.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tissue_stiffness/report/course.hpp"
-#include "tissue_stiffness/report/input_table.hpp"
-#include "tissue_stiffness/report/map_table.hpp"
-#include "tissue_stiffness/report/page.hpp"
-#include "tissue_stiffness/report/text.hpp"
-#include "tissue_stiffness/report/write_results.hpp"
+#include "report/course.hpp"
+#include "report/input_table.hpp"
+#include "report/map_table.hpp"
+#include "report/page.hpp"
+#include "report/text.hpp"
+#include "report/write_results.hpp"
 
 namespace tissue_stiffness {
 namespace {

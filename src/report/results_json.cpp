@@ -1,8 +1,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "tissue_stiffness/report/input_table.hpp"
-#include "tissue_stiffness/report/write_results.hpp"
+#include "report/input_table.hpp"
+#include "report/write_results.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/report/text.hpp"
+#include "report/text.hpp"
 
 #include <algorithm>
 #include <cmath>

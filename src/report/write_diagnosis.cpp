@@ -1,4 +1,4 @@
-#include "tissue_stiffness/report/write_diagnosis.hpp"
+#include "report/write_diagnosis.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "tissue_stiffness/report/effect_words.hpp"
-#include "tissue_stiffness/report/text.hpp"
-#include "tissue_stiffness/report/write_results.hpp"
+#include "report/effect_words.hpp"
+#include "report/text.hpp"
+#include "report/write_results.hpp"
 
 namespace tissue_stiffness {
 namespace {

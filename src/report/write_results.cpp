@@ -1,10 +1,10 @@
-#include "tissue_stiffness/report/write_results.hpp"
+#include "report/write_results.hpp"
 
 #include <filesystem>
 #include <ostream>
 
 #include "tissue_stiffness/types/error.hpp"
-#include "tissue_stiffness/types/pending_file.hpp"
+#include "types/pending_file.hpp"
 
 namespace tissue_stiffness {
 

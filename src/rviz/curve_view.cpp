@@ -1,4 +1,4 @@
-#include "tissue_stiffness/rviz/curve_view.hpp"
+#include "rviz/curve_view.hpp"
 
 #include <QFontMetrics>
 #include <QPainter>

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/rviz/live_curve.hpp"
+#include "rviz/live_curve.hpp"
 
 #include <algorithm>
 #include <cmath>

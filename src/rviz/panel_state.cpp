@@ -1,11 +1,11 @@
-#include "tissue_stiffness/rviz/panel_state.hpp"
+#include "rviz/panel_state.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "tissue_stiffness/report/effect_words.hpp"
-#include "tissue_stiffness/report/text.hpp"
+#include "report/effect_words.hpp"
+#include "report/text.hpp"
 
 namespace tissue_stiffness {
 namespace {

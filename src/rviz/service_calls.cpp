@@ -1,14 +1,14 @@
-#include "tissue_stiffness/rviz/service_calls.hpp"
+#include "rviz/service_calls.hpp"
 
 #include <ros/service.h>
 #include <std_srvs/Trigger.h>
 
 #include <utility>
 
+#include "nodes/messages.hpp"
 #include "tissue_stiffness/AddEffect.h"
 #include "tissue_stiffness/ListEffects.h"
 #include "tissue_stiffness/RemoveEffect.h"
-#include "tissue_stiffness/nodes/messages.hpp"
 
 namespace tissue_stiffness {
 

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/rviz/stiffness_panel.hpp"
+#include "rviz/stiffness_panel.hpp"
 
 #include <QHBoxLayout>
 #include <QHeaderView>
@@ -11,7 +11,7 @@
 #include <functional>
 #include <pluginlib/class_list_macros.hpp>
 
-#include "tissue_stiffness/rviz/curve_view.hpp"
+#include "rviz/curve_view.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/segmentation/brightness.hpp"
+#include "segmentation/brightness.hpp"
 
 #include <algorithm>
 #include <opencv2/imgproc.hpp>

@@ -1,10 +1,10 @@
-#include "tissue_stiffness/segmentation/cavity.hpp"
+#include "segmentation/cavity.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "tissue_stiffness/segmentation/outline.hpp"
+#include "segmentation/outline.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -3,9 +3,9 @@
 #include <limits>
 #include <vector>
 
-#include "tissue_stiffness/segmentation/cavity.hpp"
-#include "tissue_stiffness/segmentation/edge_fit.hpp"
-#include "tissue_stiffness/segmentation/outline.hpp"
+#include "segmentation/cavity.hpp"
+#include "segmentation/edge_fit.hpp"
+#include "segmentation/outline.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <limits>
 
-#include "tissue_stiffness/segmentation/cavity.hpp"
-#include "tissue_stiffness/segmentation/outline.hpp"
+#include "segmentation/cavity.hpp"
+#include "segmentation/outline.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -4,8 +4,8 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "tissue_stiffness/segmentation/cavity.hpp"
-#include "tissue_stiffness/segmentation/outline.hpp"
+#include "segmentation/cavity.hpp"
+#include "segmentation/outline.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,10 +1,10 @@
-#include "tissue_stiffness/segmentation/edge_fit.hpp"
+#include "segmentation/edge_fit.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
-#include "tissue_stiffness/segmentation/outline.hpp"
+#include "segmentation/outline.hpp"
 
 namespace tissue_stiffness {
 namespace {

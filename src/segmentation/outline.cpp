@@ -1,4 +1,4 @@
-#include "tissue_stiffness/segmentation/outline.hpp"
+#include "segmentation/outline.hpp"
 
 #include <algorithm>
 #include <cmath>

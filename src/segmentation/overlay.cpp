@@ -1,9 +1,9 @@
-#include "tissue_stiffness/segmentation/overlay.hpp"
+#include "segmentation/overlay.hpp"
 
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "tissue_stiffness/segmentation/outline.hpp"
+#include "segmentation/outline.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,7 +1,7 @@
 #include "tissue_stiffness/segmentation/segmenter.hpp"
 
-#include "tissue_stiffness/segmentation/cavity.hpp"
-#include "tissue_stiffness/segmentation/silhouette.hpp"
+#include "segmentation/cavity.hpp"
+#include "segmentation/silhouette.hpp"
 
 namespace tissue_stiffness {
 

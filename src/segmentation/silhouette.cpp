@@ -1,10 +1,10 @@
-#include "tissue_stiffness/segmentation/silhouette.hpp"
+#include "segmentation/silhouette.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "tissue_stiffness/segmentation/outline.hpp"
+#include "segmentation/outline.hpp"
 
 namespace tissue_stiffness {
 namespace {

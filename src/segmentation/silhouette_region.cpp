@@ -3,8 +3,8 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "tissue_stiffness/segmentation/outline.hpp"
-#include "tissue_stiffness/segmentation/silhouette.hpp"
+#include "segmentation/outline.hpp"
+#include "segmentation/silhouette.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/settings/effect_entry.hpp"
+#include "settings/effect_entry.hpp"
 
 #include <algorithm>
 #include <cctype>

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/settings/extend_model.hpp"
+#include "settings/extend_model.hpp"
 
 #include <yaml-cpp/yaml.h>
 

@@ -1,6 +1,6 @@
 #include <limits>
 
-#include "tissue_stiffness/settings/key_spec.hpp"
+#include "settings/key_spec.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <map>
 
-#include "tissue_stiffness/settings/key_spec.hpp"
-#include "tissue_stiffness/settings/read_sections.hpp"
-#include "tissue_stiffness/settings/suggestion.hpp"
+#include "settings/key_spec.hpp"
+#include "settings/read_sections.hpp"
+#include "settings/suggestion.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

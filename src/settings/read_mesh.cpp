@@ -1,7 +1,7 @@
 #include <limits>
 
-#include "tissue_stiffness/settings/key_spec.hpp"
-#include "tissue_stiffness/settings/read_sections.hpp"
+#include "settings/key_spec.hpp"
+#include "settings/read_sections.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

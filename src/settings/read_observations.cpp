@@ -1,9 +1,9 @@
 #include <cmath>
 #include <limits>
 
-#include "tissue_stiffness/settings/key_spec.hpp"
-#include "tissue_stiffness/settings/read_sections.hpp"
-#include "tissue_stiffness/settings/suggestion.hpp"
+#include "settings/key_spec.hpp"
+#include "settings/read_sections.hpp"
+#include "settings/suggestion.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

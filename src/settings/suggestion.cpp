@@ -1,4 +1,4 @@
-#include "tissue_stiffness/settings/suggestion.hpp"
+#include "settings/suggestion.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>

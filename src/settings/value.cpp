@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "tissue_stiffness/settings/suggestion.hpp"
+#include "settings/suggestion.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

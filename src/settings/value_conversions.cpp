@@ -1,7 +1,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tissue_stiffness/settings/suggestion.hpp"
+#include "settings/suggestion.hpp"
 #include "tissue_stiffness/settings/value.hpp"
 #include "tissue_stiffness/types/error.hpp"
 

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/tools/bag_overview.hpp"
+#include "tools/bag_overview.hpp"
 
 #include <geometry_msgs/WrenchStamped.h>
 #include <rosbag/bag.h>
@@ -10,7 +10,7 @@
 
 #include <algorithm>
 
-#include "tissue_stiffness/nodes/sensor_conversions.hpp"
+#include "nodes/sensor_conversions.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/tools/bag_reader.hpp"
+#include "tools/bag_reader.hpp"
 
 #include <tf2_msgs/TFMessage.h>
 
@@ -8,8 +8,8 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "tissue_stiffness/nodes/estimator_inputs.hpp"
-#include "tissue_stiffness/nodes/sensor_conversions.hpp"
+#include "nodes/estimator_inputs.hpp"
+#include "nodes/sensor_conversions.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

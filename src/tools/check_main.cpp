@@ -1,7 +1,7 @@
 #include <string>
 
-#include "tissue_stiffness/tools/check_setup.hpp"
-#include "tissue_stiffness/tools/run_tool.hpp"
+#include "tools/check_setup.hpp"
+#include "tools/run_tool.hpp"
 
 int main(int argc, char** argv) {
   using namespace tissue_stiffness;

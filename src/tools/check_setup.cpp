@@ -1,18 +1,18 @@
-#include "tissue_stiffness/tools/check_setup.hpp"
+#include "tools/check_setup.hpp"
 
 #include <algorithm>
 #include <ostream>
 
-#include "tissue_stiffness/check/check_first_frame.hpp"
-#include "tissue_stiffness/check/check_images.hpp"
-#include "tissue_stiffness/check/check_mesh.hpp"
-#include "tissue_stiffness/check/check_motion.hpp"
-#include "tissue_stiffness/check/check_numbers.hpp"
-#include "tissue_stiffness/check/check_topics.hpp"
-#include "tissue_stiffness/tools/bag_overview.hpp"
-#include "tissue_stiffness/tools/recording_reader.hpp"
+#include "check/check_first_frame.hpp"
+#include "check/check_images.hpp"
+#include "check/check_mesh.hpp"
+#include "check/check_motion.hpp"
+#include "check/check_numbers.hpp"
+#include "check/check_topics.hpp"
 #include "tissue_stiffness/types/error.hpp"
-#include "tissue_stiffness/types/stop_request.hpp"
+#include "tools/bag_overview.hpp"
+#include "tools/recording_reader.hpp"
+#include "types/stop_request.hpp"
 
 namespace tissue_stiffness {
 namespace {

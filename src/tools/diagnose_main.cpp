@@ -6,22 +6,23 @@
 #include <utility>
 #include <vector>
 
+#include "diagnosis/replay_model.hpp"
+#include "estimation/reuse_sources.hpp"
+#include "forward/for_each_index.hpp"
+#include "report/effect_words.hpp"
+#include "report/write_diagnosis.hpp"
+#include "report/write_results.hpp"
+#include "settings/extend_model.hpp"
 #include "tissue_stiffness/diagnosis/diagnose.hpp"
-#include "tissue_stiffness/diagnosis/replay_model.hpp"
 #include "tissue_stiffness/estimation/estimator.hpp"
-#include "tissue_stiffness/forward/for_each_index.hpp"
-#include "tissue_stiffness/report/effect_words.hpp"
-#include "tissue_stiffness/report/write_diagnosis.hpp"
-#include "tissue_stiffness/report/write_results.hpp"
-#include "tissue_stiffness/settings/extend_model.hpp"
-#include "tissue_stiffness/tools/check_setup.hpp"
-#include "tissue_stiffness/tools/print_diagnosis.hpp"
-#include "tissue_stiffness/tools/progress.hpp"
-#include "tissue_stiffness/tools/recording_reader.hpp"
-#include "tissue_stiffness/tools/run_tool.hpp"
-#include "tissue_stiffness/tools/stop_on_signals.hpp"
-#include "tissue_stiffness/tools/versions.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "tools/check_setup.hpp"
+#include "tools/print_diagnosis.hpp"
+#include "tools/progress.hpp"
+#include "tools/recording_reader.hpp"
+#include "tools/run_tool.hpp"
+#include "tools/stop_on_signals.hpp"
+#include "tools/versions.hpp"
 
 namespace {
 

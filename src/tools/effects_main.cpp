@@ -1,5 +1,5 @@
-#include "tissue_stiffness/tools/print_effects.hpp"
-#include "tissue_stiffness/tools/run_tool.hpp"
+#include "tools/print_effects.hpp"
+#include "tools/run_tool.hpp"
 
 int main(int argc, char** argv) {
   using namespace tissue_stiffness;

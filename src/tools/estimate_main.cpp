@@ -1,12 +1,12 @@
 #include <string>
 
-#include "tissue_stiffness/report/write_results.hpp"
-#include "tissue_stiffness/tools/check_setup.hpp"
-#include "tissue_stiffness/tools/estimate_recording.hpp"
-#include "tissue_stiffness/tools/progress.hpp"
-#include "tissue_stiffness/tools/run_tool.hpp"
-#include "tissue_stiffness/tools/stop_on_signals.hpp"
+#include "report/write_results.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "tools/check_setup.hpp"
+#include "tools/estimate_recording.hpp"
+#include "tools/progress.hpp"
+#include "tools/run_tool.hpp"
+#include "tools/stop_on_signals.hpp"
 
 namespace {
 

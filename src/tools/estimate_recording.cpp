@@ -1,4 +1,4 @@
-#include "tissue_stiffness/tools/estimate_recording.hpp"
+#include "tools/estimate_recording.hpp"
 
 #include <chrono>
 #include <cmath>
@@ -6,15 +6,15 @@
 #include <iterator>
 #include <optional>
 
+#include "estimation/map_stiffness.hpp"
+#include "estimation/patch_model.hpp"
+#include "estimation/replay_recorder.hpp"
+#include "filter/consistency.hpp"
+#include "report/map_vtk.hpp"
 #include "tissue_stiffness/estimation/estimator.hpp"
-#include "tissue_stiffness/estimation/map_stiffness.hpp"
-#include "tissue_stiffness/estimation/patch_model.hpp"
-#include "tissue_stiffness/estimation/replay_recorder.hpp"
-#include "tissue_stiffness/filter/consistency.hpp"
-#include "tissue_stiffness/report/map_vtk.hpp"
-#include "tissue_stiffness/tools/recording_reader.hpp"
-#include "tissue_stiffness/tools/versions.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "tools/recording_reader.hpp"
+#include "tools/versions.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/tools/exit_code.hpp"
+#include "tools/exit_code.hpp"
 
 namespace tissue_stiffness {
 

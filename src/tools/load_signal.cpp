@@ -1,13 +1,13 @@
-#include "tissue_stiffness/tools/load_signal.hpp"
+#include "tools/load_signal.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
 
-#include "tissue_stiffness/effects/course.hpp"
-#include "tissue_stiffness/tools/scene_keys.hpp"
+#include "effects/course.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "tools/scene_keys.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/tools/paint.hpp"
+#include "tools/paint.hpp"
 
 #include <unistd.h>
 

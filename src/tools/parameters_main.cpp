@@ -1,5 +1,5 @@
-#include "tissue_stiffness/tools/print_keys.hpp"
-#include "tissue_stiffness/tools/run_tool.hpp"
+#include "tools/print_keys.hpp"
+#include "tools/run_tool.hpp"
 
 int main(int argc, char** argv) {
   CLI::App app("Prints the keys of a model file and the nodes' parameters: unit, allowed values, default, meaning.",

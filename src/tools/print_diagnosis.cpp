@@ -1,11 +1,11 @@
-#include "tissue_stiffness/tools/print_diagnosis.hpp"
+#include "tools/print_diagnosis.hpp"
 
 #include <cmath>
 #include <cstdio>
 #include <ostream>
 #include <string>
 
-#include "tissue_stiffness/report/write_diagnosis.hpp"
+#include "report/write_diagnosis.hpp"
 
 namespace tissue_stiffness {
 namespace {

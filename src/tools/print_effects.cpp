@@ -1,4 +1,4 @@
-#include "tissue_stiffness/tools/print_effects.hpp"
+#include "tools/print_effects.hpp"
 
 #include <cctype>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <sstream>
 #include <string>
 
-#include "tissue_stiffness/effects/registry.hpp"
+#include "effects/registry.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/tools/print_keys.hpp"
+#include "tools/print_keys.hpp"
 
 #include <cmath>
 #include <limits>
@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "tissue_stiffness/nodes/node_keys.hpp"
-#include "tissue_stiffness/settings/key_spec.hpp"
-#include "tissue_stiffness/tools/scene_keys.hpp"
+#include "nodes/node_keys.hpp"
+#include "settings/key_spec.hpp"
+#include "tools/scene_keys.hpp"
 
 namespace tissue_stiffness {
 namespace {

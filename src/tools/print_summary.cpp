@@ -4,9 +4,9 @@
 #include <ostream>
 #include <vector>
 
-#include "tissue_stiffness/report/input_table.hpp"
-#include "tissue_stiffness/report/text.hpp"
-#include "tissue_stiffness/tools/estimate_recording.hpp"
+#include "report/input_table.hpp"
+#include "report/text.hpp"
+#include "tools/estimate_recording.hpp"
 
 namespace tissue_stiffness {
 namespace {

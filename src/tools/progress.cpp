@@ -1,4 +1,4 @@
-#include "tissue_stiffness/tools/progress.hpp"
+#include "tools/progress.hpp"
 
 #include <unistd.h>
 

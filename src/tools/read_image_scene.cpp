@@ -1,9 +1,9 @@
-#include "tissue_stiffness/tools/read_image_scene.hpp"
+#include "tools/read_image_scene.hpp"
 
 #include <cmath>
 
-#include "tissue_stiffness/tools/scene_keys.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "tools/scene_keys.hpp"
 
 namespace tissue_stiffness {
 namespace {

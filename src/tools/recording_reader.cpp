@@ -1,4 +1,4 @@
-#include "tissue_stiffness/tools/recording_reader.hpp"
+#include "tools/recording_reader.hpp"
 
 #include <utility>
 

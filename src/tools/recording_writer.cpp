@@ -1,4 +1,4 @@
-#include "tissue_stiffness/tools/recording_writer.hpp"
+#include "tools/recording_writer.hpp"
 
 #include <cv_bridge/cv_bridge.h>
 #include <geometry_msgs/WrenchStamped.h>

@@ -5,8 +5,8 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
-#include "tissue_stiffness/observation/closest_point.hpp"
-#include "tissue_stiffness/tools/render.hpp"
+#include "observation/closest_point.hpp"
+#include "tools/render.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -3,9 +3,9 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "tissue_stiffness/meshing/refine.hpp"
-#include "tissue_stiffness/observation/closest_point.hpp"
-#include "tissue_stiffness/tools/render.hpp"
+#include "meshing/refine.hpp"
+#include "observation/closest_point.hpp"
+#include "tools/render.hpp"
 
 namespace tissue_stiffness {
 namespace {

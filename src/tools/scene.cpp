@@ -1,13 +1,13 @@
-#include "tissue_stiffness/tools/scene.hpp"
+#include "tools/scene.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "tissue_stiffness/nodes/estimator_inputs.hpp"
-#include "tissue_stiffness/tools/read_image_scene.hpp"
-#include "tissue_stiffness/tools/scene_keys.hpp"
+#include "nodes/estimator_inputs.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "tools/read_image_scene.hpp"
+#include "tools/scene_keys.hpp"
 
 namespace tissue_stiffness {
 namespace {

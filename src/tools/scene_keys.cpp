@@ -1,4 +1,4 @@
-#include "tissue_stiffness/tools/scene_keys.hpp"
+#include "tools/scene_keys.hpp"
 
 #include <limits>
 

@@ -2,9 +2,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "tissue_stiffness/tools/progress.hpp"
-#include "tissue_stiffness/tools/run_tool.hpp"
-#include "tissue_stiffness/tools/simulate_scene.hpp"
+#include "tools/progress.hpp"
+#include "tools/run_tool.hpp"
+#include "tools/simulate_scene.hpp"
 
 int main(int argc, char** argv) {
   using namespace tissue_stiffness;

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/tools/simulate_scene.hpp"
+#include "tools/simulate_scene.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,14 +7,14 @@
 #include <random>
 #include <set>
 
-#include "tissue_stiffness/forward/full_model.hpp"
+#include "forward/full_model.hpp"
+#include "meshing/refine.hpp"
+#include "observation/closest_point.hpp"
+#include "observation/observation_operator.hpp"
 #include "tissue_stiffness/meshing/build_mesh.hpp"
-#include "tissue_stiffness/meshing/refine.hpp"
-#include "tissue_stiffness/observation/closest_point.hpp"
-#include "tissue_stiffness/observation/observation_operator.hpp"
-#include "tissue_stiffness/tools/recording_writer.hpp"
-#include "tissue_stiffness/tools/render.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "tools/recording_writer.hpp"
+#include "tools/render.hpp"
 
 namespace tissue_stiffness {
 namespace {

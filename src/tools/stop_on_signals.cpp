@@ -1,11 +1,11 @@
-#include "tissue_stiffness/tools/stop_on_signals.hpp"
+#include "tools/stop_on_signals.hpp"
 
 #include <signal.h>
 #include <unistd.h>
 
 #include <atomic>
 
-#include "tissue_stiffness/tools/exit_code.hpp"
+#include "tools/exit_code.hpp"
 
 namespace tissue_stiffness {
 namespace {

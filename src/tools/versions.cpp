@@ -1,4 +1,4 @@
-#include "tissue_stiffness/tools/versions.hpp"
+#include "tools/versions.hpp"
 
 #include <Eigen/Core>
 #include <opencv2/core/version.hpp>

@@ -1,7 +1,7 @@
-#include "tissue_stiffness/effects/registry.hpp"
-#include "tissue_stiffness/report/text.hpp"
-#include "tissue_stiffness/report/write_results.hpp"
-#include "tissue_stiffness/tools/simulate_scene.hpp"
+#include "effects/registry.hpp"
+#include "report/text.hpp"
+#include "report/write_results.hpp"
+#include "tools/simulate_scene.hpp"
 
 namespace tissue_stiffness {
 

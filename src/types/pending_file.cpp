@@ -1,4 +1,4 @@
-#include "tissue_stiffness/types/pending_file.hpp"
+#include "types/pending_file.hpp"
 
 #include <unistd.h>
 

@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <fstream>
 
+#include "check/check_mesh.hpp"
+#include "check/check_numbers.hpp"
+#include "check/check_topics.hpp"
 #include "says.hpp"
-#include "tissue_stiffness/check/check_mesh.hpp"
-#include "tissue_stiffness/check/check_numbers.hpp"
-#include "tissue_stiffness/check/check_topics.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -7,12 +7,12 @@
 #include <random>
 
 #include "../box_model.hpp"
+#include "check/check_first_frame.hpp"
+#include "check/check_images.hpp"
+#include "check/check_motion.hpp"
+#include "check/rigid_fit.hpp"
+#include "fit/ensemble.hpp"
 #include "says.hpp"
-#include "tissue_stiffness/check/check_first_frame.hpp"
-#include "tissue_stiffness/check/check_images.hpp"
-#include "tissue_stiffness/check/check_motion.hpp"
-#include "tissue_stiffness/check/rigid_fit.hpp"
-#include "tissue_stiffness/fit/ensemble.hpp"
 
 namespace tissue_stiffness {
 namespace {

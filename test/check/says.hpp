@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tissue_stiffness/check/setup_finding.hpp"
+#include "check/setup_finding.hpp"
 
 namespace tissue_stiffness {
 

@@ -1,6 +1,6 @@
 // The map shows where and when a model is valid: an error that is put into one part and one third is found there, and
 // nowhere else.
-#include "tissue_stiffness/diagnosis/belief_map.hpp"
+#include "diagnosis/belief_map.hpp"
 
 #include <gtest/gtest.h>
 

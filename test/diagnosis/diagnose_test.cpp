@@ -7,10 +7,10 @@
 #include <cmath>
 
 #include "../box_model.hpp"
-#include "tissue_stiffness/diagnosis/finding.hpp"
-#include "tissue_stiffness/diagnosis/screening.hpp"
-#include "tissue_stiffness/forward/full_model.hpp"
-#include "tissue_stiffness/settings/extend_model.hpp"
+#include "diagnosis/finding.hpp"
+#include "diagnosis/screening.hpp"
+#include "forward/full_model.hpp"
+#include "settings/extend_model.hpp"
 #include "tissue_stiffness/types/error.hpp"
 #include "verification/experiment.hpp"
 

@@ -1,5 +1,5 @@
 // The smoother is compared with Gaussian conditioning on everything at once.
-#include "tissue_stiffness/diagnosis/force_smoother.hpp"
+#include "diagnosis/force_smoother.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 
 #include "../box_model.hpp"
 #include "tissue_stiffness/diagnosis/diagnose.hpp"
-#include "tissue_stiffness/types/stop_request.hpp"
+#include "types/stop_request.hpp"
 #include "verification/experiment.hpp"
 
 namespace tissue_stiffness {

@@ -1,5 +1,5 @@
 // In recordings of a bar with something hidden, the force that the model lacks is that of what was hidden.
-#include "tissue_stiffness/diagnosis/missing_force.hpp"
+#include "diagnosis/missing_force.hpp"
 
 #include <gtest/gtest.h>
 

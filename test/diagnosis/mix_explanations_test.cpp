@@ -1,4 +1,4 @@
-#include "tissue_stiffness/diagnosis/mix_explanations.hpp"
+#include "diagnosis/mix_explanations.hpp"
 
 #include <gtest/gtest.h>
 

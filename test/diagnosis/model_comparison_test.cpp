@@ -1,6 +1,4 @@
 // These tests cover the likelihood with the mesh's error, the evidence, and what is judged from the probabilities.
-#include "tissue_stiffness/diagnosis/hypotheses.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,8 +8,9 @@
 #include <utility>
 
 #include "../box_model.hpp"
-#include "tissue_stiffness/diagnosis/missing_force.hpp"
-#include "tissue_stiffness/diagnosis/scores.hpp"
+#include "diagnosis/hypotheses.hpp"
+#include "diagnosis/missing_force.hpp"
+#include "diagnosis/scores.hpp"
 #include "verification/experiment.hpp"
 
 namespace tissue_stiffness {

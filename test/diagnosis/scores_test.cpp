@@ -1,4 +1,4 @@
-#include "tissue_stiffness/diagnosis/scores.hpp"
+#include "diagnosis/scores.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // These tests cover what the mesh is blamed for, and what the tangents say.
-#include "tissue_stiffness/diagnosis/screening.hpp"
+#include "diagnosis/screening.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "../box_model.hpp"
-#include "tissue_stiffness/settings/extend_model.hpp"
+#include "settings/extend_model.hpp"
 #include "verification/experiment.hpp"
 
 namespace tissue_stiffness {

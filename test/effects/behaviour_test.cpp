@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "../box_model.hpp"
-#include "tissue_stiffness/fem/generalized_alpha.hpp"
-#include "tissue_stiffness/forward/full_model.hpp"
-#include "tissue_stiffness/meshing/elevate.hpp"
-#include "tissue_stiffness/meshing/surface.hpp"
+#include "fem/generalized_alpha.hpp"
+#include "forward/full_model.hpp"
+#include "meshing/elevate.hpp"
+#include "meshing/surface.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -8,9 +8,9 @@
 #include <set>
 
 #include "../box_model.hpp"
-#include "tissue_stiffness/effects/registry.hpp"
-#include "tissue_stiffness/forward/full_model.hpp"
-#include "tissue_stiffness/forward/reduced_model.hpp"
+#include "effects/registry.hpp"
+#include "forward/full_model.hpp"
+#include "forward/reduced_model.hpp"
 
 namespace tissue_stiffness {
 namespace {

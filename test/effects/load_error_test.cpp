@@ -1,10 +1,10 @@
-#include "tissue_stiffness/effects/load_error.hpp"
+#include "effects/load_error.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "tissue_stiffness/effects/course.hpp"
+#include "effects/course.hpp"
 
 namespace tissue_stiffness {
 namespace {

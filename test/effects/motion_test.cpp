@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "../box_model.hpp"
-#include "tissue_stiffness/fem/sparse_solver.hpp"
-#include "tissue_stiffness/forward/full_model.hpp"
+#include "fem/sparse_solver.hpp"
+#include "forward/full_model.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -6,9 +6,9 @@
 #include <random>
 
 #include "../box_model.hpp"
-#include "tissue_stiffness/effects/fibre_field.hpp"
-#include "tissue_stiffness/effects/registry.hpp"
-#include "tissue_stiffness/forward/full_model.hpp"
+#include "effects/fibre_field.hpp"
+#include "effects/registry.hpp"
+#include "forward/full_model.hpp"
 
 namespace tissue_stiffness {
 namespace {

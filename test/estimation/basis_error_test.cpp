@@ -1,13 +1,13 @@
 // The error of the reduced basis is reported, bounds the real one, and is small because the basis grows.
-#include "tissue_stiffness/estimation/basis_error.hpp"
+#include "estimation/basis_error.hpp"
 
 #include <gtest/gtest.h>
 
 #include "bar.hpp"
-#include "tissue_stiffness/fit/batch_fit.hpp"
-#include "tissue_stiffness/forward/full_model.hpp"
-#include "tissue_stiffness/meshing/surface.hpp"
-#include "tissue_stiffness/observation/observation_operator.hpp"
+#include "fit/batch_fit.hpp"
+#include "forward/full_model.hpp"
+#include "meshing/surface.hpp"
+#include "observation/observation_operator.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "bar.hpp"
-#include "tissue_stiffness/forward/reduced_model.hpp"
+#include "forward/reduced_model.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,5 +1,5 @@
 // The columns of the inputs' errors are the derivatives of the rows.
-#include "tissue_stiffness/estimation/input_linearisation.hpp"
+#include "estimation/input_linearisation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // A coarse mesh is used on recordings from a fine one: the interval must carry what the mesh does.
-#include "tissue_stiffness/estimation/mesh_error.hpp"
+#include "estimation/mesh_error.hpp"
 
 #include <gtest/gtest.h>
 
 #include "bar.hpp"
-#include "tissue_stiffness/forward/reduced_model.hpp"
-#include "tissue_stiffness/meshing/refine.hpp"
+#include "forward/reduced_model.hpp"
+#include "meshing/refine.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,5 +1,5 @@
 // The posterior predictive test of a residual is checked on noise whose structure is known.
-#include "tissue_stiffness/estimation/misfit_test.hpp"
+#include "estimation/misfit_test.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // A body is divided into patches, with a prior over them.
-#include "tissue_stiffness/estimation/patches.hpp"
+#include "estimation/patches.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <numeric>
 
 #include "../box_model.hpp"
-#include "tissue_stiffness/estimation/patch_model.hpp"
-#include "tissue_stiffness/meshing/surface.hpp"
+#include "estimation/patch_model.hpp"
+#include "meshing/surface.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/estimation/replay_recorder.hpp"
+#include "estimation/replay_recorder.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "../box_model.hpp"
-#include "tissue_stiffness/fit/ensemble.hpp"
-#include "tissue_stiffness/forward/reduced_model.hpp"
+#include "fit/ensemble.hpp"
+#include "forward/reduced_model.hpp"
 
 namespace tissue_stiffness {
 namespace {

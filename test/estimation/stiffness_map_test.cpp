@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "bar.hpp"
-#include "tissue_stiffness/estimation/map_stiffness.hpp"
+#include "estimation/map_stiffness.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

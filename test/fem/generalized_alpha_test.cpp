@@ -1,5 +1,5 @@
 // Time stepping: free fall, and what happens when a step fails.
-#include "tissue_stiffness/fem/generalized_alpha.hpp"
+#include "fem/generalized_alpha.hpp"
 
 #include <gtest/gtest.h>
 

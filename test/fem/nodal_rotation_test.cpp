@@ -1,4 +1,4 @@
-#include "tissue_stiffness/fem/nodal_rotation.hpp"
+#include "fem/nodal_rotation.hpp"
 
 #include <gtest/gtest.h>
 

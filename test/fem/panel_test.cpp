@@ -1,5 +1,5 @@
 // Every instruction set's kernels against plain loops.
-#include "tissue_stiffness/fem/panel.hpp"
+#include "fem/panel.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Products of tall matrices against Eigen's.
-#include "tissue_stiffness/fem/products.hpp"
+#include "fem/products.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "tissue_stiffness/fem/sparse_solver.hpp"
+#include "fem/sparse_solver.hpp"
 #include "verification/elastic_body.hpp"
 
 namespace tissue_stiffness {

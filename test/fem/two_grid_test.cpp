@@ -1,5 +1,5 @@
 // Solutions between two meshes against those by a factor.
-#include "tissue_stiffness/fem/two_grid.hpp"
+#include "fem/two_grid.hpp"
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "tissue_stiffness/meshing/refine.hpp"
+#include "meshing/refine.hpp"
 #include "verification/elastic_body.hpp"
 
 namespace tissue_stiffness {

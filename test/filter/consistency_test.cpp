@@ -1,4 +1,4 @@
-#include "tissue_stiffness/filter/consistency.hpp"
+#include "filter/consistency.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <random>
 #include <stdexcept>
 
-#include "tissue_stiffness/filter/interval.hpp"
-#include "tissue_stiffness/filter/robust_weights.hpp"
+#include "filter/interval.hpp"
+#include "filter/robust_weights.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

@@ -1,12 +1,12 @@
 // Intervals of a straight line's slope, whose errors are drawn again and again.
-#include "tissue_stiffness/filter/score_batches.hpp"
+#include "filter/score_batches.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "tissue_stiffness/filter/posterior_linearization_filter.hpp"
+#include "filter/posterior_linearization_filter.hpp"
 
 namespace tissue_stiffness {
 namespace {

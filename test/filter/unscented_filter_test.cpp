@@ -1,4 +1,4 @@
-#include "tissue_stiffness/filter/unscented_filter.hpp"
+#include "filter/unscented_filter.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 
 #include "../figures.hpp"
 #include "../processor_time.hpp"
-#include "tissue_stiffness/filter/consistency.hpp"
+#include "filter/consistency.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

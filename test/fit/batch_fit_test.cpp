@@ -1,5 +1,5 @@
 // The fitted parameters compensate each other: how stiff a ball in a bar is, how large, and how stiff the bar around it is.
-#include "tissue_stiffness/fit/batch_fit.hpp"
+#include "fit/batch_fit.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <random>
 
 #include "../estimation/bar.hpp"
-#include "tissue_stiffness/forward/reduced_model.hpp"
-#include "tissue_stiffness/observation/observation_operator.hpp"
+#include "forward/reduced_model.hpp"
+#include "observation/observation_operator.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,5 +1,5 @@
 // A cheap model is shifted to agree with an accurate one.
-#include "tissue_stiffness/fit/corrected_surrogate.hpp"
+#include "fit/corrected_surrogate.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "../box_model.hpp"
-#include "tissue_stiffness/forward/full_model.hpp"
-#include "tissue_stiffness/forward/reduced_model.hpp"
+#include "forward/full_model.hpp"
+#include "forward/reduced_model.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,5 +1,5 @@
 // Acts side by side: an error of one leaves the work of the others whole.
-#include "tissue_stiffness/forward/for_each_index.hpp"
+#include "forward/for_each_index.hpp"
 
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "tissue_stiffness/forward/full_model.hpp"
-#include "tissue_stiffness/forward/reduced_model.hpp"
+#include "forward/full_model.hpp"
+#include "forward/reduced_model.hpp"
 
 namespace tissue_stiffness {
 

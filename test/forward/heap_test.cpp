@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "../box_model.hpp"
-#include "tissue_stiffness/forward/full_model.hpp"
+#include "forward/full_model.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -7,10 +7,10 @@
 #include <fstream>
 
 #include "../box_model.hpp"
-#include "tissue_stiffness/effects/registry.hpp"
-#include "tissue_stiffness/forward/full_model.hpp"
-#include "tissue_stiffness/forward/reduced_model.hpp"
-#include "tissue_stiffness/forward/reduced_trajectory.hpp"
+#include "effects/registry.hpp"
+#include "forward/full_model.hpp"
+#include "forward/reduced_model.hpp"
+#include "forward/reduced_trajectory.hpp"
 #include "tissue_stiffness/meshing/build_mesh.hpp"
 
 namespace tissue_stiffness {

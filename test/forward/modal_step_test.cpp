@@ -1,5 +1,5 @@
 // The closed form of a mode's step against the matrix exponential, which two steps with a branch of no weight take.
-#include "tissue_stiffness/forward/modal_step.hpp"
+#include "forward/modal_step.hpp"
 
 #include <gtest/gtest.h>
 

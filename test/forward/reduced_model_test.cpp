@@ -1,5 +1,5 @@
 // The reduced model against the full one and against closed forms.
-#include "tissue_stiffness/forward/reduced_model.hpp"
+#include "forward/reduced_model.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,12 +9,12 @@
 #include <set>
 
 #include "../box_model.hpp"
+#include "fem/sparse_solver.hpp"
+#include "forward/first_order_model.hpp"
+#include "forward/full_model.hpp"
+#include "forward/reduced_trajectory.hpp"
 #include "full_against_reduced.hpp"
-#include "tissue_stiffness/fem/sparse_solver.hpp"
-#include "tissue_stiffness/forward/first_order_model.hpp"
-#include "tissue_stiffness/forward/full_model.hpp"
-#include "tissue_stiffness/forward/reduced_trajectory.hpp"
-#include "tissue_stiffness/meshing/refine.hpp"
+#include "meshing/refine.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "../box_model.hpp"
-#include "tissue_stiffness/forward/full_model.hpp"
+#include "forward/full_model.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,9 +1,9 @@
-#include "tissue_stiffness/meshing/box_mesh.hpp"
+#include "meshing/box_mesh.hpp"
 
 #include <gtest/gtest.h>
 
-#include "tissue_stiffness/meshing/elevate.hpp"
-#include "tissue_stiffness/meshing/surface.hpp"
+#include "meshing/elevate.hpp"
+#include "meshing/surface.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

@@ -2,11 +2,11 @@
 #include <random>
 
 #include "mesh_checks.hpp"
-#include "tissue_stiffness/meshing/bodies.hpp"
+#include "meshing/bodies.hpp"
+#include "meshing/quality.hpp"
+#include "meshing/revolution_profile.hpp"
+#include "meshing/tetgen_mesher.hpp"
 #include "tissue_stiffness/meshing/build_mesh.hpp"
-#include "tissue_stiffness/meshing/quality.hpp"
-#include "tissue_stiffness/meshing/revolution_profile.hpp"
-#include "tissue_stiffness/meshing/tetgen_mesher.hpp"
 
 namespace tissue_stiffness {
 namespace {

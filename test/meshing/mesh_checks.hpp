@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "tissue_stiffness/meshing/surface.hpp"
+#include "meshing/surface.hpp"
 #include "tissue_stiffness/types/error.hpp"
 #include "tissue_stiffness/types/tet_mesh.hpp"
 

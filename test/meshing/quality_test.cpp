@@ -1,10 +1,10 @@
-#include "tissue_stiffness/meshing/quality.hpp"
+#include "meshing/quality.hpp"
 
 #include <cmath>
 
 #include "mesh_checks.hpp"
-#include "tissue_stiffness/meshing/box_mesh.hpp"
-#include "tissue_stiffness/meshing/elevate.hpp"
+#include "meshing/box_mesh.hpp"
+#include "meshing/elevate.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

@@ -1,10 +1,10 @@
-#include "tissue_stiffness/meshing/refine.hpp"
+#include "meshing/refine.hpp"
 
 #include <gtest/gtest.h>
 
-#include "tissue_stiffness/meshing/box_mesh.hpp"
+#include "meshing/box_mesh.hpp"
+#include "meshing/surface.hpp"
 #include "tissue_stiffness/meshing/build_mesh.hpp"
-#include "tissue_stiffness/meshing/surface.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -1,5 +1,5 @@
 // Work in a child process: its result comes back, its crash does not, and it can be ended.
-#include "tissue_stiffness/meshing/run_apart.hpp"
+#include "meshing/run_apart.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -9,7 +9,7 @@
 #include <cstdlib>
 
 #include "tissue_stiffness/types/error.hpp"
-#include "tissue_stiffness/types/stop_request.hpp"
+#include "types/stop_request.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <fstream>
 
+#include "meshing/surface.hpp"
+#include "meshing/tetgen_mesher.hpp"
 #include "tissue_stiffness/meshing/build_mesh.hpp"
-#include "tissue_stiffness/meshing/surface.hpp"
-#include "tissue_stiffness/meshing/tetgen_mesher.hpp"
 
 namespace tissue_stiffness {
 namespace {

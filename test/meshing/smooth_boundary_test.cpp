@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tissue_stiffness/meshing/bend_boundary.hpp"
-#include "tissue_stiffness/meshing/box_mesh.hpp"
-#include "tissue_stiffness/meshing/elevate.hpp"
-#include "tissue_stiffness/meshing/quality.hpp"
-#include "tissue_stiffness/meshing/surface.hpp"
+#include "meshing/bend_boundary.hpp"
+#include "meshing/box_mesh.hpp"
+#include "meshing/elevate.hpp"
+#include "meshing/quality.hpp"
+#include "meshing/surface.hpp"
 
 namespace tissue_stiffness {
 namespace {

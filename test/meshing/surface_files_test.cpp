@@ -1,12 +1,12 @@
 #include <cmath>
 
 #include "mesh_checks.hpp"
+#include "meshing/planar_facets.hpp"
+#include "meshing/quality.hpp"
+#include "meshing/tetgen_mesher.hpp"
+#include "meshing/triangle_surface.hpp"
 #include "tissue_stiffness/meshing/build_mesh.hpp"
 #include "tissue_stiffness/meshing/mesh_io.hpp"
-#include "tissue_stiffness/meshing/planar_facets.hpp"
-#include "tissue_stiffness/meshing/quality.hpp"
-#include "tissue_stiffness/meshing/tetgen_mesher.hpp"
-#include "tissue_stiffness/meshing/triangle_surface.hpp"
 
 namespace tissue_stiffness {
 namespace {

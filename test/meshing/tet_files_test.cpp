@@ -2,7 +2,7 @@
 #include <fstream>
 
 #include "mesh_checks.hpp"
-#include "tissue_stiffness/meshing/box_mesh.hpp"
+#include "meshing/box_mesh.hpp"
 #include "tissue_stiffness/meshing/build_mesh.hpp"
 #include "tissue_stiffness/meshing/mesh_io.hpp"
 

@@ -4,7 +4,7 @@
 
 #include "cloud.hpp"
 #include "expect_input_error.hpp"
-#include "tissue_stiffness/nodes/sensor_conversions.hpp"
+#include "nodes/sensor_conversions.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "tissue_stiffness/effects/registry.hpp"
+#include "effects/registry.hpp"
 #include "tissue_stiffness/settings/model_settings.hpp"
 
 namespace tissue_stiffness {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/nodes/frame_queue.hpp"
+#include "nodes/frame_queue.hpp"
 
 #include <gtest/gtest.h>
 

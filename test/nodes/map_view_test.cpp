@@ -1,4 +1,4 @@
-#include "tissue_stiffness/nodes/map_view.hpp"
+#include "nodes/map_view.hpp"
 
 #include <gtest/gtest.h>
 

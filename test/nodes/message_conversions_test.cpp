@@ -1,4 +1,4 @@
-#include "tissue_stiffness/nodes/message_conversions.hpp"
+#include "nodes/message_conversions.hpp"
 
 #include <gtest/gtest.h>
 

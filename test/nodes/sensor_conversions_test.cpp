@@ -1,4 +1,4 @@
-#include "tissue_stiffness/nodes/sensor_conversions.hpp"
+#include "nodes/sensor_conversions.hpp"
 
 #include <gtest/gtest.h>
 #include <sensor_msgs/image_encodings.h>

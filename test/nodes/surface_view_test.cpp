@@ -1,12 +1,12 @@
-#include "tissue_stiffness/nodes/surface_view.hpp"
+#include "nodes/surface_view.hpp"
 
 #include <gtest/gtest.h>
 #include <sensor_msgs/point_cloud2_iterator.h>
 
 #include <cmath>
 
-#include "tissue_stiffness/nodes/model_outline.hpp"
-#include "tissue_stiffness/nodes/sensor_conversions.hpp"
+#include "nodes/model_outline.hpp"
+#include "nodes/sensor_conversions.hpp"
 
 namespace tissue_stiffness {
 namespace {

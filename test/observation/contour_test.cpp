@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "../box_model.hpp"
-#include "tissue_stiffness/observation/observation_operator.hpp"
-#include "tissue_stiffness/observation/outline.hpp"
+#include "observation/observation_operator.hpp"
+#include "observation/outline.hpp"
 
 namespace tissue_stiffness {
 namespace {

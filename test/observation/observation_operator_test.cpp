@@ -1,5 +1,5 @@
 // Predictions of the sensors without an image are compared with results in closed form.
-#include "tissue_stiffness/observation/observation_operator.hpp"
+#include "observation/observation_operator.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "../box_model.hpp"
-#include "tissue_stiffness/observation/closest_point.hpp"
+#include "observation/closest_point.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "example.hpp"
-#include "tissue_stiffness/report/map_vtk.hpp"
-#include "tissue_stiffness/report/page.hpp"
-#include "tissue_stiffness/report/write_results.hpp"
+#include "report/map_vtk.hpp"
+#include "report/page.hpp"
+#include "report/write_results.hpp"
 
 namespace tissue_stiffness {
 namespace {

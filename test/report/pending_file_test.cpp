@@ -1,5 +1,5 @@
 // Files are written whole or not at all.
-#include "tissue_stiffness/types/pending_file.hpp"
+#include "types/pending_file.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

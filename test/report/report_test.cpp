@@ -7,11 +7,11 @@
 #include <sstream>
 
 #include "example.hpp"
-#include "tissue_stiffness/report/course.hpp"
-#include "tissue_stiffness/report/page.hpp"
-#include "tissue_stiffness/report/text.hpp"
-#include "tissue_stiffness/report/write_diagnosis.hpp"
-#include "tissue_stiffness/report/write_results.hpp"
+#include "report/course.hpp"
+#include "report/page.hpp"
+#include "report/text.hpp"
+#include "report/write_diagnosis.hpp"
+#include "report/write_results.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/rviz/panel_state.hpp"
+#include "rviz/panel_state.hpp"
 
 #include <gtest/gtest.h>
 

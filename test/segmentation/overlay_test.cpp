@@ -1,4 +1,4 @@
-#include "tissue_stiffness/segmentation/overlay.hpp"
+#include "segmentation/overlay.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "tissue_stiffness/settings/effect_entry.hpp"
+#include "settings/effect_entry.hpp"
 
 #include <gtest/gtest.h>
 
-#include "tissue_stiffness/settings/extend_model.hpp"
+#include "settings/extend_model.hpp"
 
 namespace tissue_stiffness {
 namespace {

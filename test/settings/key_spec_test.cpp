@@ -1,4 +1,4 @@
-#include "tissue_stiffness/settings/key_spec.hpp"
+#include "settings/key_spec.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "tissue_stiffness/tools/bag_reader.hpp"
+#include "tools/bag_reader.hpp"
 
 #include <geometry_msgs/WrenchStamped.h>
 #include <std_msgs/String.h>
 #include <tf2_msgs/TFMessage.h>
 
-#include "tissue_stiffness/tools/recording_writer.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "tools/recording_writer.hpp"
 #include "workbench.hpp"
 
 namespace tissue_stiffness {

@@ -4,11 +4,11 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "tissue_stiffness/report/write_results.hpp"
-#include "tissue_stiffness/tools/estimate_recording.hpp"
-#include "tissue_stiffness/tools/exit_code.hpp"
-#include "tissue_stiffness/tools/simulate_scene.hpp"
+#include "report/write_results.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "tools/estimate_recording.hpp"
+#include "tools/exit_code.hpp"
+#include "tools/simulate_scene.hpp"
 #include "workbench.hpp"
 
 namespace tissue_stiffness {

@@ -1,4 +1,4 @@
-#include "tissue_stiffness/tools/load_signal.hpp"
+#include "tools/load_signal.hpp"
 
 #include <cmath>
 

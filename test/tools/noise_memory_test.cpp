@@ -1,9 +1,9 @@
 // Noise that a tracked point carries from one frame to the next.
 #include <cmath>
 
-#include "tissue_stiffness/tools/recording_reader.hpp"
-#include "tissue_stiffness/tools/simulate_scene.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "tools/recording_reader.hpp"
+#include "tools/simulate_scene.hpp"
 #include "workbench.hpp"
 
 namespace tissue_stiffness {

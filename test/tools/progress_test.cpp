@@ -1,5 +1,5 @@
 // What a terminal and a log see of long work.
-#include "tissue_stiffness/tools/progress.hpp"
+#include "tools/progress.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
-#include "tissue_stiffness/tools/render.hpp"
+#include "tools/render.hpp"
 
 #include <opencv2/imgproc.hpp>
 
 #include "tissue_stiffness/meshing/build_mesh.hpp"
-#include "tissue_stiffness/tools/scene.hpp"
+#include "tools/scene.hpp"
 #include "workbench.hpp"
 
 namespace tissue_stiffness {

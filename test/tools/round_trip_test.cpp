@@ -1,9 +1,9 @@
 // simulate, then estimate: the number that went in comes out.
 #include <cmath>
 
-#include "tissue_stiffness/report/write_results.hpp"
-#include "tissue_stiffness/tools/estimate_recording.hpp"
-#include "tissue_stiffness/tools/simulate_scene.hpp"
+#include "report/write_results.hpp"
+#include "tools/estimate_recording.hpp"
+#include "tools/simulate_scene.hpp"
 #include "workbench.hpp"
 
 namespace tissue_stiffness {

@@ -1,8 +1,8 @@
-#include "tissue_stiffness/tools/scene_keys.hpp"
+#include "tools/scene_keys.hpp"
 
 #include <set>
 
-#include "tissue_stiffness/tools/scene.hpp"
+#include "tools/scene.hpp"
 #include "workbench.hpp"
 
 namespace tissue_stiffness {

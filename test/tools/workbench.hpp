@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tissue_stiffness/meshing/box_mesh.hpp"
+#include "meshing/box_mesh.hpp"
 #include "tissue_stiffness/meshing/mesh_io.hpp"
 #include "tissue_stiffness/types/error.hpp"
 

@@ -5,10 +5,15 @@
 #include <string>
 #include <vector>
 
-#include "tissue_stiffness/fit/recording_fit.hpp"
+#include "tissue_stiffness/fit/recording.hpp"
+#include "tissue_stiffness/settings/model_settings.hpp"
 #include "tissue_stiffness/types/diagnosis.hpp"
+#include "tissue_stiffness/types/tet_mesh.hpp"
 
 namespace tissue_stiffness {
+
+struct FittedModel;
+class RecordingFit;
 
 struct DiagnosisOptions {
   std::vector<std::string> add;     ///< effects to add in turn, whatever the verdict

@@ -7,10 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "tissue_stiffness/estimation/reuse_sources.hpp"
-#include "tissue_stiffness/fit/free_run.hpp"
 #include "tissue_stiffness/settings/model_settings.hpp"
 #include "tissue_stiffness/types/estimate.hpp"
+#include "tissue_stiffness/types/free_frame.hpp"
 #include "tissue_stiffness/types/load_sample.hpp"
 #include "tissue_stiffness/types/misfit.hpp"
 #include "tissue_stiffness/types/observation.hpp"
@@ -18,6 +17,8 @@
 #include "tissue_stiffness/types/tet_mesh.hpp"
 
 namespace tissue_stiffness {
+
+struct ReuseSources;
 
 /// A step of the estimator gives this result.
 struct StepResult {
@@ -39,7 +40,9 @@ struct Identifiability {
 class Estimator {
  public:
   /// Throws InputError for a model that does not fit the mesh or the effects' specs.
-  Estimator(const ModelSettings& settings, const TetMesh& mesh, const ReuseSources& relatives = {});
+  Estimator(const ModelSettings& settings, const TetMesh& mesh);
+  /// Takes over what the model has in common with `relatives`.
+  Estimator(const ModelSettings& settings, const TetMesh& mesh, const ReuseSources& relatives);
   ~Estimator();
   Estimator(Estimator&&) noexcept;
 

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "fit/recording_fit.hpp"
+
+namespace tissue_stiffness {
+
+/// A linearisation gives a model's rows about its fit, as far as they are linear in unit normal variables u. Its columns (N
+/// x k) [sigma] are those of the free parameters, each times its prior's standard deviation, and of the time steps that a
+/// simulated recording is made with.
+struct Linearisation {
+  Eigen::MatrixXd columns;
+  Eigen::Index parameters = 0;           ///< number of these columns, the first ones; the others are numerics
+  Eigen::VectorXd prior;                 ///< mean of u, counted from the fit
+  std::vector<Eigen::Index> amplitudes;  ///< columns of added effects' amplitudes, whose size is not known beforehand
+  double log_root_weights = 0.0;         ///< sum of log sqrt(weight): a row of weight q has the noise's variance over q
+};
+/// Returns the sum of the logarithms of the roots of the rows' robust weights.
+double log_root_weights(const RecordingFit::Rows& rows);
+/// Linearises a model about its fit. `amplitudes` are given by name.
+Linearisation linearise_model(const FittedModel& fitted, const std::vector<std::string>& amplitudes = {});
+/// Returns the free parameters with normal priors that a model with fewer effects does not have.
+std::vector<std::string> added_amplitudes(const RecordingFit& recording_fit, const RecordingFit& smaller);
+
+/// This is a fitted model as it is compared: its residual and the rows about it.
+struct Explained {
+  Eigen::VectorXd error;  ///< of each row [sigma]
+  Linearisation linearisation;
+};
+/// Returns the residual to compare. Where the time steps of a simulated recording matter to a linear model, they are fitted
+/// with it. What they do to a body that rings for long is not linear in them. `far` fits them also where no tangent shows
+/// them.
+Explained compared_residual(const FittedModel& fitted, const std::vector<std::string>& amplitudes = {}, bool far = false);
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "diagnosis/model_comparison.hpp"
+#include "tissue_stiffness/types/diagnosis.hpp"
+
+namespace tissue_stiffness {
+
+struct RandomForce;
+
+/// A hypothesis is a fitted model in the comparison, with its probability.
+struct Hypothesis {
+  std::vector<std::string> effects;  ///< empty: the given model
+  /// It also acts on the lowest modes: something that the library does not have. Null: nothing does.
+  std::shared_ptr<const RandomForce> random_force;
+  double log_prior = 0.0;
+  std::shared_ptr<const Explained> explained;  ///< the model
+  double log_weight = 0.0;                     ///< log evidence plus log prior, up to a constant
+  double z = 0.0;                              ///< of the residual's test; with a random force, of the test without it
+  bool passes = false;                         ///< that test; false with a random force
+  bool structured = true;                      ///< something beyond chance is left, or a random force acts
+  bool superfluous = false;                    ///< another hypothesis already suffices
+  double probability = 0.0;
+  bool holds(const std::string& effect) const;
+  /// Returns whether this one has all that the other one has and something more, while the other one leaves no structure
+  /// beyond chance.
+  bool superfluous_beside(const Hypothesis& other) const;
+  /// Sets weight and test as `models` assess the explained model.
+  void weigh(const Assessment& assessment, const ModelComparison& models);
+};
+/// A trace is a hypothesis that no test asks for, with its share of the belief where its evidence still counts.
+struct Trace {
+  const Hypothesis* hypothesis;
+  double share;
+};
+struct Comparison {
+  bool passes_without_mesh = false;    ///< the given model's residual passes, with the error of the mesh in it
+  std::vector<Hypothesis> hypotheses;  ///< the given model first
+
+  const Hypothesis& given() const { return hypotheses.front(); }
+  const Hypothesis& best() const;                          ///< most probable one
+  double none_of_these() const;                            ///< probability of all hypotheses with a random force
+  double probability_of(const std::string& effect) const;  ///< probability of all others that hold it
+  /// Returns what may act besides the most probable hypothesis without being missed: superfluous extensions of it, by their
+  /// evidence. Together they have no more than half, because the evidence may be that of the mesh's error.
+  std::vector<Trace> traces() const;
+  /// Assigns weights, tests and probabilities to all hypotheses by one likelihood.
+  void assess(const ModelComparison& models);
+  /// Computes probabilities from the weights. A superfluous hypothesis has none: what it has more is too small to be
+  /// missing, whatever it gains. Where the most probable model does not pass its test, a random force beside it gains what
+  /// that test says, or more.
+  void find_probabilities();
+  /// `deeper` is a comparison about the model with `effects` added. Its hypotheses take the place of those with these
+  /// effects alone, and have to be assessed together with the others.
+  void merge(const std::vector<std::string>& effects, const Comparison& deeper);
+};
+
+/// Returns `adequate` if the given model is believed (P(given) > 1 - `believed`) and its residual passes, `numerics` if it
+/// passes only with the mesh's error allowed for. Returns `missing` if it is not believed, named effects alone are the most
+/// probable hypothesis, and what they leave passes. Otherwise it returns `unexplained`.
+Verdict judge(const Comparison& comparison);
+
+/// Returns the effects of the fewest hypotheses that hold the believed part of the probability of all that name any effect,
+/// most probable first.
+std::vector<std::string> believed_effects(const Comparison& comparison);
+
+}  // namespace tissue_stiffness

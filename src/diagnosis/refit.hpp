@@ -1,0 +1,52 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "diagnosis/candidates.hpp"
+#include "diagnosis/model_comparison.hpp"
+
+namespace tissue_stiffness {
+
+/// A task is one candidate to be fitted, with the amplitude that its tangent has.
+struct RefitTask {
+  const Candidate* candidate = nullptr;
+  Eigen::VectorXd amplitude;
+  std::map<std::string, double> scanned = {};  ///< starts for what is neither amplitude nor the base's
+  bool warm_started = false;                   ///< `scanned` holds every parameter, from an InitialSegmentFit
+
+  const std::string& effect() const { return candidate->effect; }
+};
+
+/// This is a fit of the recording's initial segment alone, with one proposal more. Its amplitude is scanned across its
+/// whole prior. Phases that drift apart hide the minimum from tangents and from fits of a whole recording, but not there.
+struct InitialSegmentFit {
+  std::map<std::string, double> parameters;  ///< of the whole model, by name
+  double deviance = 0.0;  ///< sum of squared errors over sigma there, plus Schwarz's penalty for what was added
+};
+constexpr double kInitialSegment = 0.3;  // share of the frames
+/// Fits the initial segment. Throws NumericalError when no start can be run.
+InitialSegmentFit fit_initial_segment(const FittedModel& base, const Candidate& candidate);
+
+/// A refit is a fit of the base model with one proposal more.
+struct Refit {
+  std::string effect;
+  const Candidate* candidate = nullptr;  ///< it was fitted with this one's entry `refine`; valid as long as its screening
+  EffectEntry entry;                     ///< for the model file: priors around the fit of the estimated parameters
+  std::map<std::string, double> parameters;    ///< of the whole model, by name
+  double held_out_rms = 0.0;                   ///< [m]
+  double fitted = 0.0;                         ///< cost of the training frames and the prior
+  double cost = 0.0;                           ///< sum of squared errors over sigma, all frames
+  std::shared_ptr<const Explained> explained;  ///< the model as it is compared
+  Assessment assessment;
+  std::shared_ptr<FittedModel> model;  ///< null where it was only run quickly, and for all but the best
+};
+
+/// Fits the training frames by simulation, from the base's fit and the proposal's own starts. A nonlinear model is fitted
+/// in full, unless its quick runs explain next to nothing. `rival` is what another refit was `fitted` with; a fit that does
+/// not beat it may end early. Throws NumericalError when no start can be run.
+Refit refit_with(const FittedModel& base, const RefitTask& task, double rival);
+
+}  // namespace tissue_stiffness

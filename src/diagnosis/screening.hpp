@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "diagnosis/finer_mesh.hpp"
+#include "diagnosis/model_comparison.hpp"
+#include "diagnosis/ranking.hpp"
+#include "tissue_stiffness/diagnosis/diagnose.hpp"
+
+namespace tissue_stiffness {
+
+/// This is what an earlier round on this recording has found out.
+struct PreviousRound {
+  std::shared_ptr<const RecordingFit> finer = nullptr;      ///< the model on a finer mesh; null: none yet
+  std::shared_ptr<const ModelComparison> models = nullptr;  ///< their noise is known; null: none yet
+  Library library = {};                                     ///< see find_candidates
+  bool tangents_only = false;  ///< the model has an effect that was found: refits from tangents are the only search
+  bool settled = false;        ///< the model keeps its fit, even where another would be better
+};
+
+/// A screening shows what a fitted model's error tells before anything is refitted: the library, ranked by its tangents,
+/// and the mesh's part.
+struct Screening {
+  Screening(FittedModel& fitted, const DiagnosisOptions& options, PreviousRound previous = {});
+
+  /// Moves the base to another fit. Tangents, and the base's assessment, stay those of the first place.
+  void move_base(const BatchFit& fit);
+
+  FittedModel& base;
+  double cost;                        ///< sum of squared errors [sigma^2]
+  const bool tangents_only, settled;  ///< see PreviousRound
+  std::vector<Candidate> candidates;  ///< their tangents are whitened
+  Library library;                    ///< of models that the tangents were read from
+  Eigen::VectorXd error;              ///< of the base, whitened
+  Eigen::MatrixXd nuisance_tangents;  ///< of the base's parameters, and the directions of the mesh's error; whitened
+  FinerMesh finer;
+  double discretisation_error = 0.0;  ///< rms of what the base's parameters leave of the mesh's change [sigma]
+  std::unique_ptr<Scorer> scorer;
+  std::vector<Ranked> ranked;
+
+  Explained explained;         ///< the base as it is compared
+  ModelComparison comparison;  ///< of the base with others
+  Assessment given;            ///< of the base
+};
+
+}  // namespace tissue_stiffness

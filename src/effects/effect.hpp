@@ -1,0 +1,151 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "effects/course.hpp"
+#include "effects/proposal.hpp"
+#include "effects/terms.hpp"
+#include "fem/discretisation.hpp"
+#include "tissue_stiffness/settings/model_settings.hpp"
+#include "tissue_stiffness/types/load_sample.hpp"
+#include "tissue_stiffness/types/tet_mesh.hpp"
+
+namespace tissue_stiffness {
+
+/// One number of an effect. The YAML key, the filter's layout and the documentation follow from it.
+struct ParameterSpec {
+  std::string name;
+  std::string symbol;
+  std::string unit;
+  double lower = 0.0;  ///< smallest value allowed
+  double upper = 0.0;  ///< largest value allowed
+  enum class Default { required, optional } presence = Default::required;
+  double value = 0.0;   ///< default of an optional key
+  double absent = 0.0;  ///< value at which the model is that without the effect; NaN where there is none
+  int components = 1;   ///< 3: a vector [x, y, z] with parameters name_x, name_y, name_z
+  /// Default tolerance (1 sigma) of a declared number. The share is relative to the number's size.
+  double tolerance = 0.0, tolerance_share = 0.0;
+};
+
+/// Description of an effect in words and numbers.
+struct EffectSpec {
+  std::string name;
+  std::string summary;
+  std::string formula;
+  std::string source;
+  std::vector<ParameterSpec> parameters;
+  std::vector<std::pair<std::string, std::string>> keys;  ///< further keys and their values
+  Proposer proposals = nullptr;                           ///< null: its absence is not searched for
+  bool of_simulation = false;                             ///< not physics, but a property of simulated recordings
+};
+
+/// What is available to an effect while it is built.
+struct EffectContext {
+  const TetMesh& mesh;
+  const Discretisation& fem;
+  const std::map<std::string, Region>& regions;
+  const ModelSettings& settings;         ///< settings of the whole model file
+  std::vector<std::vector<int>> solids;  ///< tetrahedra of each elasticity, in order
+  double young_modulus;                  ///< prior median [Pa], a scale for penalty stiffnesses
+  CourseTable& courses;                  ///< time courses by topic
+  std::vector<LoadInput>& inputs;
+
+  /// Returns the region. Throws InputError naming the key and the existing regions.
+  const Region& region(const Value& name) const;
+};
+
+/// State of the motion at which a nonlinear effect is evaluated.
+struct Motion {
+  double time;
+  const Eigen::VectorXd& displacement;  ///< 3n [m]
+  const Eigen::VectorXd& velocity;      ///< 3n [m/s]
+  double finite_share = 0.0;            ///< share of finite strain, 0 to 1
+  double load_factor = 1.0;             ///< factor of every measured load
+  double since = 0.0;                   ///< time since the recording's first stamp [s]
+};
+
+/// The motion as a sensor observes it. Effects of the observation change it in place, in the order of the model file.
+struct ObservedMotion {
+  const TetMesh& mesh;
+  double time;                   ///< since the model's start [s]
+  Eigen::VectorXd displacement;  ///< apparent displacement, 3n [m]
+  double outward = 0.0;          ///< shift of outlines and surface points along their outward normal [m]
+};
+
+/// A force on the body that is not a linear term. A model with one is integrated in full.
+class NonlinearForce {
+ public:
+  /// Adds the force [N] (external minus internal).
+  virtual void add_force(const Motion&, const Parameters&, Eigen::VectorXd&) const = 0;
+  /// Adds -d force / d displacement [N/m], which is symmetric and has the pattern of the discretisation.
+  virtual void add_stiffness(const Motion&, const Parameters&, SparseMatrix&) const = 0;
+  /// If the force depends on the velocity, adds -d force / d velocity [N s/m], which is symmetric and has the
+  /// discretisation's pattern.
+  virtual bool has_velocity_tangent(const Parameters&) const { return false; }
+  virtual void add_velocity_tangent(const Motion&, const Parameters&, SparseMatrix&) const {}
+
+ protected:
+  ~NonlinearForce() = default;
+};
+
+/// What replaces an effect's linear stiffness and loads under finite strain.
+class FiniteStrainForm {
+ public:
+  virtual void add_finite_force(const Motion&, const Parameters&, Eigen::VectorXd&) const = 0;
+  virtual void add_finite_stiffness(const Motion&, const Parameters&, SparseMatrix&) const = 0;
+  /// Only for elasticity: returns whether its law requires finite strain.
+  virtual bool always_finite() const { return false; }
+
+ protected:
+  ~FiniteStrainForm() = default;
+};
+
+/// What an effect does to the nodes that are held at rest.
+class Support {
+ public:
+  virtual std::vector<int> fixed_nodes() const { return {}; }
+  /// Returns nodes that other effects hold, and that this one releases while is_compliant() is true.
+  virtual std::vector<int> compliant_nodes() const { return {}; }
+  virtual bool is_compliant(const Parameters&) const { return false; }
+
+ protected:
+  ~Support() = default;
+};
+
+/// What an effect does to the measurements.
+class Sensor {
+ public:
+  virtual void observe(const Parameters&, ObservedMotion&) const {}
+  /// Returns the delay of the measurements' stamps [s].
+  virtual double delay(const Parameters&) const { return 0.0; }
+
+ protected:
+  ~Sensor() = default;
+};
+
+/// One physical effect of the model. It has linear terms, and an interface for whatever else it does; null: nothing. All
+/// functions are const.
+class Effect {
+ public:
+  virtual ~Effect() = default;
+
+  /// Returns whether the effect depends only on its own entry, the mesh and its regions, and never changes. Then models of
+  /// one body may share it.
+  virtual bool shareable() const { return false; }
+  /// Returns whether the parameters of the model's elasticities follow the effect's own.
+  virtual bool needs_elasticity() const { return false; }
+
+  virtual void linear_terms(LinearTerms&) const {}
+  virtual const NonlinearForce* nonlinear_force() const { return nullptr; }
+  virtual const FiniteStrainForm* finite_strain() const { return nullptr; }
+  virtual const Support* support() const { return nullptr; }
+  virtual const Sensor* sensor() const { return nullptr; }
+  /// Returns the stored energy [J], if the effect has one.
+  virtual double energy(const Motion&, const Parameters&) const { return 0.0; }
+};
+
+}  // namespace tissue_stiffness

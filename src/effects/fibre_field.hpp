@@ -1,0 +1,72 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "effects/effect.hpp"
+
+namespace tissue_stiffness {
+
+/// Straight line around which fibres are wound.
+struct Axis {
+  Eigen::Vector3d point, direction;
+};
+
+/// Returns the axis through the body's centroid along the principal axis that differs most from the other two. This is the
+/// axis of a body of revolution, or the length of a bar. It is z where no axis differs clearly.
+Axis principal_axis(const TetMesh& mesh);
+
+/// Unit directions of fibres at the quadrature points. They come from the keys `direction` ([x, y, z], circumferential,
+/// longitudinal or radial), `axis` and `center`, and from two angles: a = cos(tilt) (cos(angle) e1 + sin(angle) e2) +
+/// sin(tilt) e3. The requested direction is e1. For directions about an axis e2 leads from circumferential to longitudinal
+/// (or back) and e3 is radial, so that `angle` is the helix angle.
+class FibreField {
+ public:
+  /// Reads the keys. Throws InputError for a direction that is zero.
+  FibreField(const Value& arguments, const EffectContext& context);
+
+  Eigen::Vector3d direction(int e, int q, double angle, double tilt) const;
+
+  /// These return the keys for an effect's spec, and its parameters `angle` and `tilt`.
+  static std::vector<std::pair<std::string, std::string>> keys();
+  static std::vector<ParameterSpec> angles();
+  /// Directions worth trying on a body, each as the argument `direction` and an angle [rad].
+  struct Trial {
+    Argument direction;
+    double angle;
+    bool straight;  ///< alike everywhere: a fit may turn it by `angle` and `tilt`
+  };
+  /// Returns directions about the body's axis, two helices, and the coordinate axes that are not the body's axis.
+  static std::vector<Trial> trials(const TetMesh& mesh);
+  /// Returns the straight directions halfway between two or three coordinate axes. With these axes they cover the half
+  /// sphere, and no direction is further than 28 degrees from one of them.
+  static std::vector<Trial> oblique_trials();
+
+ private:
+  enum class Kind { fixed, circumferential, longitudinal, radial };
+  Eigen::Matrix3d frame(const Eigen::Vector3d& position) const;
+
+  const Discretisation& fem_;
+  Kind kind_ = Kind::fixed;
+  Eigen::Matrix3d fixed_ = Eigen::Matrix3d::Identity();
+  Axis axis_;
+};
+
+/// Tension along the fibres [Pa] (second Piola-Kirchhoff) and its derivative with respect to the Green strain along them.
+struct FibreTension {
+  double value, slope;
+};
+using FibreLaw = std::function<FibreTension(double strain)>;
+/// Returns the direction at a quadrature point.
+using FibreDirections = std::function<Eigen::Vector3d(int e, int q)>;
+
+/// Fibres under finite strain. The first subtracts the internal force int S (F a) (a . grad N) dV with S = tension((|F a|^2
+/// - 1) / 2). The second adds its derivative (Holzapfel 2000, sec. 6.7).
+void add_fibre_force(const Discretisation& fem, const FibreDirections& directions, const FibreLaw& law,
+                     const Eigen::VectorXd& u, Eigen::VectorXd& force);
+void add_fibre_stiffness(const Discretisation& fem, const FibreDirections& directions, const FibreLaw& law,
+                         const Eigen::VectorXd& u, SparseMatrix& stiffness);
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "settings/effect_entry.hpp"
+#include "tissue_stiffness/settings/model_settings.hpp"
+#include "tissue_stiffness/types/tet_mesh.hpp"
+
+namespace tissue_stiffness {
+
+/// What is available to an effect when it proposes itself as missing.
+struct ProposalContext {
+  const ModelSettings& settings;  ///< settings of the model that may lack an effect
+  const TetMesh& mesh;
+  const std::map<std::string, Region>& regions;
+  double young_modulus;              ///< present estimate [Pa]
+  double poisson_ratio;              ///< [-]
+  double density;                    ///< [kg/m^3]
+  double frame_interval;             ///< [s]
+  double duration;                   ///< of the recording [s]
+  std::vector<double> periods = {};  ///< periods to try [s]; empty: some that fit the recording
+
+  bool holds(const std::string& effect) const;
+  /// Returns the effects of this name, in order.
+  std::vector<const EffectSettings*> all(const std::string& effect) const;
+  /// Returns whether an effect of this name acts on this region.
+  bool names(const std::string& effect, const std::string& region) const;
+  /// Returns the regions on which an effect `acting` acts but no effect `absent`, in the order of the model.
+  std::vector<std::string> regions_of(const std::string& acting, const std::string& absent) const;
+  /// Returns whether an effect of this name has this parameter estimated.
+  bool estimates(const std::string& effect, const std::string& parameter) const;
+  Eigen::Vector3d low() const { return mesh.nodes.rowwise().minCoeff(); }
+  Eigen::Vector3d high() const { return mesh.nodes.rowwise().maxCoeff(); }
+  double size() const { return (high() - low()).norm(); }
+  bool observes(ObservationSettings::Kind kind) const;
+};
+
+/// A variant in which the effect might be missing: an entry for the model file's list of effects.
+struct Proposal {
+  EffectEntry entry;      ///< the amplitude has a normal prior about its absent value; the rest is given
+  std::string amplitude;  ///< parameter that removes the effect at its absent value
+  EffectEntry refine;     ///< start of a refit: amplitude and scanned numbers are estimated
+  /// The keys of a direction or a region, which a refit does not change; empty where there is only one. An entry without
+  /// such a key is a kind, too: a foundation without a region is the one on the whole surface.
+  std::vector<std::string> kind_keys = {};
+
+  /// Returns the arguments of these keys as in a model file; empty where there are none.
+  std::string kind() const;
+  /// Returns whether the proposals differ only in their kind.
+  bool is_other_kind_of(const Proposal& other) const;
+};
+
+/// Proposes the variants in which an effect might be missing. There are none where it makes no sense or already exists.
+using Proposer = std::function<std::vector<Proposal>(const ProposalContext&)>;
+
+}  // namespace tissue_stiffness

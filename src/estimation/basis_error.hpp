@@ -1,0 +1,29 @@
+#pragma once
+
+#include "fit/fit_problem.hpp"
+#include "forward/reduced_model.hpp"
+
+namespace tissue_stiffness {
+
+/// A reduced basis tells by itself what it leaves out of the motion. A run in its earlier half is compared with the run in
+/// all of it, times kBasisSafety. Load-dependent Ritz vectors take away a third of the error or more with each half. While
+/// they do, the real error is not larger than this one; where they do better it is smaller by as much.
+struct BasisError {
+  double rms = 0.0;     ///< over the coordinates of the given nodes, in the worst frame [m]
+  double sigmas = 0.0;  ///< rms in standard deviations of the most precise sensor's noise
+};
+constexpr double kBasisSafety = 2.0;
+constexpr double kBasisShare = 0.1;  ///< of the noise: what a basis may leave out
+
+/// Returns the error in the motion of `nodes`, over some thirty of the problem's frames, at filter coordinates w.
+BasisError basis_error(const ReducedModel& reduced, const FitProblem& problem, const Eigen::VectorXd& w,
+                       const std::vector<int>& nodes);
+
+/// Returns what the reduced basis does to the parameters, about 1 sigma, in filter coordinates. The basis' earlier half is
+/// fitted to a run in all of it, from w on, and the shift is multiplied by kBasisSafety. The fit is one Gauss-Newton step
+/// over the frames that basis_error takes. `spread` is that of the sigma points; `prior_std` holds what the data do not
+/// determine.
+Eigen::VectorXd basis_shift(const ReducedModel& reduced, const FitProblem& problem, const Eigen::VectorXd& w,
+                            const Eigen::VectorXd& spread, const Eigen::VectorXd& prior_std);
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "effects/load_error.hpp"
+#include "estimation/mesh_error.hpp"
+#include "forward/reduced_model.hpp"
+#include "observation/observation_operator.hpp"
+
+namespace tissue_stiffness {
+
+/// These models are run by a study of the inputs, and kept from one study to the next.
+struct InputModels {
+  Model base;       ///< the estimator's, for its parameters
+  Model uncertain;  ///< keeps constants that have a tolerance apart
+  std::unique_ptr<ReducedModel> runs;
+  std::vector<std::unique_ptr<ObservationOperator>> operators;
+  std::vector<UncertainConstant> constants;
+  Eigen::MatrixXd rigid;  ///< translations and rotations of the body, 3n x 6
+
+  explicit InputModels(const Model& model);
+};
+
+/// These are the normal equations of the rows r = y - h(z), z = [w; eta]. z holds the p parameters, then the inputs' errors
+/// in units of their tolerances, then the mesh's. The sums go over the frames, with the noise's precision R^-1.
+struct NormalEquations {
+  Eigen::MatrixXd information;  ///< Z^T R^-1 Z
+  Eigen::VectorXd gradient;     ///< Z^T R^-1 r
+  Eigen::MatrixXd constants;    ///< Z^T R^-1 C; each column of C is one constant's tolerance
+  double cost = 0.0;            ///< r^T R^-1 r
+  double rows = 0.0;
+
+  NormalEquations(Eigen::Index size, Eigen::Index constant_count);
+  /// Multiplies all sums, because every frame stands for those that were left out.
+  void repeat(double times);
+};
+
+/// The linearisation gives a recording's rows as functions of the parameters, the loads' and poses' errors and the
+/// constants. The runs start anew for each point, from rest or the initial velocity.
+class InputLinearisation {
+ public:
+  /// A row object holds the rows of one frame. The columns of the loads' errors are `modes` times their modal amplitudes.
+  struct Row {
+    Eigen::VectorXd error, precision;
+    Eigen::MatrixXd parameters, constants, direct;  ///< d row / d each; direct: by the poses, then by the mesh
+    Eigen::MatrixXd modes;                          ///< d row / d amplitude of each mode
+  };
+  struct Load {
+    std::string topic;
+    std::shared_ptr<Course> course;
+    LoadErrorBasis basis;
+    Eigen::Index first;  ///< first of its columns in z
+  };
+  struct Pose {
+    int source;
+    double rotation, offset;  ///< tolerances [rad], [m]
+    Eigen::Index first;
+  };
+  using Visitor = std::function<void(const Row&, const Eigen::MatrixXd& amplitudes)>;
+
+  InputLinearisation(const MeshError::Question& question, InputModels& models);
+  /// Restores the courses of the loads as they were measured.
+  ~InputLinearisation();
+  InputLinearisation(const InputLinearisation&) = delete;
+  InputLinearisation& operator=(const InputLinearisation&) = delete;
+
+  Eigen::Index size() const { return size_; }
+  double repeated() const { return repeated_; }  ///< recorded frames for each used one
+  const std::vector<Load>& loads() const { return loads_; }
+  const std::vector<Pose>& poses() const { return poses_; }
+  /// Returns the first of the columns that say what the mesh may change; they are the last of z.
+  Eigen::Index first_of_mesh() const { return size_ - mesh_columns_; }
+
+  /// Returns the normal equations at z. Throws NumericalError when runs diverge.
+  NormalEquations at(const Eigen::VectorXd& z);
+  /// Visits every used frame in the order of time.
+  void each_row(const Eigen::VectorXd& z, const Visitor& visit);
+
+ private:
+  void add_load(const std::string& topic, const std::shared_ptr<Course>& course);
+  void add_pose(std::size_t source);
+  void correct_loads(const Eigen::VectorXd& z);
+  std::vector<Eigen::VectorXd> points(const Eigen::VectorXd& w) const;
+  Row row(std::size_t index, const std::vector<Eigen::VectorXd>& thetas, const Eigen::MatrixXd& u,
+          const Eigen::MatrixXd& mode_shapes, const Eigen::VectorXd& z);
+  const Eigen::MatrixXd& motions_seen(const Frame& frame, const Eigen::VectorXd& theta, const Eigen::VectorXd& u,
+                                      const Prediction& there);
+  Eigen::MatrixXd pose_columns(const Frame& frame, const Eigen::VectorXd& u, const Eigen::MatrixXd& rigid) const;
+  Eigen::MatrixXd mesh_columns(std::size_t frame, const Eigen::MatrixXd& modes, const Eigen::VectorXd& precision) const;
+  Eigen::Index direct_columns() const { return 6 * static_cast<Eigen::Index>(poses_.size()) + mesh_columns_; }
+  Eigen::Index load_columns() const { return size_ - p_ - direct_columns(); }
+  const MeshError::Question& q_;
+  InputModels& models_;
+  std::vector<std::size_t> frames_;  ///< indices of the used frames
+  double repeated_ = 1.0;
+  Eigen::Index p_ = 0, size_ = 0, mesh_columns_ = 0;
+  std::vector<Load> loads_;
+  std::vector<Pose> poses_;
+  Eigen::MatrixXd motions_;                            ///< the runs' basis, then the rigid motions
+  std::map<std::vector<int>, Eigen::MatrixXd> named_;  ///< rows / amplitude of each motion, by the named nodes seen
+  Eigen::MatrixXd seen_;                               ///< rows / amplitude of each motion, for any other frame
+};
+
+}  // namespace tissue_stiffness

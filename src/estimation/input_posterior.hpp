@@ -1,0 +1,87 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <vector>
+
+#include "estimation/input_linearisation.hpp"
+
+namespace tissue_stiffness {
+
+/// This is the posterior of z = [w; eta], parameters and nuisance parameters, under independent normal priors and the
+/// likelihood to the power 1 / temperature (Miller & Dunson 2019):
+///   -2 log p(z) = r(z)^T R^-1 r(z) / s + (z - m)^T P^-1 (z - m),   s = temperature max(1, mean square of the best r).
+class InputPosterior {
+ public:
+  struct Fit {
+    Eigen::VectorXd z;
+    NormalEquations normal;
+  };
+  /// These are the posterior's mean and covariance. `beyond_linear` is the covariance less that of the linear form at the
+  /// mode.
+  struct Moments {
+    Fit mean;
+    Eigen::MatrixXd beyond_linear;
+  };
+
+  using Rows = std::function<NormalEquations(const Eigen::VectorXd& z)>;
+  /// `prior_mean` and `prior_std` are those of the parameters. The nuisances have mean 0 and standard deviation
+  /// `nuisance_std`.
+  InputPosterior(Rows rows, const Eigen::VectorXd& prior_mean, const Eigen::VectorXd& prior_std,
+                 const Eigen::VectorXd& nuisance_std);
+
+  void set_temperature(double temperature) { temperature_ = temperature; }
+  double temperature() const { return temperature_; }
+  /// Returns the prior standard deviation of nuisance i of z.
+  double nuisance_std(Eigen::Index i) const { return nuisance_std_[i - p_]; }
+  void set_nuisance_std(Eigen::Index first, Eigen::Index count, double std);
+  double widest_nuisance_std(Eigen::Index first, Eigen::Index count) const;
+
+  /// Evaluates the rows at z = [w; 0].
+  Fit at(const Eigen::VectorXd& w);
+  /// Finds the mode by Gauss-Newton from [w; 0].
+  Fit mode(const Eigen::VectorXd& w);
+  /// Returns -2 log p at a fit, with `scale` for s.
+  double cost(const Fit& fit, double scale) const;
+  double scale(const NormalEquations& normal) const;
+  /// Returns the inverse covariance of the linear form.
+  Eigen::MatrixXd information(const NormalEquations& normal) const;
+  Eigen::MatrixXd covariance(const NormalEquations& normal) const;
+  /// Returns the share of nuisance i's prior variance that the data have taken away.
+  double learnt(const Eigen::MatrixXd& covariance, Eigen::Index i) const;
+
+  /// Integrates along the direction of the parameters in which the posterior is widest against the prior. At each point of
+  /// the grid everything else takes its most probable value. The grid is refined until it resolves the curvature wherever
+  /// the posterior has mass. A curvature at one maximum says nothing of the others (threshold effect; Van Trees 1968, sec.
+  /// 4.2.3).
+  Moments integrate(const Fit& mode);
+
+ private:
+  struct Line {
+    Eigen::VectorXd direction;  ///< of w, one standard deviation of the linear form
+    Eigen::VectorXd dual;       ///< its product with w is the place along the line, from the mode's on
+    double scale;
+    double furthest;  ///< in standard deviations of the linear form
+  };
+  struct Point {
+    double along, cost;
+    double deviation;  ///< of the posterior along the line, by the curvature at this point
+    Eigen::VectorXd z;
+  };
+  using Points = std::vector<Point>;
+
+  bool improve(Fit& fit);
+  Line line(const Fit& mode) const;
+  Point most_probable(const Line& line, double along, Eigen::VectorXd z);
+  void march(const Line& line, double side, Points& points);
+  void refine(const Line& line, Points& points);
+  Eigen::VectorXd prior_information() const;
+  Eigen::VectorXd from_prior(const Eigen::VectorXd& z) const;
+
+  Rows rows_;
+  Eigen::Index p_, size_;
+  Eigen::VectorXd prior_mean_, prior_std_, nuisance_std_;
+  double temperature_ = 1.0;
+};
+
+}  // namespace tissue_stiffness

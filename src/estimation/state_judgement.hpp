@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+
+#include "estimation/systematic_error.hpp"
+#include "forward/model.hpp"
+#include "tissue_stiffness/types/estimate.hpp"
+#include "tissue_stiffness/types/misfit.hpp"
+
+namespace tissue_stiffness {
+
+/// The state of an estimate is judged by this evidence.
+struct StateEvidence {
+  const Model& model;
+  const Misfit& misfit;               ///< of the present frame
+  double misfit_scale;                ///< mean square of all frames' misfit over the noise's, at the present parameters
+  bool change_suspected;              ///< the misfit has risen, and no change has been searched for yet
+  bool invalid;                       ///< the free run has left the measurements for good
+  std::string stale_load;             ///< a sentence; empty: no load is stale
+  bool changing;                      ///< the parameters are modelled as moving
+  bool restudying;                    ///< the inputs' errors are studied anew
+  bool settled;                       ///< the estimate stays in its own interval
+  bool mesh_pending;                  ///< the mesh's error will be known later
+  const SystematicError& systematic;  ///< by the last studies
+  const Eigen::MatrixXd& covariance;  ///< as published, filter coordinates
+};
+
+struct StateJudgement {
+  EstimateState state;
+  std::string reason;  ///< a sentence
+};
+
+/// Judges the state of an estimate; the table is in `doc/method/theory.md`.
+StateJudgement judge_state(const StateEvidence& evidence);
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "estimation/input_study.hpp"
+#include "estimation/mesh_error.hpp"
+#include "estimation/misfit_test.hpp"
+#include "forward/model.hpp"
+#include "tissue_stiffness/types/estimate.hpp"
+
+namespace tissue_stiffness {
+
+constexpr double kFullSigmas = 1.5;  ///< rms error over noise that passes where the misfit's shape is not tested
+
+/// A filter cannot see errors that agree from frame to frame: those of the mesh, of the inputs, and of the model itself.
+/// This class takes them from the last studies, all in the filter's coordinates.
+class SystematicError {
+ public:
+  /// The model has to outlive this.
+  explicit SystematicError(const Model& model);
+
+  /// This is a filter's estimate. `misfit_scale` is the mean square of all frames' misfit there over the noise's.
+  struct Filtered {
+    Eigen::VectorXd mean;
+    Eigen::MatrixXd covariance;
+    double misfit_scale;
+  };
+  /// This is the estimate to publish.
+  struct Corrected {
+    Eigen::VectorXd mean;
+    Eigen::MatrixXd covariance;
+    std::vector<VarianceShares> shares;
+  };
+  Corrected correct(const Filtered& filtered) const;
+
+  void take_mesh(const MeshError::Answer& answer, double misfit_scale);
+  /// `misfit_scale` is that of the time when the study was asked for. set_runs_at() has to follow.
+  void take_inputs(InputStudy::Answer answer, double misfit_scale);
+  /// Sets the runs' parameters, from which the shift to the joint fit of parameters and input errors is counted.
+  void set_runs_at(const Eigen::VectorXd& w);
+  /// Drops the joint fit, which says nothing about the present runs.
+  void drop_fit();
+  /// Forgets all studies.
+  void reset();
+
+  const std::optional<InputStudy::Answer>& inputs() const { return inputs_; }
+  bool mesh_known() const { return mesh_left_.has_value(); }
+  /// Returns the mean square over the noise's that the mesh may leave.
+  double of_mesh() const;
+  /// Returns the misfit test of the last study of the inputs, with numerics allowed for.
+  const MisfitTest& test() const { return test_; }
+  /// Returns whether the estimated errors of the inputs are plausible and leave a misfit that passes. If not, the estimate
+  /// is the one under the inputs as they are. Its distance from the joint fit is then part of its discrepancy.
+  bool inputs_believed() const;
+  /// Returns whether the runs have left the place where the inputs were studied.
+  bool left_study(const Filtered& filtered) const;
+
+ private:
+  double unexplained(double misfit_scale) const;
+  Eigen::VectorXd mesh_shift() const;
+  Eigen::MatrixXd within_prior(const Eigen::MatrixXd& c) const;
+  void refresh();
+
+  const Model& model_;
+  Eigen::VectorXd mesh_shift_;       ///< estimate less truth because of the mesh; empty: not known yet
+  std::optional<double> mesh_left_;  ///< mean square that the mesh leaves
+  std::optional<InputStudy::Answer> inputs_;
+  Eigen::VectorXd input_shift_;  ///< from the runs' parameters to the joint fit; empty: not known
+  Eigen::VectorXd runs_at_;      ///< parameters of the runs
+  double studied_misfit_scale_ = 1.0;
+  MisfitTest test_;
+  /// This is the covariance by its sources, without noise and model, as of the last refresh; it is empty before.
+  struct {
+    Eigen::MatrixXd mesh, loads, constants, all;
+  } parts_;
+};
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "fem/generalized_alpha.hpp"
+#include "fem/nodal_rotation.hpp"
+#include "forward/forward_model.hpp"
+
+namespace tissue_stiffness {
+
+/// All degrees of freedom of the mesh, integrated with implicit Newmark or generalised-alpha steps.
+class FullModel : public ForwardModel {
+ public:
+  struct Options {
+    double step = 0.0;             ///< [s]; 0: a fraction of the time span of advance()
+    int steps_per_frame = 4;       ///< used when step is 0
+    double spectral_radius = 0.9;  ///< of generalised-alpha at infinite frequency; 1 is Newmark's average acceleration
+    double tolerance = 3e-6;  ///< neglected corrections over the body's size; small, as the filter uses differences of runs
+  };
+  FullModel(const Model& model, const Options& options) : model_(model), options_(options) {}
+
+  std::unique_ptr<Trajectory> start(const Eigen::VectorXd& theta, double start) const override;
+  /// Runs that hold the same nodes are stepped together with one factor.
+  std::unique_ptr<Trajectories> start_all(const std::vector<Eigen::VectorXd>& thetas, double start) const override;
+  std::unique_ptr<Trajectory> resume(const Eigen::VectorXd& theta, const Trajectory& from) const override;
+  std::unique_ptr<Trajectories> resume_all(const std::vector<Eigen::VectorXd>& thetas,
+                                           const Trajectory& from) const override;
+  std::string description() const override;
+
+ private:
+  bool hold_the_same(const std::vector<Eigen::VectorXd>& thetas) const;
+
+  const Model& model_;
+  Options options_;
+};
+
+/// The model at one theta, in the form that the integrator needs.
+class ModelSystem : public DynamicSystem {
+ public:
+  ModelSystem(const Model& model, const Eigen::VectorXd& theta);
+
+  const SparseMatrix& mass() const override { return mass_; }
+  const SparseMatrix& damping() const override { return damping_; }
+  bool damped() const override { return damped_; }
+  const std::vector<char>& fixed() const override { return fixed_; }
+  const std::vector<Relaxation>& relaxations() const override { return relaxations_; }
+  const SparseMatrix& relaxing_stiffness() const override { return reference_; }
+  void add_force(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v, Eigen::VectorXd& force) const override;
+  SparseMatrix stiffness(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const override;
+  bool has_velocity_tangent() const override { return rubs_; }
+  SparseMatrix friction(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const override;
+  /// Returns whether the mass can be lumped, and no force changes faster with the velocity than explicit steps can follow.
+  bool supports_explicit_steps() const { return explicit_steps_; }
+  void find_rotations(const Eigen::VectorXd& u, Eigen::Matrix3Xd& rotations) const override;
+  /// Returns kinetic and stored energy less the work of gravity [J].
+  double energy(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const;
+
+ private:
+  const Model& model_;
+  Model::Point point_;
+  SparseMatrix mass_, damping_, stiffness_, reference_;
+  std::vector<char> fixed_;
+  std::vector<Relaxation> relaxations_;
+  Eigen::VectorXd gravity_;
+  std::optional<NodalRotations> rotations_;  ///< if the whole stiffness rotates with the material
+  bool damped_ = false, linear_part_ = false, rubs_ = false, explicit_steps_ = true;
+};
+
+}  // namespace tissue_stiffness

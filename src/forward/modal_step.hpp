@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "fem/relaxation.hpp"
+
+namespace tissue_stiffness {
+
+/// Exact step of q'' + d q' + w (q + sum gamma_i (q - z_i)) = f, tau_i z_i' = q - z_i, for each mode and f linear in time.
+/// It uses the exponential of the system that is augmented by f and its increment (Van Loan 1978).
+class ModalStep {
+ public:
+  /// `square`: w = omega^2 of each mode; `damping`: d = alpha + beta omega^2 [1/s]. Throws InputError for more than six
+  /// branches.
+  ModalStep(Eigen::VectorXd square, Eigen::VectorXd damping, std::vector<Relaxation> branches);
+
+  int states() const { return 2 + static_cast<int>(branches_.size()); }
+  /// Advances the state (columns q, q', z...; a row for each mode) while f changes from `before` to `after`.
+  void advance(double step, const Eigen::VectorXd& before, const Eigen::VectorXd& after, Eigen::MatrixXd& state);
+
+ private:
+  void prepare(double step);
+  Eigen::ArrayXd& entry(Eigen::Index row, Eigen::Index column) {
+    return transition_[static_cast<std::size_t>(row * (states() + 2) + column)];
+  }
+
+  Eigen::VectorXd square_, damping_;
+  std::vector<Relaxation> branches_;
+  double step_ = -1.0;
+  std::vector<Eigen::ArrayXd> transition_;  ///< states x (states, f before, f after); each entry is an array over the modes
+};
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <ros/node_handle.h>
+
+#include <atomic>
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "nodes/diagnostics.hpp"
+#include "nodes/frame_queue.hpp"
+#include "nodes/messages.hpp"
+#include "nodes/sensor_conversions.hpp"
+#include "nodes/sensor_poses.hpp"
+
+namespace tissue_stiffness {
+
+/// Returns the loads that the model's effects need on topics.
+std::vector<LoadInput> load_topics(const ModelSettings& settings);
+
+/// The estimator's subscriptions. Callbacks only queue messages; the worker converts them.
+///
+/// The first contour of the model comes on `contour`, further ones on `contour_2`, `contour_3`, ...
+class EstimatorInputs {
+ public:
+  EstimatorInputs(const ros::NodeHandle& node, const ModelSettings& settings, const SensorPoses& poses, FrameQueue& queue,
+                  Diagnostics& diagnostics);
+
+  /// Subscribes to observations and loads, the first time it is called.
+  void listen(std::uint32_t queue_size);
+
+  /// Sets the upper bound of the field `vertex`.
+  void set_vertex_count(int count) { vertex_count_ = count; }
+
+ private:
+  void listen_cloud(int source, std::uint32_t queue_size);
+  void listen_contour(int source, int number, std::uint32_t queue_size);
+  void listen_load(const LoadInput& input, std::uint32_t queue_size);
+  Observation observe_contour(const ContourMessage& message, int source, const std::string& topic) const;
+  template <typename Message, typename Add>
+  void subscribe(const std::string& topic, std::uint32_t queue_size, Add add);
+
+  ros::NodeHandle node_;
+  const ModelSettings& settings_;
+  const SensorPoses& poses_;
+  FrameQueue& queue_;
+  Diagnostics& diagnostics_;
+  std::atomic<int> vertex_count_{0};
+  mutable std::mutex camera_mutex_;
+  std::map<std::string, sensor_msgs::CameraInfoConstPtr> cameras_;  ///< by topic
+  std::vector<ros::Subscriber> subscribers_;
+};
+
+}  // namespace tissue_stiffness

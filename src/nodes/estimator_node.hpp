@@ -1,0 +1,94 @@
+#pragma once
+
+#include <ros/node_handle.h>
+#include <std_srvs/Trigger.h>
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "nodes/estimator_inputs.hpp"
+#include "nodes/estimator_outputs.hpp"
+#include "nodes/map_publisher.hpp"
+#include "nodes/model_services.hpp"
+#include "nodes/ros_settings.hpp"
+#include "nodes/setup_watch.hpp"
+#include "tissue_stiffness/estimation/estimator.hpp"
+
+namespace tissue_stiffness {
+
+/// The online estimator with its topics. Callbacks queue messages. One worker steps over frames and publishes after each.
+///
+/// `time.start` of the model counts from the first stamp received on any of its topics. The node listens as soon as it is
+/// ready (immediately when the mesh comes from the contour). So a recording that waits for subscribers is received from its
+/// start. When stamps go back (a bag that loops, a simulated clock that is reset), the estimator starts from the prior
+/// again. `previous_estimate` of /diagnostics then keeps the result of the run before.
+///
+/// In the background ModelServices searches for what the model misses. It also adds effects to the running model and
+/// removes them. For a model with `map`, MapPublisher maps the modulus over the body in the background.
+///
+/// Private parameters: `model` (a file) or the model's keys; `model_frame` ("model"), `load_timeout` (0.1 s),
+/// `transform_timeout` (0.1 s), `queue_size` (100 frames), `diagnosis_period` (10 s; 0: on request only),
+/// `diagnosis_window` (20 s). A frame waits for `load_timeout` for the loads and other sensors up to its stamp. A check
+/// uses the frames of `diagnosis_window`.
+class EstimatorNode {
+ public:
+  EstimatorNode(ros::NodeHandle node, const ros::NodeHandle& private_node);
+  ~EstimatorNode();
+
+  int exit_code() const { return exit_code_; }
+
+ private:
+  EstimatorNode(ros::NodeHandle node, const NodeSettings& settings);
+
+  void on_mesh(const TetMeshConstPtr& message);
+  bool on_reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response);
+
+  void run();
+  void work();
+  std::optional<TetMesh> wait_for_mesh();
+  /// Applies changes before the next frame: a mesh that arrived, a model that was changed.
+  bool take_changes();
+  void build(const TetMesh& mesh);
+  void run_again();
+  void start_epoch(const ros::Time& first_stamp);
+  void process(const FrameQueue::Work& work);
+  void catch_up();
+  void mark_stale();
+  void show_state(const Estimate& estimate);
+  void report(const StepResult& result);
+
+  const ModelSettings settings_;  ///< as it was given
+  std::uint32_t queue_size_;
+  Diagnostics diagnostics_;
+  SensorPoses poses_;
+  FrameQueue queue_;
+  EstimatorInputs inputs_;
+  EstimatorOutputs outputs_;
+  MapPublisher map_;
+  SetupWatch watch_;
+  ModelSettings running_;  ///< with added effects; used only by the worker, like the estimator
+  std::unique_ptr<Estimator> estimator_;
+  std::optional<Frame> last_;  ///< last frame that was used
+  ros::Time last_stamp_;
+  std::chrono::steady_clock::time_point arrival_;  ///< of the last frame that was used
+  bool stale_ = false;                             ///< it was published since then
+
+  std::mutex changes_mutex_;
+  std::condition_variable mesh_arrived_;
+  std::optional<TetMesh> mesh_;
+  std::optional<ModelSettings> model_;
+  bool stopped_ = false;
+
+  std::atomic<int> exit_code_{0};
+  ros::Subscriber mesh_subscriber_;
+  ros::ServiceServer reset_service_;
+  std::unique_ptr<ModelServices> services_;
+  std::thread worker_;
+};
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "forward/model.hpp"
+#include "tissue_stiffness/types/observation.hpp"
+#include "tissue_stiffness/types/prediction.hpp"
+
+namespace tissue_stiffness {
+
+/// An observation operator predicts what a sensor should see of the body at nodal displacement u (eq. 2 of Yang & Lin
+/// 2016).
+class ObservationOperator {
+ public:
+  virtual ~ObservationOperator() = default;
+  /// Throws InputError for an observation that does not fit the mesh (a vertex out of range, ...).
+  virtual void check(const Observation& observation) const = 0;
+  /// The rows depend on the observation alone, so predictions for different u line up. A row is NaN where the model has no
+  /// counterpart.
+  virtual Prediction predict(const Observation& observation, const Eigen::Ref<const Eigen::VectorXd>& u) const = 0;
+  /// Returns the mesh nodes that a prediction of this observation depends on.
+  virtual std::vector<int> nodes(const Observation& observation) const = 0;
+  /// Returns the model's outline in the sensor's image as separate segments (u0, v0, u1, v1) [pixel]. It is empty for
+  /// sensors that see no outline.
+  virtual Eigen::Matrix4Xd outline(const Observation&, const Eigen::VectorXd&) const { return {}; }
+};
+
+/// Returns one operator for each entry of the model file's `observations`, in that order. Throws InputError for an entry
+/// that does not fit the model.
+std::vector<std::unique_ptr<ObservationOperator>> make_observation_operators(const Model& model);
+
+std::unique_ptr<ObservationOperator> make_vertex_operator(const Model& model, const ObservationSettings& settings);
+std::unique_ptr<ObservationOperator> make_marker_operator(const Model& model, const ObservationSettings& settings);
+std::unique_ptr<ObservationOperator> make_point_operator(const Model& model, const ObservationSettings& settings);
+std::unique_ptr<ObservationOperator> make_contour_operator(const Model& model, const ObservationSettings& settings);
+
+/// Returns the nodes that predictions of these frames depend on, in ascending order.
+std::vector<int> observed_nodes(const std::vector<std::unique_ptr<ObservationOperator>>& operators,
+                                const std::vector<Frame>& frames);
+
+/// Joins the predictions of a frame's observations.
+Prediction concatenate_predictions(std::vector<Prediction> parts);
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "observation/observation_operator.hpp"
+#include "tissue_stiffness/types/observation.hpp"
+#include "tissue_stiffness/types/prediction.hpp"
+
+namespace tissue_stiffness {
+
+/// Predicts the rows of a frame's observations at one displacement (3n). The sensors' effects act on it with the parameters
+/// theta.
+Prediction predict_frame(const Model& model, const std::vector<std::unique_ptr<ObservationOperator>>& operators,
+                         const Frame& frame, const Eigen::VectorXd& theta,
+                         const Eigen::Ref<const Eigen::VectorXd>& displacement);
+
+/// Returns true if the frame holds displacements of named nodes or markers only, and no parameter of a sensor changes them.
+bool sees_named_nodes(const Model& model, const Frame& frame);
+
+/// Returns d predicted rows / d amplitude of each of `shapes` (3n x count) about a displacement, as rows x count. `there`
+/// is the prediction at the displacement itself.
+Eigen::MatrixXd predict_along(const Model& model, const std::vector<std::unique_ptr<ObservationOperator>>& operators,
+                              const Frame& frame, const Eigen::VectorXd& theta,
+                              const Eigen::Ref<const Eigen::VectorXd>& displacement, const Prediction& there,
+                              const Eigen::MatrixXd& shapes);
+
+/// Returns the frame's prediction for a body that has not moved.
+Prediction predict_at_rest(const Model& model, const std::vector<std::unique_ptr<ObservationOperator>>& operators,
+                           const Frame& frame);
+
+}  // namespace tissue_stiffness

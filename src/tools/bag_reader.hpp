@@ -1,0 +1,113 @@
+#pragma once
+
+#include <geometry_msgs/WrenchStamped.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+#include <sensor_msgs/CameraInfo.h>
+#include <sensor_msgs/FluidPressure.h>
+#include <sensor_msgs/Image.h>
+#include <sensor_msgs/PointCloud2.h>
+#include <tf2/buffer_core.h>
+
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tissue_stiffness/segmentation/segmenter.hpp"
+#include "tissue_stiffness/settings/model_settings.hpp"
+#include "tissue_stiffness/types/load_sample.hpp"
+#include "tissue_stiffness/types/observation.hpp"
+#include "types/replay.hpp"
+
+namespace tissue_stiffness {
+
+/// One instant of a recording. `frame` is empty when nothing in it could be used; `reason` then says why.
+struct Instant {
+  Frame frame;
+  std::vector<LoadSample> loads;  ///< loads read since the last instant, up to the frame's stamp and a little later
+  std::string reason;
+  double segment_seconds = 0.0;
+};
+
+/// Reads what a model needs from a rosbag: frames in the order of their header stamps, with their loads. Observations with
+/// one stamp make one frame. Images are segmented here, and poses come from /tf and /tf_static.
+///
+/// Throws InputError for a file that is missing or not a bag, a topic that is absent or of another type, and a message
+/// whose content is wrong. An image without an outline, or a sensor without a pose at the stamp, costs only this
+/// observation. A message is late when its stamp has already passed (0.5 s or 256 frames behind the newest). Late messages
+/// are counted and left out.
+class BagReader {
+ public:
+  BagReader(const std::string& file, const ModelSettings& settings, std::string model_frame = "model");
+
+  /// Returns the earliest stamp on the model's topics [s].
+  double first_stamp() const { return first_stamp_.toSec(); }
+  /// Returns the number of frames, at most.
+  std::size_t frame_count() const { return frame_count_; }
+  /// Sets the upper bound of the field `vertex`, once the mesh is known.
+  void set_vertex_count(int count) { vertex_count_ = count; }
+
+  /// Segments only about `most` images of each sensor, evenly over the bag.
+  void thin_images(std::size_t most) { image_stride_ = (frame_count_ + most - 1) / most; }
+
+  /// Returns the next instant; nothing at the end.
+  std::optional<Instant> next();
+
+  int late() const { return late_; }
+
+  /// Returns reduced images of the frames read so far, at most 40 for each sensor, for reports.
+  const std::vector<Picture>& pictures() const { return pictures_; }
+  std::vector<double> picture_stamps() const;
+
+ private:
+  struct Measurement {
+    int source;
+    sensor_msgs::PointCloud2ConstPtr cloud;
+    sensor_msgs::ImageConstPtr image;
+  };
+
+  void open();
+  void check_topics();
+  void require_topic(const std::string& topic, const std::string& type);
+  std::vector<std::string> topics() const;
+  void read_static_poses();
+
+  bool read_message();
+  void add_measurement(const ros::Time& stamp, Measurement measurement);
+  void add_load(const rosbag::MessageInstance& message, const LoadInput& input);
+  void add_poses(const rosbag::MessageInstance& message, bool is_static);
+  void note_stamp(const ros::Time& stamp);
+  bool front_is_complete() const;
+
+  void convert(const Measurement& measurement, Instant& instant);
+  void segment(const Measurement& measurement, Instant& instant);
+  void keep_picture(const Measurement& measurement, const cv::Mat& image);
+  sensor_msgs::CameraInfoConstPtr camera_info(const std::string& topic, const ros::Time& stamp) const;
+  std::optional<Eigen::Isometry3d> pose(const std_msgs::Header& header, std::string& reason) const;
+
+  std::string file_;
+  ModelSettings settings_;
+  std::string model_frame_;
+  std::vector<LoadInput> load_inputs_;
+  rosbag::Bag bag_;
+  rosbag::View view_;
+  rosbag::View::iterator next_message_;
+  std::size_t frame_count_ = 0, image_stride_ = 1;
+  int vertex_count_ = std::numeric_limits<int>::max();
+  int late_ = 0;
+
+  tf2::BufferCore poses_;
+  std::map<int, std::unique_ptr<Segmenter>> segmenters_;  ///< by index of the observation
+  std::map<int, std::size_t> images_;                     ///< images that were segmented, by index of the observation
+  std::map<int, std::size_t> come_;                       ///< all images, by index of the observation
+  std::vector<Picture> pictures_;
+  std::map<std::string, std::map<ros::Time, sensor_msgs::CameraInfoConstPtr>> cameras_;
+  std::map<ros::Time, std::vector<Measurement>> pending_;
+  std::vector<LoadSample> loads_;
+  ros::Time first_stamp_ = ros::TIME_MAX, newest_, last_returned_;
+};
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+#include <type_traits>
+
+#include "tissue_stiffness/types/error.hpp"
+#include "tools/exit_code.hpp"
+#include "types/freed_memory.hpp"
+
+namespace tissue_stiffness {
+
+/// Parses the command line and runs a tool. The tool returns its exit code, or nothing if it always answers. Wrong
+/// arguments or input give one line and exit code 2, other failures one line and exit code 1.
+template <typename Tool>
+int run_tool(CLI::App& app, int argc, char** argv, const Tool& tool) {
+  keep_freed_memory();
+  try {
+    app.parse(argc, argv);
+    if constexpr (std::is_void_v<decltype(tool())>) {
+      tool();
+      return static_cast<int>(ExitCode::answered);
+    } else {
+      return static_cast<int>(tool());
+    }
+  } catch (const CLI::Success& help) {
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    std::cerr << app.get_name() << ": " << error.what() << " (--help shows the arguments)\n";
+    return static_cast<int>(ExitCode::wrong_input);
+  } catch (const InputError& error) {
+    std::cerr << app.get_name() << ": " << error.what() << "\n";
+    return static_cast<int>(ExitCode::wrong_input);
+  } catch (const std::exception& error) {
+    std::cerr << app.get_name() << ": " << error.what() << "\n";
+    return static_cast<int>(ExitCode::failed);
+  }
+}
+
+}  // namespace tissue_stiffness
