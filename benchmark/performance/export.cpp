@@ -65,10 +65,10 @@ SparseMatrix observe(const Scene& scene) {
 void export_problem(const Scene& scene, int count, const std::string& path) {
   const Folder folder(path);
   const Model model(scene.settings, scene.mesh);
-  const Eigen::VectorXd theta = model.theta(model.prior_mean());
+  const Eigen::VectorXd theta = model.parameters().theta(model.parameters().prior_mean());
   const SparseMatrix p = free_columns(model.fixed());
   const SparseMatrix mass = p.transpose() * model.mass(theta) * p;
-  const double modulus = model.free_parameters().front().to_value(model.prior_mean()[0]);
+  const double modulus = model.parameters().free().front().to_value(model.parameters().prior_mean()[0]);
   const SparseMatrix stiffness = (1.0 / modulus) * (p.transpose() * model.reference_stiffness(theta) * p);
   const SparseMatrix rows = observe(scene) * p;
   folder.write("mass", mass);

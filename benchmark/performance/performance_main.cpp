@@ -41,7 +41,7 @@ double quantile(std::vector<double> values, double share) {
 
 double factor_megabytes(const Scene& scene) {
   const Model model(scene.settings, scene.mesh);
-  const Eigen::VectorXd theta = model.theta(model.prior_mean());
+  const Eigen::VectorXd theta = model.parameters().theta(model.parameters().prior_mean());
   SparseMatrix k = model.reference_stiffness(theta);
   fix_dofs(k, model.fixed(), k.diagonal().mean());
   SparseSolver solver;

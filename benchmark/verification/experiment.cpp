@@ -18,19 +18,19 @@ Experiment::Experiment(const ModelSettings& settings, const TetMesh& mesh, const
 }
 
 void Experiment::set_truth(const std::vector<double>& truth) {
-  Eigen::VectorXd w = model_.prior_mean();
+  Eigen::VectorXd w = model_.parameters().prior_mean();
   for (std::size_t i = 0; i < truth.size(); ++i) {
-    w[static_cast<Eigen::Index>(i)] = model_.free_parameters().at(i).to_coordinate(truth[i]);
+    w[static_cast<Eigen::Index>(i)] = model_.parameters().free().at(i).to_coordinate(truth[i]);
   }
-  theta_ = model_.theta(w);
+  theta_ = model_.parameters().theta(w);
 }
 
 void Experiment::add_load(const LoadSample& sample) {
-  model_.courses().at(sample.topic)->add(sample.time, sample.value);
+  model_.loads().courses().at(sample.topic)->add(sample.time, sample.value);
 }
 
 void Experiment::clear_loads() {
-  for (const auto& [topic, course] : model_.courses()) course->clear();
+  for (const auto& [topic, course] : model_.loads().courses()) course->clear();
 }
 
 std::vector<Experiment::Moment> Experiment::film(double first, double interval, int count) const {

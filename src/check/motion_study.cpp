@@ -47,12 +47,13 @@ bool MotionStudy::applies(const ModelSettings& settings) {
 
 MotionStudy::MotionStudy(const ModelSettings& settings, const TetMesh& mesh, const Recorded& recorded)
     : model_(settings, mesh), operators_(make_observation_operators(model_)), shown_(thinned(recorded.frames)) {
-  model_.drive(recorded.first_stamp, recorded.loads);
+  model_.loads().drive(recorded.first_stamp, recorded.loads);
   forward_ = make_forward_model(model_, linear_form());
   start_ = recorded.first_stamp + settings.time.start;
   std::vector<double> all;
   for (std::size_t k = 0; k < shown_.size(); ++k) {
-    const Prediction rest = predict_frame(model_, operators_, shown_[k], model_.theta(model_.prior_mean()), model_.rest());
+    const Prediction rest = predict_frame(model_, operators_, shown_[k],
+                                          model_.parameters().theta(model_.parameters().prior_mean()), model_.rest());
     at_rest_.push_back(rest.predicted);
     for (Eigen::Index i = 0; i < rest.measured.size(); ++i) {
       const double moved = rest.measured[i] - rest.predicted[i];
@@ -73,21 +74,21 @@ MotionStudy::MotionStudy(const ModelSettings& settings, const TetMesh& mesh, con
       loads_.push_back(i);
     }
   }
-  moduli_ = model_.prior_std();
+  moduli_ = model_.parameters().prior_std();
   for (Eigen::Index i = 0; i < moduli_.size(); ++i) {
-    if (!ends_with(model_.free_parameters()[static_cast<std::size_t>(i)].name, ".young_modulus")) moduli_[i] = 0.0;
+    if (!ends_with(model_.parameters().free()[static_cast<std::size_t>(i)].name, ".young_modulus")) moduli_[i] = 0.0;
   }
 }
 
 Eigen::VectorXd MotionStudy::predicted(double z, std::ptrdiff_t without) const {
-  Eigen::VectorXd theta = model_.theta(model_.prior_mean() + z * moduli_);
+  Eigen::VectorXd theta = model_.parameters().theta(model_.parameters().prior_mean() + z * moduli_);
   // A load's first parameter is its scale factor.
   if (without >= 0) theta[model_.parts()[static_cast<std::size_t>(without)].indices.front()] = 0.0;
   const auto run = forward_->start(theta, start_);
   Eigen::VectorXd out = Eigen::VectorXd::Zero(measured_.size());
   Eigen::Index at = 0;
   for (std::size_t k = 0; k < shown_.size(); ++k) {
-    run->advance(shown_[k].time - model_.delay(theta));
+    run->advance(shown_[k].time - model_.sensors().delay(theta));
     const Prediction there = predict_frame(model_, operators_, shown_[k], theta, run->displacement());
     const Eigen::VectorXd moved = there.predicted - at_rest_[k];
     for (Eigen::Index i = 0; i < moved.size(); ++i, ++at) out[at] = std::isfinite(moved[i]) ? moved[i] : 0.0;

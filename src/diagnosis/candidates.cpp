@@ -22,7 +22,7 @@ constexpr int kMostProbes = 4;
 ProposalContext context_of(const RecordingFit& base, const Eigen::VectorXd& w) {
   const Model& model = base.model();
   double modulus = 0.0, ratio = 0.0, density = 0.0;
-  const Eigen::VectorXd theta = model.theta(w);
+  const Eigen::VectorXd theta = model.parameters().theta(w);
   for (const auto& part : model.parts()) {
     const Eigen::VectorXd values = part.parameters(theta);
     if (part.label == "elasticity") modulus = values[0], ratio = values[1];
@@ -32,7 +32,7 @@ ProposalContext context_of(const RecordingFit& base, const Eigen::VectorXd& w) {
   const double duration = frames.back().time - base.recording().first_stamp;
   return {model.settings(),
           model.mesh(),
-          model.regions(),
+          model.body().regions,
           modulus,
           ratio,
           density,
@@ -53,7 +53,7 @@ double motion(const RecordingFit::Rows& rows) {
 // small compared with `moves`, the motion of `rest`.
 Eigen::VectorXd tangent(const RecordingFit& recording_fit, const RecordingFit::Rows& rest, double moves,
                         const Eigen::VectorXd& start, Eigen::Index j) {
-  double amplitude = kProbe * recording_fit.model().prior_std()[j];
+  double amplitude = kProbe * recording_fit.model().parameters().prior_std()[j];
   for (int probe = 1;; ++probe) {
     Eigen::VectorXd moved = start;
     moved[j] += amplitude;
@@ -67,8 +67,8 @@ Eigen::VectorXd tangent(const RecordingFit& recording_fit, const RecordingFit::R
 // Returns the free parameters that the model has beyond the base's, in order.
 std::vector<Eigen::Index> added_parameters(const RecordingFit& recording_fit, const RecordingFit& base) {
   std::vector<Eigen::Index> added;
-  for (std::size_t i = 0; i < recording_fit.model().free_parameters().size(); ++i) {
-    if (base.index(recording_fit.model().free_parameters()[i].name) < 0) added.push_back(static_cast<Eigen::Index>(i));
+  for (std::size_t i = 0; i < recording_fit.model().parameters().free().size(); ++i) {
+    if (base.index(recording_fit.model().parameters().free()[i].name) < 0) added.push_back(static_cast<Eigen::Index>(i));
   }
   return added;
 }
@@ -101,7 +101,7 @@ void read_tangents(const RecordingFit& recording_fit, const RecordingFit& base, 
     tangent.columns = columns.middleCols(at, counts[c]);
     tangent.prior_std.resize(counts[c]);
     for (Eigen::Index i = 0; i < counts[c]; ++i) {
-      tangent.prior_std[i] = recording_fit.model().prior_std()[added[static_cast<std::size_t>(at + i)]];
+      tangent.prior_std[i] = recording_fit.model().parameters().prior_std()[added[static_cast<std::size_t>(at + i)]];
     }
     at += counts[c];
   }
@@ -197,7 +197,7 @@ Eigen::MatrixXd tangents_of_time_steps(const RecordingFit& recording_fit, const 
   const std::vector<EffectEntry> entries = entries_of_time_steps(recording_fit, w);
   if (entries.empty()) return Eigen::MatrixXd(rows.error.size(), 0);
   const RecordingFit extended(extend_model(recording_fit.model().settings(), entries), recording_fit, {});
-  const Eigen::VectorXd start = extended.extend(recording_fit, w), std = extended.model().prior_std();
+  const Eigen::VectorXd start = extended.extend(recording_fit, w), std = extended.model().parameters().prior_std();
   const std::vector<Eigen::Index> added = added_parameters(extended, recording_fit);
   RecordingFit::Rows rest = rows;
   rest.predicted = extended.predicted(start);

@@ -34,7 +34,7 @@ constexpr double kAddedSpread = 0.02;  // prior standard deviations, of those of
 
 FittedModel fit_model(const ModelSettings& settings, const TetMesh& mesh, const Recording& recording) {
   auto recording_fit = std::make_unique<RecordingFit>(settings, mesh, recording);
-  const Eigen::VectorXd start = recording_fit->scan(recording_fit->model().prior_mean());
+  const Eigen::VectorXd start = recording_fit->scan(recording_fit->model().parameters().prior_mean());
   return fit_recording(std::move(recording_fit), start, kBaseSpread);
 }
 
@@ -44,14 +44,15 @@ FittedModel extended(const FittedModel& base, const Refit& refit) {
   auto recording_fit = std::make_unique<RecordingFit>(extend_model(base.recording_fit->model().settings(), {refit.entry}),
                                                       *base.recording_fit);
   const Model& model = recording_fit->model();
-  return fit_recording(std::move(recording_fit), model.coordinates(refit.parameters, model.prior_mean()), kAddedSpread);
+  return fit_recording(std::move(recording_fit),
+                       model.parameters().coordinates(refit.parameters, model.parameters().prior_mean()), kAddedSpread);
 }
 
 DiagnosisStep step_of(const FittedModel& model, const Explained& explained, const Recording& recording,
                       const std::vector<std::string>& effects) {
   DiagnosisStep step;
   step.effects = effects;
-  step.parameters = model.recording_fit->model().values(model.fit.w);
+  step.parameters = model.recording_fit->model().parameters().values(model.fit.w);
   RecordingFit::Rows compared = model.rows;
   compared.error = explained.error;
   step.train_rms = rms_error(compared, recording, false);
@@ -99,9 +100,9 @@ Eigen::MatrixXd mesh_discrepancy_of_nonlinear(const FittedModel& fitted, const R
   const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(w.size(), w.size());
   if (!model.nonlinear() || !MeshError::why_not(model).empty()) return none;
   const MeshError::Question question(model, recording.frames, w, fitted.fit.covariance.diagonal().cwiseSqrt(),
-                                     model.prior_std());
+                                     model.parameters().prior_std());
   try {
-    return mesh_discrepancy(model, MeshError(model, model.theta(w)).study(question).shift);
+    return mesh_discrepancy(model, MeshError(model, model.parameters().theta(w)).study(question).shift);
   } catch (const NumericalError&) {
     return none;
   }
@@ -110,7 +111,7 @@ Eigen::MatrixXd mesh_discrepancy_of_nonlinear(const FittedModel& fitted, const R
 // Returns the model's parameters as the best explanation has them: without it they compensate for what is missing.
 Eigen::VectorXd believed(const FittedModel& model, const Finding& finding) {
   if (finding.verdict != Verdict::missing) return model.fit.w;
-  return model.recording_fit->model().coordinates(finding.refits.front().parameters, model.fit.w);
+  return model.recording_fit->model().parameters().coordinates(finding.refits.front().parameters, model.fit.w);
 }
 
 std::map<std::string, double> modulus_ratios(const std::map<std::string, double>& parameters,
@@ -143,7 +144,7 @@ std::vector<RivalExplanation> rivals_of(const Finding& finding, const Refit& add
 
 // Returns what else may act, by what it would do to the last model's moduli.
 std::vector<RivalExplanation> traces_of(const Finding& finding, const FittedModel& last) {
-  const std::map<std::string, double> own = last.recording_fit->model().values(last.fit.w);
+  const std::map<std::string, double> own = last.recording_fit->model().parameters().values(last.fit.w);
   std::vector<RivalExplanation> out;
   for (const Trace& trace : finding.comparison.traces()) {
     const auto same = [&](const Refit& r) { return r.effect == trace.hypothesis->effects.back(); };
@@ -346,7 +347,7 @@ class Search {
   }
 
   void estimate(const Eigen::MatrixXd& discrepancy) {
-    out_.estimate = summarise_posterior(model_.recording_fit->model().free_parameters(), model_.fit.w,
+    out_.estimate = summarise_posterior(model_.recording_fit->model().parameters().free(), model_.fit.w,
                                         model_.fit.covariance + discrepancy);
   }
 

@@ -31,7 +31,7 @@ double log_root_weights(const RecordingFit::Rows& rows) {
 
 std::vector<std::string> added_amplitudes(const RecordingFit& recording_fit, const RecordingFit& smaller) {
   std::vector<std::string> out;
-  for (const FreeParameter& p : recording_fit.model().free_parameters()) {
+  for (const FreeParameter& p : recording_fit.model().parameters().free()) {
     if (p.prior.kind == Quantity::Kind::normal && smaller.index(p.name) < 0) out.push_back(p.name);
   }
   return out;
@@ -41,7 +41,7 @@ Linearisation linearise_model(const FittedModel& fitted, const std::vector<std::
   const RecordingFit& recording_fit = *fitted.recording_fit;
   const Model& model = recording_fit.model();
   const Eigen::VectorXd& w = fitted.fit.w;
-  const Eigen::VectorXd prior = model.prior_std();
+  const Eigen::VectorXd prior = model.parameters().prior_std();
   // Each tangent is read as far as its parameter is known while the others are held: no tangent reaches far along what they
   // can compensate.
   const Eigen::VectorXd known = fitted.fit.covariance.inverse().diagonal().cwiseInverse().cwiseSqrt();
@@ -51,7 +51,7 @@ Linearisation linearise_model(const FittedModel& fitted, const std::vector<std::
   out.columns.resize(own.rows(), own.cols() + steps.cols());
   out.columns << own * prior.asDiagonal(), steps;
   out.prior = Eigen::VectorXd::Zero(out.columns.cols());
-  out.prior.head(w.size()) = (model.prior_mean() - w).cwiseQuotient(prior);
+  out.prior.head(w.size()) = (model.parameters().prior_mean() - w).cwiseQuotient(prior);
   out.parameters = w.size();
   for (const std::string& name : amplitudes) out.amplitudes.push_back(recording_fit.index(name));
   out.log_root_weights = log_root_weights(fitted.rows);
@@ -72,7 +72,7 @@ Explained compared_residual(const FittedModel& fitted, const std::vector<std::st
   joint.recording_fit = std::make_unique<RecordingFit>(
       extend_model(recording_fit.model().settings(), entries_of_time_steps(recording_fit, fitted.fit.w)), recording_fit);
   const RecordingFit& stepped = *joint.recording_fit;
-  const Eigen::VectorXd at = stepped.extend(recording_fit, fitted.fit.w), prior = stepped.model().prior_std();
+  const Eigen::VectorXd at = stepped.extend(recording_fit, fitted.fit.w), prior = stepped.model().parameters().prior_std();
   const Eigen::VectorXd near = kSpread * prior;
   if (linear) joint.fit = stepped.quick_fit(at + prior.cwiseProduct(u), near);
   // Long steps lead a body that rings into another minimum, which no tangent shows.

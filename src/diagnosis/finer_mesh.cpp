@@ -24,7 +24,7 @@ std::shared_ptr<const RecordingFit> on_finer_mesh(const RecordingFit& recording_
   };
   if (known != nullptr) return std::make_shared<const RecordingFit>(settings, *known, basis(known->model().mesh()));
   const TetMesh mesh = refined_mesh(model.mesh(), settings.mesh);
-  return std::make_shared<const RecordingFit>(settings, mesh, refine_regions(model.regions(), model.mesh(), mesh),
+  return std::make_shared<const RecordingFit>(settings, mesh, refine_regions(model.body().regions, model.mesh(), mesh),
                                               recording_fit.recording(), basis(mesh));
 }
 
@@ -38,7 +38,7 @@ FinerMesh finer_mesh(const FittedModel& base, const RecordingFit* known) {
   const Model& model = base.recording_fit->model();
   if (model.nonlinear() || !MeshError::why_not(model).empty()) return out;
   out.recording_fit = on_finer_mesh(*base.recording_fit, model.settings(), known);
-  const Eigen::VectorXd prior = model.prior_std();
+  const Eigen::VectorXd prior = model.parameters().prior_std();
   const auto change_at = [&](const Eigen::VectorXd& w) {
     return Eigen::VectorXd(base.rows.used.cwiseProduct(out.recording_fit->predicted(w) - base.rows.predicted));
   };

@@ -26,7 +26,7 @@ Quantity fitted(const FreeParameter& p, double at, double width) {
 
 // `label` is that of the effect in the model.
 void fit_entry(EffectEntry& entry, const std::string& label, const Model& model, const BatchFit& fit) {
-  const std::vector<FreeParameter>& free = model.free_parameters();
+  const std::vector<FreeParameter>& free = model.parameters().free();
   for (auto& [key, argument] : entry.arguments) {
     const bool vector = std::holds_alternative<VectorPrior>(argument.content);
     const std::string name = label + "." + key + (vector ? "_x" : "");

@@ -16,13 +16,13 @@ constexpr double kPositive[] = {-3.0, -2.25, -1.5, -0.75, 0.0, 0.75, 1.5}, kSign
 std::vector<Eigen::VectorXd> strengths(const RecordingFit& recording_fit, const Eigen::VectorXd& w,
                                        const Candidate& candidate) {
   std::vector<Eigen::VectorXd> out{w};
-  const auto& free = recording_fit.model().free_parameters();
+  const auto& free = recording_fit.model().parameters().free();
   for (std::size_t i = 0; i < free.size(); ++i) {
     if (free[i].name.rfind(candidate.effect + "." + candidate.proposal.amplitude, 0) != 0) continue;
     const auto try_at = [&](double deviations) {
       const auto k = static_cast<Eigen::Index>(i);
       Eigen::VectorXd there = w;
-      there[k] += deviations * recording_fit.model().prior_std()[k];
+      there[k] += deviations * recording_fit.model().parameters().prior_std()[k];
       const double value = free[i].to_value(there[k]);
       if (free[i].lower < value && value < free[i].upper) out.push_back(std::move(there));
     };
@@ -57,9 +57,9 @@ InitialSegmentFit fit_initial_segment(const FittedModel& base, const Candidate& 
     if (fit.w.size() == 0 || now.cost < fit.cost) fit = std::move(now);
   }
   InitialSegmentFit out;
-  const auto added = static_cast<double>(model.free_parameters().size() - known.model().free_parameters().size());
+  const auto added = static_cast<double>(model.parameters().free().size() - known.model().parameters().free().size());
   out.deviance = fit.cost + added * std::log(kInitialSegment * base.rows.count());
-  out.parameters = model.values(fit.w);
+  out.parameters = model.parameters().values(fit.w);
   return out;
 }
 

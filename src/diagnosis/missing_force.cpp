@@ -88,7 +88,7 @@ struct Modes {
 
 Modes modes_of(const RecordingFit& recording_fit, const Eigen::VectorXd& w) {
   const auto reduced = recording_fit.reduced();
-  const Eigen::VectorXd theta = recording_fit.model().theta(w);
+  const Eigen::VectorXd theta = recording_fit.model().parameters().theta(w);
   double time = recording_fit.recording().first_stamp + recording_fit.model().settings().time.start;
   ReducedTrajectory run(*reduced, theta, time);
   const Eigen::Index all = run.frequencies().size(), count = std::min<Eigen::Index>(kModes, all);
@@ -149,7 +149,7 @@ MissingForce missing_force(const RecordingFit& recording_fit, const Eigen::Vecto
   if (!(best.deviance < without - kLikelier)) return out;
 
   const Eigen::Index count = modes.shapes.cols(), frames = modes.displacement.cols();
-  out.parameters = recording_fit.model().values(w);
+  out.parameters = recording_fit.model().parameters().values(w);
   out.nodes = farthest_nodes(mesh, surface_corners(mesh), kNodes);
   out.places = at(out.nodes, Eigen::Map<const Eigen::VectorXd>(mesh.nodes.data(), mesh.nodes.size()));
   Eigen::MatrixXd force(count, frames), q(count, frames), v(count, frames);

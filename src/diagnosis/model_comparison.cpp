@@ -24,7 +24,7 @@ Eigen::MatrixXd lowest_modes(const FittedModel& fitted) {
   const RecordingFit& recording_fit = *fitted.recording_fit;
   const auto reduced = recording_fit.reduced();
   const double start = recording_fit.recording().first_stamp + recording_fit.model().settings().time.start;
-  const ReducedTrajectory at_rest(*reduced, recording_fit.model().theta(fitted.fit.w), start);
+  const ReducedTrajectory at_rest(*reduced, recording_fit.model().parameters().theta(fitted.fit.w), start);
   const Eigen::Index count = std::min<Eigen::Index>(kComparison.modes, at_rest.frequencies().size());
   return recording_fit.rows_along(fitted.fit.w, at_rest.mode_shapes(static_cast<int>(count)), fitted.rows);
 }

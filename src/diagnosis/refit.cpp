@@ -37,7 +37,7 @@ double scanned_value(const FreeParameter& parameter, const RefitTask& task) {
 // Returns the base's fit with the proposal's prior, preceded by one with the tangent's amplitude where that is allowed.
 std::vector<Start> starts(const RecordingFit& recording_fit, const RecordingFit& base, const Eigen::VectorXd& w,
                           const RefitTask& task) {
-  const auto& free = recording_fit.model().free_parameters();
+  const auto& free = recording_fit.model().parameters().free();
   Start prior{recording_fit.extend(base, w), recording_fit.spread_beyond(base), {}};
   Start tangent = prior;
   Eigen::Index taken = 0;
@@ -60,7 +60,9 @@ std::vector<Start> starts(const RecordingFit& recording_fit, const RecordingFit&
 // Starts where the initial segment's fit left all parameters.
 Start start_of(const RecordingFit& recording_fit, const std::map<std::string, double>& parameters) {
   const Model& model = recording_fit.model();
-  return {model.coordinates(parameters, model.prior_mean()), kSpread * model.prior_std(), {}};
+  return {model.parameters().coordinates(parameters, model.parameters().prior_mean()),
+          kSpread * model.parameters().prior_std(),
+          {}};
 }
 
 // Returns the start whose fit without full runs is best. A run that rings may need the base's parameters in another
@@ -121,7 +123,7 @@ Refit refit_with(const FittedModel& base, const RefitTask& task, double rival) {
   std::vector<EffectEntry> entries{task.candidate->proposal.refine};
   fit_entries(entries, recording_fit.model(), start->fit);
   out.entry = entries.front();
-  out.parameters = recording_fit.model().values(start->fit.w);
+  out.parameters = recording_fit.model().parameters().values(start->fit.w);
   out.explained = std::make_shared<const Explained>(compared_residual(*model, added_amplitudes(recording_fit, known)));
   RecordingFit::Rows compared = rows;
   compared.error = out.explained->error;

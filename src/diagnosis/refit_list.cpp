@@ -137,11 +137,11 @@ bool RefitList::move_to_better_base() {
   RecordingFit::Place start =
       recording_fit.scan_near(screening_.base.fit.w, recording_fit.tuning_shared_with(recording_fit));
   for (const Refit& refit : refits_) {
-    RecordingFit::Place place =
-        recording_fit.scan_near(recording_fit.model().coordinates(refit.parameters, screening_.base.fit.w), {});
+    RecordingFit::Place place = recording_fit.scan_near(
+        recording_fit.model().parameters().coordinates(refit.parameters, screening_.base.fit.w), {});
     if (place.cost < start.cost) start = std::move(place);
   }
-  const BatchFit fit = recording_fit.quick_fit(start.w, kSpread * recording_fit.model().prior_std());
+  const BatchFit fit = recording_fit.quick_fit(start.w, kSpread * recording_fit.model().parameters().prior_std());
   if (!(screening_.base.fit.cost - fit.cost > 2.0 * kComparison.worthwhile * comparison_.noise_variance())) return false;
   base_moved_ = true;
   screening_.move_base(fit);

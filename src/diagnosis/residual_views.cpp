@@ -35,7 +35,7 @@ std::map<int, double> node_errors(const RecordingFit::Rows& rows) {
 }
 
 std::string region_around(const RecordingFit& recording_fit, const std::vector<int>& nodes) {
-  for (const auto& [name, region] : recording_fit.model().regions()) {
+  for (const auto& [name, region] : recording_fit.model().body().regions) {
     const auto inside = std::count_if(nodes.begin(), nodes.end(), [&](int node) {
       return std::binary_search(region.nodes.begin(), region.nodes.end(), node);
     });

@@ -4,9 +4,9 @@
 namespace tissue_stiffness::effects {
 namespace {
 
-class ContourBias : public Effect, public Sensor {
+class ContourBias : public Effect, public SensorModel {
  public:
-  const Sensor* sensor() const override { return this; }
+  const SensorModel* sensor_model() const override { return this; }
   void observe(const Parameters& p, ObservedMotion& motion) const override { motion.outward += p[0]; }
 };
 

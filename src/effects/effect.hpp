@@ -117,14 +117,14 @@ class Support {
 };
 
 /// What an effect does to the measurements.
-class Sensor {
+class SensorModel {
  public:
   virtual void observe(const Parameters&, ObservedMotion&) const {}
   /// Returns the delay of the measurements' stamps [s].
   virtual double delay(const Parameters&) const { return 0.0; }
 
  protected:
-  ~Sensor() = default;
+  ~SensorModel() = default;
 };
 
 /// One physical effect of the model. It has linear terms, and an interface for whatever else it does; null: nothing. All
@@ -143,7 +143,7 @@ class Effect {
   virtual const NonlinearForce* nonlinear_force() const { return nullptr; }
   virtual const FiniteStrainForm* finite_strain() const { return nullptr; }
   virtual const Support* support() const { return nullptr; }
-  virtual const Sensor* sensor() const { return nullptr; }
+  virtual const SensorModel* sensor_model() const { return nullptr; }
   /// Returns the stored energy [J], if the effect has one.
   virtual double energy(const Motion&, const Parameters&) const { return 0.0; }
 };

@@ -4,9 +4,9 @@
 namespace tissue_stiffness::effects {
 namespace {
 
-class ImageScale : public Effect, public Sensor {
+class ImageScale : public Effect, public SensorModel {
  public:
-  const Sensor* sensor() const override { return this; }
+  const SensorModel* sensor_model() const override { return this; }
   void observe(const Parameters& p, ObservedMotion& motion) const override {
     const Eigen::Map<const Eigen::VectorXd> rest(motion.mesh.nodes.data(), motion.mesh.nodes.size());
     if (p[0] != 1.0) motion.displacement += (p[0] - 1.0) * (rest + motion.displacement);

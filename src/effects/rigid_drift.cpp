@@ -6,9 +6,9 @@
 namespace tissue_stiffness::effects {
 namespace {
 
-class RigidDrift : public Effect, public Sensor {
+class RigidDrift : public Effect, public SensorModel {
  public:
-  const Sensor* sensor() const override { return this; }
+  const SensorModel* sensor_model() const override { return this; }
   void observe(const Parameters& p, ObservedMotion& motion) const override {
     const Eigen::Vector3d shift = motion.time * p.head<3>(), turn = motion.time * p.tail<3>();
     const double angle = turn.norm();

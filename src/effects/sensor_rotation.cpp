@@ -6,9 +6,9 @@
 namespace tissue_stiffness::effects {
 namespace {
 
-class SensorRotation : public Effect, public Sensor {
+class SensorRotation : public Effect, public SensorModel {
  public:
-  const Sensor* sensor() const override { return this; }
+  const SensorModel* sensor_model() const override { return this; }
   void observe(const Parameters& p, ObservedMotion& motion) const override {
     const Eigen::Vector3d turn = p.head<3>();
     const double angle = turn.norm();

@@ -4,9 +4,9 @@
 namespace tissue_stiffness::effects {
 namespace {
 
-class TimeOffset : public Effect, public Sensor {
+class TimeOffset : public Effect, public SensorModel {
  public:
-  const Sensor* sensor() const override { return this; }
+  const SensorModel* sensor_model() const override { return this; }
   double delay(const Parameters& p) const override { return p[0]; }
 };
 

@@ -32,9 +32,9 @@ bool is_checked(std::size_t frame, const FitProblem& problem) {
 
 BasisError basis_error(const ReducedModel& reduced, const FitProblem& problem, const Eigen::VectorXd& w,
                        const std::vector<int>& nodes) {
-  const Eigen::VectorXd theta = problem.model.theta(w);
+  const Eigen::VectorXd theta = problem.model.parameters().theta(w);
   const Eigen::MatrixXd basis = reduced.basis_at(nodes);
-  const double delay = problem.model.delay(theta);
+  const double delay = problem.model.sensors().delay(theta);
   ReducedTrajectory whole(reduced, theta, problem.start.time), half(reduced, theta, problem.start.time, true);
   double square = 0.0;
   for (std::size_t k = 0; k < problem.frames.size(); ++k) {
@@ -54,19 +54,19 @@ Eigen::VectorXd basis_shift(const ReducedModel& reduced, const FitProblem& probl
   filter.move_anchor(w, spread);
   const Eigen::MatrixXd& points = filter.sigma_points();
   const auto count = static_cast<std::size_t>(points.cols());
-  const Eigen::VectorXd theta = problem.model.theta(w);
+  const Eigen::VectorXd theta = problem.model.parameters().theta(w);
   const auto whole = reduced.start(theta, problem.start.time);
   std::vector<Eigen::VectorXd> thetas(count);
   std::vector<std::unique_ptr<Trajectory>> halves(count);
   for (std::size_t i = 0; i < count; ++i) {
-    thetas[i] = problem.model.theta(points.col(static_cast<Eigen::Index>(i)));
+    thetas[i] = problem.model.parameters().theta(points.col(static_cast<Eigen::Index>(i)));
     halves[i] = reduced.start_in_half(thetas[i], problem.start.time);
   }
   for (std::size_t k = 0; k < problem.frames.size(); ++k) {
     const Frame& frame = problem.frames[k];
     const bool at_this_frame = is_checked(k, problem);
     const auto moved = [&](Trajectory& run, const Eigen::VectorXd& at) {
-      run.advance(frame.time - problem.model.delay(at));
+      run.advance(frame.time - problem.model.sensors().delay(at));
       return at_this_frame ? predict_frame(problem.model, problem.operators, frame, at, run.displacement()) : Prediction{};
     };
     const Prediction truth = moved(*whole, theta);

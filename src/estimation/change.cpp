@@ -39,8 +39,9 @@ class Search {
   Search(const FitProblem& problem, const ChangeQuestion& question)
       : problem_(problem),
         question_(question),
-        scanned_std_((problem.model.drift().array() > 0.0).select(problem.model.prior_std(), 0.0)),
-        theta_(problem.model.theta(question.w)) {}
+        scanned_std_(
+            (problem.model.parameters().drift().array() > 0.0).select(problem.model.parameters().prior_std(), 0.0)),
+        theta_(problem.model.parameters().theta(question.w)) {}
 
   std::optional<Change> operator()() {
     std::vector<Instant> instants = spread_instants();
@@ -59,7 +60,7 @@ class Search {
   }
 
  private:
-  double arrival(std::size_t frame) const { return problem_.frames[frame].time - problem_.model.delay(theta_); }
+  double arrival(std::size_t frame) const { return problem_.frames[frame].time - problem_.model.sensors().delay(theta_); }
 
   std::vector<Instant> spread_instants() const {
     std::vector<Instant> out;
@@ -104,12 +105,12 @@ class Search {
 
   FreeFit frame_fit(Trajectory& run, std::size_t frame, const Eigen::VectorXd& theta) const {
     problem_.checkpoint();
-    run.advance(problem_.frames[frame].time - problem_.model.delay(theta));
+    run.advance(problem_.frames[frame].time - problem_.model.sensors().delay(theta));
     return fit_frame(problem_, problem_.frames[frame], theta, run.displacement());
   }
 
   double cost_after(const Instant& at, const Eigen::VectorXd& w) const {
-    const Eigen::VectorXd theta = problem_.model.theta(w);
+    const Eigen::VectorXd theta = problem_.model.parameters().theta(w);
     const auto run = problem_.forward.resume(theta, *at.from.motion);
     double cost = before_[at.first - first_];
     for (std::size_t k = at.first; k < problem_.frames.size(); ++k) cost += frame_fit(*run, k, theta).cost;
@@ -171,7 +172,7 @@ class Search {
     for (Eigen::Index i = 0; i < best.w.size(); ++i) {
       Eigen::VectorXd before = question_.w;
       before[i] += std::sqrt(question_.covariance(i, i));
-      const auto run = problem_.forward.begin(problem_.model.theta(before), problem_.start);
+      const auto run = problem_.forward.begin(problem_.model.parameters().theta(before), problem_.start);
       run->advance(best.at.from.time);
       const Instant moved{{best.at.from.time, problem_.forward.resume(theta_, *run)}, best.at.first};
       square += (guess(moved, best.w, false).w - best.w).cwiseAbs2();
@@ -218,7 +219,7 @@ std::optional<Change> find_change(const FitProblem& problem, const ChangeQuestio
 }
 
 Eigen::VectorXd drifted(const Model& model, double span) {
-  return std::max(kShortest, span) * model.drift().cwiseAbs2();
+  return std::max(kShortest, span) * model.parameters().drift().cwiseAbs2();
 }
 
 }  // namespace tissue_stiffness

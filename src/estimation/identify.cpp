@@ -28,7 +28,7 @@ std::vector<std::string> known_scales(const Model& model) {
     for (const ParameterSpec& spec : effect_spec(effect).parameters) {
       const std::string name = effect.label + "." + spec.name;
       bool free = false;
-      for (const FreeParameter& parameter : model.free_parameters()) free = free || parameter.name == name;
+      for (const FreeParameter& parameter : model.parameters().free()) free = free || parameter.name == name;
       if (is_scale(name) && !free && effect.name != "contact_plane") known.push_back(name);
     }
   }
@@ -40,10 +40,10 @@ std::vector<std::string> known_scales(const Model& model) {
 Eigen::VectorXd narrowing(const Model& model, const Eigen::MatrixXd& covariance, bool ratios_only) {
   Eigen::VectorXd variance = covariance.diagonal();
   std::vector<Eigen::Index> scales;
-  for (std::size_t i = 0; ratios_only && i < model.free_parameters().size(); ++i) {
-    if (is_scale(model.free_parameters()[i].name)) scales.push_back(static_cast<Eigen::Index>(i));
+  for (std::size_t i = 0; ratios_only && i < model.parameters().free().size(); ++i) {
+    if (is_scale(model.parameters().free()[i].name)) scales.push_back(static_cast<Eigen::Index>(i));
   }
-  if (scales.empty()) return variance.cwiseSqrt().cwiseQuotient(model.prior_std());
+  if (scales.empty()) return variance.cwiseSqrt().cwiseQuotient(model.parameters().prior_std());
   const auto count = static_cast<Eigen::Index>(scales.size());
   Eigen::MatrixXd block(count, count);
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -53,7 +53,7 @@ Eigen::VectorXd narrowing(const Model& model, const Eigen::MatrixXd& covariance,
   }
   const Eigen::MatrixXd information = block.inverse();
   for (Eigen::Index i = 0; i < count; ++i) variance[scales[static_cast<std::size_t>(i)]] = 1.0 / information(i, i);
-  return variance.cwiseSqrt().cwiseQuotient(model.prior_std());
+  return variance.cwiseSqrt().cwiseQuotient(model.parameters().prior_std());
 }
 
 }  // namespace
@@ -62,8 +62,8 @@ std::map<std::string, Identifiability> identify(const Model& model, const Eigen:
   std::map<std::string, Identifiability> result;
   const std::vector<std::string> known = known_scales(model);
   const Eigen::VectorXd narrowed = narrowing(model, covariance, known.empty());
-  for (std::size_t i = 0; i < model.free_parameters().size(); ++i) {
-    const std::string& name = model.free_parameters()[i].name;
+  for (std::size_t i = 0; i < model.parameters().free().size(); ++i) {
+    const std::string& name = model.parameters().free()[i].name;
     const auto k = static_cast<Eigen::Index>(i);
     const std::string percent = std::to_string(static_cast<int>(std::round(100.0 * narrowed[k])));
     if (narrowed[k] > learnt) {

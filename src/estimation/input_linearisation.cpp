@@ -78,7 +78,7 @@ InputModels::InputModels(const Model& model)
     : base(model.settings(), model),
       uncertain(with_free_ratio(model.settings()), model),
       operators(make_observation_operators(base)),
-      constants(model.uncertain_constants()),
+      constants(model.parameters().uncertain_constants()),
       rigid(rigid_motions(base.mesh())) {
   BasisOptions basis;
   basis.nonlinear = BasisOptions::Nonlinear::left_out;
@@ -106,7 +106,7 @@ InputLinearisation::InputLinearisation(const MeshError::Question& question, Inpu
   motions_.resize(models.rigid.rows(), models.runs->basis().cols() + models.rigid.cols());
   motions_ << models.runs->basis(), models.rigid;
   if (models.base.settings().exact_inputs) return;
-  for (const auto& [topic, course] : models.uncertain.courses()) add_load(topic, course);
+  for (const auto& [topic, course] : models.uncertain.loads().courses()) add_load(topic, course);
   for (std::size_t i = 0; i < models.base.settings().observations.size(); ++i) add_pose(i);
   if (question.mesh_changes.empty()) return;
   mesh_columns_ = kLowestModes + 1;
@@ -127,7 +127,7 @@ void InputLinearisation::add_load(const std::string& topic, const std::shared_pt
     return load;
   };
   LoadTolerance tolerance = course->tolerance();
-  for (const FreeParameter& free : models_.base.free_parameters()) {
+  for (const FreeParameter& free : models_.base.parameters().free()) {
     if (free.name.find("force_scale") == 0) tolerance.gain = 0.0;  // a free force_scale is the gain itself
   }
   const LoadErrorBasis basis(tolerance, measured, components, q_.start, q_.frames.back().time);
@@ -149,13 +149,13 @@ void InputLinearisation::correct_loads(const Eigen::VectorXd& z) {
 
 // Returns theta at the centre, at the sigma points around it, and with each constant to either side.
 std::vector<Eigen::VectorXd> InputLinearisation::points(const Eigen::VectorXd& w) const {
-  const Eigen::VectorXd centre = models_.base.theta(w);
+  const Eigen::VectorXd centre = models_.base.parameters().theta(w);
   std::vector<Eigen::VectorXd> out{centre};
   for (const double side : {1.0, -1.0}) {
     for (Eigen::Index i = 0; i < p_; ++i) {
       Eigen::VectorXd moved = w;
       moved[i] += side * q_.spread[i];
-      out.push_back(models_.base.theta(moved));
+      out.push_back(models_.base.parameters().theta(moved));
     }
   }
   for (const double side : {1.0, -1.0}) {
@@ -268,7 +268,8 @@ void InputLinearisation::each_row(const Eigen::VectorXd& z, const Visitor& visit
   Eigen::MatrixXd amplitudes(mode_shapes.cols(), load_columns());
   for (const std::size_t index : frames_) {
     std::vector<double> times;
-    for (const Eigen::VectorXd& theta : thetas) times.push_back(q_.frames[index].time - models_.base.delay(theta));
+    for (const Eigen::VectorXd& theta : thetas)
+      times.push_back(q_.frames[index].time - models_.base.sensors().delay(theta));
     all->advance(times);
     all->displacements(u);
     for (std::size_t i = 0; i < loads_.size(); ++i) {

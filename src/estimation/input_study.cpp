@@ -37,8 +37,8 @@ class InputFit {
         models_(models),
         rows_(question, models),
         p_(question.w.size()),
-        posterior_([this](const Eigen::VectorXd& z) { return rows_.at(z); }, models.base.prior_mean(), question.prior_std,
-                   nuisance_stds(rows_, p_)) {}
+        posterior_([this](const Eigen::VectorXd& z) { return rows_.at(z); }, models.base.parameters().prior_mean(),
+                   question.prior_std, nuisance_stds(rows_, p_)) {}
 
   InputStudy::Answer run() {
     InputStudy::Answer answer;
@@ -64,7 +64,7 @@ class InputFit {
   Fit best_mode() {
     Fit best = posterior_.mode(q_.w);
     if (!(posterior_.scale(best.normal) > kNoise)) return best;
-    Fit other = posterior_.mode(models_.base.prior_mean());
+    Fit other = posterior_.mode(models_.base.parameters().prior_mean());
     const double s = std::min(posterior_.scale(best.normal), posterior_.scale(other.normal));
     return posterior_.cost(other, s) < posterior_.cost(best, s) ? other : best;
   }
@@ -121,7 +121,7 @@ class InputFit {
     const double tolerance = models_.base.settings().exact_inputs ? 0.0 : models_.base.settings().mesh.scale_tolerance;
     Eigen::VectorXd shift = Eigen::VectorXd::Zero(p_);
     for (Eigen::Index i = 0; i < p_; ++i) {
-      if (is_young_modulus(models_.base.free_parameters()[static_cast<std::size_t>(i)].name)) shift[i] -= 1.0;
+      if (is_young_modulus(models_.base.parameters().free()[static_cast<std::size_t>(i)].name)) shift[i] -= 1.0;
     }
     for (std::size_t i = 0; i < models_.constants.size(); ++i) {
       const UncertainConstant& c = models_.constants[i];
@@ -193,9 +193,9 @@ InputStudy::InputStudy(const Model& model) : parts_(std::make_unique<Parts>(mode
 InputStudy::~InputStudy() = default;
 
 InputStudy::Answer InputStudy::study(const Question& question) {
-  for (const auto& [topic, course] : question.courses) *parts_->uncertain.courses().at(topic) = course;
-  parts_->uncertain.set_first_stamp(question.first_stamp);
-  parts_->base.set_first_stamp(question.first_stamp);
+  for (const auto& [topic, course] : question.courses) *parts_->uncertain.loads().courses().at(topic) = course;
+  parts_->uncertain.loads().set_first_stamp(question.first_stamp);
+  parts_->base.loads().set_first_stamp(question.first_stamp);
   parts_->runs->restrict_output_to(observed_nodes(parts_->operators, question.frames));
   return InputFit(question, *parts_).run();
 }

@@ -49,8 +49,8 @@ std::unique_ptr<IteratedFilter> IteratedFilter::clone_unstarted() const {
 
 void IteratedFilter::expect(const Estimate& near) {
   Eigen::VectorXd anchor = filter_.anchor(), spread = filter_.spread();
-  for (std::size_t i = 0; i < model_.free_parameters().size(); ++i) {
-    const FreeParameter& free = model_.free_parameters()[i];
+  for (std::size_t i = 0; i < model_.parameters().free().size(); ++i) {
+    const FreeParameter& free = model_.parameters().free()[i];
     const auto known = std::find_if(near.parameters.begin(), near.parameters.end(),
                                     [&free](const ParameterEstimate& p) { return p.name == free.name; });
     if (known == near.parameters.end()) continue;
@@ -91,7 +91,7 @@ bool IteratedFilter::bent() const {
 }
 
 bool IteratedFilter::stale() const {
-  return filter_.stale(kFar, kWide, kFloor * model_.prior_std()) || bent();
+  return filter_.stale(kFar, kWide, kFloor * model_.parameters().prior_std()) || bent();
 }
 
 bool IteratedFilter::settle_is_due(std::size_t count) const {
@@ -152,7 +152,7 @@ std::unique_ptr<IteratedFilter> IteratedFilter::changed(const std::vector<Frame>
     auto out = std::make_unique<IteratedFilter>(model_, operators_, forward_,
                                                 PosteriorLinearizationFilter(question.w, prior), change->from);
     const std::vector<Frame> later(frames.begin() + static_cast<std::ptrdiff_t>(change->first), frames.end());
-    const Eigen::VectorXd spread = prior.diagonal().cwiseSqrt().cwiseMin(kChangedSpread * model_.prior_std());
+    const Eigen::VectorXd spread = prior.diagonal().cwiseSqrt().cwiseMin(kChangedSpread * model_.parameters().prior_std());
     out->replay(out->problem(later, checkpoint), change->w, spread);
     out->discrepancy_ = change->discrepancy;
     out->relinearize(later, checkpoint);
@@ -172,9 +172,9 @@ std::unique_ptr<IteratedFilter> IteratedFilter::rolled(const std::vector<Frame>&
   try {
     const std::unique_ptr<IteratedFilter> before = clone_unstarted();
     before->replay(problem(early, checkpoint), filter_.anchor(), filter_.spread());
-    const Eigen::VectorXd theta = model_.theta(filter_.mean());
+    const Eigen::VectorXd theta = model_.parameters().theta(filter_.mean());
     const auto run = forward_->begin(theta, start_);
-    const double time = early.back().time - model_.delay(theta);
+    const double time = early.back().time - model_.sensors().delay(theta);
     run->advance(time);
     PosteriorLinearizationFilter prior(before->filter_.mean(), before->filter_.robust_covariance());
     auto out = std::make_unique<IteratedFilter>(model_, operators_, forward_, std::move(prior),
@@ -209,7 +209,7 @@ void IteratedFilter::move_anchor(const FitProblem& problem) {
     const double excess = before.nonlinearity() / (kBent * before.misfit_scale());
     spread = spread.cwiseMin(0.8 * std::pow(excess, -0.25) * before.spread());
   }
-  spread = spread.cwiseMax(kFloor * model_.prior_std());
+  spread = spread.cwiseMax(kFloor * model_.parameters().prior_std());
   for (int cut = 0; cut < 3; ++cut, move *= 0.25) {
     replay(problem, before.anchor() + move, spread);
     if (filter_.cost() <= before.cost() * (1.0 + 1e-3) + 1.0) return;
@@ -221,8 +221,9 @@ void IteratedFilter::move_anchor(const FitProblem& problem) {
 bool IteratedFilter::scan(const FitProblem& problem) {
   if (!scan_is_due(problem.frames.size())) return false;
   notes_.scanned = problem.frames.size();
-  const ScanResult found = scan_coordinates([&](const Eigen::VectorXd& w) { return free_fit(problem, w).cost; },
-                                            filter_.anchor(), model_.prior_mean(), model_.prior_std(), kScanPoints);
+  const ScanResult found =
+      scan_coordinates([&](const Eigen::VectorXd& w) { return free_fit(problem, w).cost; }, filter_.anchor(),
+                       model_.parameters().prior_mean(), model_.parameters().prior_std(), kScanPoints);
   if (!found.moved) return false;
   const Eigen::VectorXd narrow = found.step.cwiseMin(filter_.spread());
   replay(problem, found.best, (found.step.array() > 0.0).select(narrow, filter_.spread()));
@@ -247,7 +248,7 @@ bool IteratedFilter::grow_basis(const FitProblem& problem) {
     if (!larger) break;
     reduced = std::move(larger);
   }
-  notes_.basis_shift = basis_shift(*reduced, problem, filter_.mean(), filter_.spread(), model_.prior_std());
+  notes_.basis_shift = basis_shift(*reduced, problem, filter_.mean(), filter_.spread(), model_.parameters().prior_std());
   return std::exchange(forward_, reduced) != reduced;
 }
 

@@ -32,7 +32,7 @@ class IteratedFilter {
   Eigen::MatrixXd covariance() const;
   const std::shared_ptr<ForwardModel>& forward() const { return forward_; }
   const RunStart& start() const { return start_; }
-  Eigen::VectorXd theta(const Eigen::VectorXd& w) const { return model_.theta(w); }
+  Eigen::VectorXd theta(const Eigen::VectorXd& w) const { return model_.parameters().theta(w); }
   /// Returns what the reduced basis leaves out of the surface's motion [m] (basis_error.hpp), as of the last check.
   std::optional<double> basis_error() const { return notes_.basis_error; }
 

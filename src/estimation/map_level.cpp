@@ -39,13 +39,13 @@ MapLevel::MapLevel(const MapQuestion& question, const Model& base, std::vector<P
       patch_model_(with_patches(base, patches_, log_modulus)),
       model_(patch_model_.settings, base.mesh(), patch_model_.regions),
       operators_(make_observation_operators(model_)) {
-  model_.drive(question.first_stamp, question.loads);
+  model_.loads().drive(question.first_stamp, question.loads);
   const auto count = static_cast<Eigen::Index>(patches_.size());
   const MapSettings& map = *question.settings.map;
-  prior_mean_ = model_.prior_mean();
+  prior_mean_ = model_.parameters().prior_mean();
   prior_mean_.segment(patch_model_.first, count).setConstant(patch_model_.common);
-  prior_covariance_ =
-      patch_covariance(patch_model_, model_.prior_std(), smooth_covariance(centers_, map.length, std::log(map.factor)));
+  prior_covariance_ = patch_covariance(patch_model_, model_.parameters().prior_std(),
+                                       smooth_covariance(centers_, map.length, std::log(map.factor)));
   basis_.size += kVectorsAPatch * static_cast<int>(count);
   basis_.largest = std::max(basis_.largest, basis_.size);
   fit(spread_out(start, patch_model_.first, log_modulus));
@@ -109,7 +109,7 @@ const MapLevel::MeshStudy& MapLevel::mesh_study() {
   const MeshError::Question q(model_, question_.frames, filter_->anchor(), filter_->spread(),
                               prior_covariance_.diagonal().cwiseSqrt());
   try {
-    study_->answer = MeshError(model_, model_.theta(q.w), basis_).study(q);
+    study_->answer = MeshError(model_, model_.parameters().theta(q.w), basis_).study(q);
   } catch (const NumericalError& error) {
     study_->why_not = error.what();
   }

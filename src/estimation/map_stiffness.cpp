@@ -31,7 +31,7 @@ std::vector<Frame> usable(const std::vector<Frame>& frames, double rest) {
 Eigen::VectorXd coordinates(const Model& model, const Estimate& estimate) {
   std::map<std::string, double> values;
   for (const ParameterEstimate& p : estimate.parameters) values[p.name] = p.mean;
-  return model.coordinates(values, model.prior_mean());
+  return model.parameters().coordinates(values, model.parameters().prior_mean());
 }
 
 // Returns whether the fit gains more than the mesh may leave of a misfit, which patches would take up too.

@@ -48,13 +48,13 @@ BasisOptions of_linear_part(BasisOptions basis) {
 }
 
 void drive(const MeshError::Question& question, Model& model) {
-  for (const auto& [topic, course] : question.courses) *model.courses().at(topic) = course;
-  model.set_first_stamp(question.first_stamp);
+  for (const auto& [topic, course] : question.courses) *model.loads().courses().at(topic) = course;
+  model.loads().set_first_stamp(question.first_stamp);
 }
 
 // Returns 1 for each free parameter that is a Young's modulus, else 0.
 Eigen::VectorXd young_moduli(const Model& model) {
-  const std::vector<FreeParameter>& free = model.free_parameters();
+  const std::vector<FreeParameter>& free = model.parameters().free();
   Eigen::VectorXd out(static_cast<Eigen::Index>(free.size()));
   for (std::size_t i = 0; i < free.size(); ++i)
     out[static_cast<Eigen::Index>(i)] = is_young_modulus(free[i].name) ? 1.0 : 0.0;
@@ -123,7 +123,8 @@ struct MeshError::Studies {
       fine = std::make_unique<Model>(coarse.settings(), known.finer->model());
     } else {
       const TetMesh refined = refined_mesh(coarse.mesh(), coarse.settings().mesh);
-      fine = std::make_unique<Model>(coarse.settings(), refined, refine_regions(coarse.regions(), coarse.mesh(), refined));
+      fine = std::make_unique<Model>(coarse.settings(), refined,
+                                     refine_regions(coarse.body().regions, coarse.mesh(), refined));
     }
     if (theta != nullptr) fine->know(*theta);
     fine_runs =
@@ -140,11 +141,11 @@ struct MeshError::Studies {
 
   // Nodes of the coarse mesh keep their numbers in the finer one, so its run is seen through them.
   std::vector<Prediction> predictions(const ReducedModel& runs, const Question& q, const Eigen::VectorXd& w) const {
-    const Eigen::VectorXd theta = coarse.theta(w);
+    const Eigen::VectorXd theta = coarse.parameters().theta(w);
     const auto run = runs.start(theta, q.start);
     std::vector<Prediction> out;
     for (const Frame& frame : q.frames) {
-      run->advance(frame.time - coarse.delay(theta));
+      run->advance(frame.time - coarse.sensors().delay(theta));
       const Eigen::VectorXd u = run->displacement().head(coarse.fem().dof_count());
       out.push_back(predict_frame(coarse, operators, frame, theta, u));
     }
@@ -191,7 +192,8 @@ std::string MeshError::why_not(const TetMesh& mesh) {
 std::string MeshError::why_not(const Model& model) {
   if (!model.settings().mesh.discretisation_error) return "the model file asks not to";
   for (const Model::Part& part : model.parts()) {
-    if (part.effect->nonlinear() && !part.effect->has_finite_form()) return part.label + " has no linear form";
+    if (part.effect->nonlinear_force() != nullptr && part.effect->finite_strain() == nullptr)
+      return part.label + " has no linear form";
   }
   return why_not(model.mesh());
 }
@@ -208,9 +210,9 @@ MeshError::Question::Question(const Model& model, std::vector<Frame> seen, Eigen
       w(std::move(at)),
       spread(std::move(around)),
       prior_std(std::move(prior)),
-      start(model.first_stamp() + model.settings().time.start),
-      first_stamp(model.first_stamp()) {
-  for (const auto& [topic, course] : model.courses()) courses.emplace(topic, *course);
+      start(model.loads().first_stamp() + model.settings().time.start),
+      first_stamp(model.loads().first_stamp()) {
+  for (const auto& [topic, course] : model.loads().courses()) courses.emplace(topic, *course);
 }
 
 Eigen::VectorXd MeshError::Answer::believed(double mean_square) const {

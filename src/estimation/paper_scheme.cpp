@@ -23,7 +23,8 @@ constexpr double kTolerance = 1e-9;  // [m]
 class PaperScheme : public Scheme {
  public:
   PaperScheme(const ModelSettings& settings, const TetMesh& mesh)
-      : Scheme(settings, mesh), filter_(model_->prior_mean(), model_->prior_std().cwiseAbs2().asDiagonal()) {
+      : Scheme(settings, mesh),
+        filter_(model_->parameters().prior_mean(), model_->parameters().prior_std().cwiseAbs2().asDiagonal()) {
     for (const ObservationSettings& observation : settings.observations) {
       if (observation.kind != ObservationSettings::Kind::vertices) {
         throw InputError(settings.name + ": observations", "a kind that is not `vertices`",
@@ -37,7 +38,7 @@ class PaperScheme : public Scheme {
             " Newmark steps a frame"};
   }
   std::vector<Misfit> free_run(const FreeFrameVisitor& visit) override {
-    return compare_free_run(frames_, {start()}, model_->theta(filter_.mean()), visit);
+    return compare_free_run(frames_, {start()}, model_->parameters().theta(filter_.mean()), visit);
   }
   Eigen::MatrixXd parameter_covariance() const override { return filter_.covariance(); }
 
@@ -62,7 +63,7 @@ class PaperScheme : public Scheme {
   void forget() override {
     frames_.clear();
     fields_.clear();
-    filter_ = UnscentedFilter(model_->prior_mean(), model_->prior_std().cwiseAbs2().asDiagonal());
+    filter_ = UnscentedFilter(model_->parameters().prior_mean(), model_->parameters().prior_std().cwiseAbs2().asDiagonal());
   }
 
  private:
@@ -79,7 +80,7 @@ class PaperScheme : public Scheme {
   }
 
   void hold(const Eigen::VectorXi& nodes) {
-    SparseMatrix k = model_->reference_stiffness(model_->theta(model_->prior_mean()));
+    SparseMatrix k = model_->reference_stiffness(model_->parameters().theta(model_->parameters().prior_mean()));
     hold_ = kHold * k.diagonal().mean();
     for (Eigen::Index i = 0; i < nodes.size(); ++i) k.coeffRef(3 * nodes[i] + i % 3, 3 * nodes[i] + i % 3) += hold_;
     fix_dofs(k, model_->fixed(), k.diagonal().mean());
@@ -92,7 +93,7 @@ class PaperScheme : public Scheme {
     const std::size_t n = frames_.size();
     const double t0 = frames_[n - 3].time, t1 = frames_[n - 2].time, t2 = frames_[n - 1].time;
     const double step = 0.5 * (t2 - t0);
-    const ModelSystem system(*model_, model_->theta(w));
+    const ModelSystem system(*model_, model_->parameters().theta(w));
     GeneralizedAlpha newmark(system, 1.0, kTolerance);
     DynamicState x;
     x.time = t1;
@@ -108,7 +109,7 @@ class PaperScheme : public Scheme {
       Eigen::MatrixXd rows;
       for (Eigen::Index i = 0; i < points.cols(); ++i) {
         const Eigen::VectorXd u = run(points.col(i)).displacement;
-        const Prediction p = predict_frame(*model_, operators_, frame, model_->theta(points.col(i)), u);
+        const Prediction p = predict_frame(*model_, operators_, frame, model_->parameters().theta(points.col(i)), u);
         if (i == 0) rows.resize(p.predicted.size(), points.cols());
         rows.col(i) = p.predicted;
       }
@@ -118,13 +119,13 @@ class PaperScheme : public Scheme {
     const FilterUpdate innovation =
         filter_.update(rest.measured, outputs(filter_.sigma_points()), Noise::independent(rest.sigma));
     const Eigen::VectorXd u = run(filter_.mean()).displacement;
-    prediction_ = predict_frame(*model_, operators_, frame, model_->theta(filter_.mean()), u);
+    prediction_ = predict_frame(*model_, operators_, frame, model_->parameters().theta(filter_.mean()), u);
     displacement_ = Eigen::Map<const Eigen::Matrix3Xd>(u.data(), 3, u.size() / 3);
     result.used = true;
     result.misfit = frame_misfit(frame.time, prediction_, rest.predicted, model_->mesh().node_count());
     result.misfit.nis = innovation.nis;
     result.misfit.dof = innovation.dof;
-    estimate_ = summarise_posterior(model_->free_parameters(), filter_.mean(), filter_.covariance());
+    estimate_ = summarise_posterior(model_->parameters().free(), filter_.mean(), filter_.covariance());
     estimate_.time = frame.time;
     estimate_.state = EstimateState::converging;
     estimate_.state_reason = "the paper's estimator does not test its misfit";

@@ -15,7 +15,7 @@ namespace {
 }
 
 Eigen::Index index_of(const Model& model, const std::string& parameter) {
-  const auto& free = model.free_parameters();
+  const auto& free = model.parameters().free();
   const auto at = std::find_if(free.begin(), free.end(), [&](const FreeParameter& p) { return p.name == parameter; });
   return at == free.end() ? -1 : at - free.begin();
 }
@@ -51,7 +51,7 @@ void require_map(const Model& model) {
   }
   const std::string& label = model.settings().effects[mapped_effect(model)].label;
   const auto free = static_cast<std::size_t>(index_of(model, label + ".young_modulus"));
-  const Quantity& prior = model.free_parameters()[free].prior;
+  const Quantity& prior = model.parameters().free()[free].prior;
   if (prior.kind != Quantity::Kind::log_normal) refuse(model, "young_modulus: {mean, std}", "`{prior, factor}`");
   if (prior.drift > 0.0) refuse(model, "a young_modulus with `drift`", "one that is constant");
   if (index_of(model, label + ".poisson_ratio") >= 0) refuse(model, "an estimated poisson_ratio", "a known number");
@@ -59,15 +59,15 @@ void require_map(const Model& model) {
 
 Patch mapped_tets(const Model& model) {
   return solid_elements(model.settings().effects[mapped_effect(model)].arguments, model.fem().element_count(),
-                        model.regions());
+                        model.body().regions);
 }
 
 PatchModel with_patches(const Model& model, const std::vector<Patch>& patches, const Eigen::VectorXd& log_modulus) {
   require_map(model);
   const std::size_t mapped = mapped_effect(model);
   const EffectSettings whole = model.settings().effects[mapped];
-  PatchModel out{model.settings(), model.regions(), index_of(model, whole.label + ".young_modulus"), 0.0, 0.0};
-  const FreeParameter& common = model.free_parameters()[static_cast<std::size_t>(out.first)];
+  PatchModel out{model.settings(), model.body().regions, index_of(model, whole.label + ".young_modulus"), 0.0, 0.0};
+  const FreeParameter& common = model.parameters().free()[static_cast<std::size_t>(out.first)];
   out.common = common.prior_mean();
   out.common_std = common.prior_std();
   std::vector<EffectSettings> parts;

@@ -34,7 +34,7 @@ Scheme::Scheme(const ModelSettings& settings, const TetMesh& mesh, const ReuseSo
     : model_(relatives.own != nullptr ? std::make_unique<Model>(settings, relatives.own->model())
                                       : std::make_unique<Model>(settings, mesh)),
       operators_(make_observation_operators(*model_)) {
-  if (model_->free_parameters().empty()) {
+  if (model_->parameters().free().empty()) {
     throw InputError(settings.name + ": effects", "only known numbers", "at least one {prior, factor} or {mean, std}");
   }
   if (operators_.empty()) throw InputError(settings.name + ": observations", "an empty list", "at least one entry");
@@ -43,8 +43,9 @@ Scheme::Scheme(const ModelSettings& settings, const TetMesh& mesh, const ReuseSo
   basis.keep_root = relatives.own != nullptr;
   forward_ = make_forward_model(*model_, basis, relatives.own);
   displacement_ = Eigen::Matrix3Xd::Zero(3, mesh.node_count());
-  const Eigen::VectorXd std = model_->prior_std();
-  estimate_ = summarise_posterior(model_->free_parameters(), model_->prior_mean(), std.cwiseAbs2().asDiagonal());
+  const Eigen::VectorXd std = model_->parameters().prior_std();
+  estimate_ =
+      summarise_posterior(model_->parameters().free(), model_->parameters().prior_mean(), std.cwiseAbs2().asDiagonal());
 }
 
 const Eigen::Matrix3Xd& Scheme::displacement() const {
@@ -77,12 +78,12 @@ void Scheme::extend_output_to(const Frame& frame) {
 
 void Scheme::set_first_stamp(double time) {
   first_stamp_ = time;
-  model_->set_first_stamp(time);
+  model_->loads().set_first_stamp(time);
 }
 
 void Scheme::add_load(const LoadSample& sample) {
-  const auto course = model_->courses().find(sample.topic);
-  if (course == model_->courses().end()) return;
+  const auto course = model_->loads().courses().find(sample.topic);
+  if (course == model_->loads().courses().end()) return;
   if (!sample.value.allFinite() || sample.value.size() != course->second->components()) {
     throw InputError(sample.topic, "a load that is not finite or has the wrong size",
                      std::to_string(course->second->components()) + " finite number(s)");
@@ -156,10 +157,11 @@ void Scheme::reset() {
   last_time_.reset();
   first_stamp_.reset();
   first_load_ = INFINITY;
-  model_->forget_velocity_prior();
-  for (auto& course : model_->courses()) course.second->clear();
-  const Eigen::VectorXd std = model_->prior_std();
-  estimate_ = summarise_posterior(model_->free_parameters(), model_->prior_mean(), std.cwiseAbs2().asDiagonal());
+  model_->parameters().forget_velocity_prior();
+  for (auto& course : model_->loads().courses()) course.second->clear();
+  const Eigen::VectorXd std = model_->parameters().prior_std();
+  estimate_ =
+      summarise_posterior(model_->parameters().free(), model_->parameters().prior_mean(), std.cwiseAbs2().asDiagonal());
   recover_ = nullptr;
   displacement_.setZero();
   prediction_ = {};
@@ -168,8 +170,8 @@ void Scheme::reset() {
 
 std::string Scheme::stale_load(double time) const {
   const double longest = model_->settings().stale_after;
-  for (const LoadInput& input : model_->load_inputs()) {
-    const std::optional<double> last = model_->courses().at(input.topic)->last();
+  for (const LoadInput& input : model_->loads().inputs()) {
+    const std::optional<double> last = model_->loads().courses().at(input.topic)->last();
     const double since = time - last.value_or(start());
     if (since <= longest) continue;
     std::ostringstream text;

@@ -19,18 +19,18 @@ std::string percent(double share) {
 // Returns the indices of the parameters that a state speaks of: the moduli, or all where none is free.
 std::vector<Eigen::Index> judged(const Model& model) {
   std::vector<Eigen::Index> moduli, all;
-  for (std::size_t i = 0; i < model.free_parameters().size(); ++i) {
+  for (std::size_t i = 0; i < model.parameters().free().size(); ++i) {
     all.push_back(static_cast<Eigen::Index>(i));
-    if (is_young_modulus(model.free_parameters()[i].name)) moduli.push_back(all.back());
+    if (is_young_modulus(model.parameters().free()[i].name)) moduli.push_back(all.back());
   }
   return moduli.empty() ? all : moduli;
 }
 
 // Returns why the estimate is not precise enough to be used; empty: it is.
 std::string unlearnt(const Model& model, const Eigen::MatrixXd& covariance) {
-  const Eigen::VectorXd std = covariance.diagonal().cwiseSqrt(), prior = model.prior_std();
+  const Eigen::VectorXd std = covariance.diagonal().cwiseSqrt(), prior = model.parameters().prior_std();
   for (const Eigen::Index i : judged(model)) {
-    const FreeParameter& free = model.free_parameters()[static_cast<std::size_t>(i)];
+    const FreeParameter& free = model.parameters().free()[static_cast<std::size_t>(i)];
     const bool positive = free.prior.kind == Quantity::Kind::log_normal;
     if (std[i] > kLearnt * prior[i]) return free.name + " is hardly better known than its prior";
     if (positive && std[i] > kWidest) return free.name + " is known to " + percent(std[i]) + " only";

@@ -52,8 +52,9 @@ bool Studies::finished() const {
 void Studies::study_mesh(Question& question, Subjects subjects, bool once) {
   try {
     if (!job_.mesh_error) {
-      job_.mesh_error = once ? std::make_unique<MeshError>(model_, model_.theta(question.w), BasisOptions(), relatives_)
-                             : std::make_unique<MeshError>(model_);
+      job_.mesh_error =
+          once ? std::make_unique<MeshError>(model_, model_.parameters().theta(question.w), BasisOptions(), relatives_)
+               : std::make_unique<MeshError>(model_);
     }
     std::optional<MeshError::Answer>& mesh = job_.answers.mesh;
     if (subjects.mesh) mesh = job_.mesh_error->study(question);

@@ -35,7 +35,7 @@ SystematicError::Corrected SystematicError::correct(const Filtered& filtered) co
 }
 
 void SystematicError::refresh() {
-  const Eigen::VectorXd prior_std = model_.prior_std();
+  const Eigen::VectorXd prior_std = model_.parameters().prior_std();
   parts_.mesh = mesh_discrepancy(model_, mesh_shift());
   parts_.loads = parts_.constants = Eigen::MatrixXd::Zero(prior_std.size(), prior_std.size());
   if (!inputs_) {  // nothing is known yet of what the inputs' errors do
@@ -63,12 +63,12 @@ double SystematicError::unexplained(double misfit_scale) const {
 
 /// Returns (C^-1 + P^-1)^-1: whatever is left open, the prior P still holds.
 Eigen::MatrixXd SystematicError::within_prior(const Eigen::MatrixXd& c) const {
-  const Eigen::MatrixXd prior = model_.prior_std().cwiseAbs2().asDiagonal();
+  const Eigen::MatrixXd prior = model_.parameters().prior_std().cwiseAbs2().asDiagonal();
   return prior * (prior + c).ldlt().solve(c);
 }
 
 Eigen::VectorXd SystematicError::mesh_shift() const {
-  return mesh_shift_.size() > 0 ? mesh_shift_ : Eigen::VectorXd::Zero(model_.prior_std().size());
+  return mesh_shift_.size() > 0 ? mesh_shift_ : Eigen::VectorXd::Zero(model_.parameters().prior_std().size());
 }
 
 double SystematicError::of_mesh() const {

@@ -39,7 +39,7 @@ class UnscentedScheme : public Scheme {
   std::vector<Misfit> free_run(const FreeFrameVisitor& visit) override {
     stop();
     if (frames_.empty()) return {};
-    const Eigen::VectorXd theta = model_->theta(filter_run_->filter().mean());
+    const Eigen::VectorXd theta = model_->parameters().theta(filter_run_->filter().mean());
     if (change_history_.empty()) return compare_free_run(frames_, filter_run_->start(), theta, visit);
     return compare_free_run(change_history_.all_frames(frames_), {start()}, change_history_.theta(), visit,
                             change_history_.changes(theta));
@@ -88,8 +88,8 @@ class UnscentedScheme : public Scheme {
 
  private:
   std::shared_ptr<IteratedFilter> new_filter() const {
-    const Eigen::VectorXd std = model_->prior_std();
-    const PosteriorLinearizationFilter prior(model_->prior_mean(), std.cwiseAbs2().asDiagonal());
+    const Eigen::VectorXd std = model_->parameters().prior_std();
+    const PosteriorLinearizationFilter prior(model_->parameters().prior_mean(), std.cwiseAbs2().asDiagonal());
     return std::make_shared<IteratedFilter>(*model_, operators_, forward_, prior, RunStart{start()});
   }
 
@@ -102,7 +102,7 @@ class UnscentedScheme : public Scheme {
       return result;
     }
     const VelocityEstimate v = velocity_from_frames(*model_, waiting_);
-    model_->set_velocity_prior(v.mean, v.std);
+    model_->parameters().set_velocity_prior(v.mean, v.std);
     StepResult result;
     for (const Frame& kept : waiting_) result = assimilate(kept);
     waiting_.clear();
@@ -220,7 +220,7 @@ class UnscentedScheme : public Scheme {
     const SystematicError::Corrected corrected = systematic_.correct(now);
     settling_.add(corrected.mean, corrected.covariance.diagonal().cwiseSqrt());
     StateJudgement judged = judge(result.misfit, now, corrected.covariance);
-    estimate_ = summarise_posterior(model_->free_parameters(), corrected.mean, corrected.covariance);
+    estimate_ = summarise_posterior(model_->parameters().free(), corrected.mean, corrected.covariance);
     estimate_.time = frame.time;
     estimate_.state = judged.state;
     estimate_.state_reason = std::move(judged.reason);
@@ -253,8 +253,8 @@ class UnscentedScheme : public Scheme {
     if (!subjects.any()) return moved;
     const PosteriorLinearizationFilter& filter = filter_run_->filter();
     if (subjects.inputs) misfit_scale_asked_ = filter.misfit_scale();
-    studies_.begin({*model_, frames_, filter.mean(), filter.spread(), model_->prior_std()}, subjects, replaying(),
-                   hurried());
+    studies_.begin({*model_, frames_, filter.mean(), filter.spread(), model_->parameters().prior_std()}, subjects,
+                   replaying(), hurried());
     return !hurried() ? take_studies() || moved : moved;
   }
 
@@ -279,7 +279,8 @@ class UnscentedScheme : public Scheme {
     if (change) {
       stop();
       for (const auto& [topic, correction] : inputs.corrections) {
-        model_->courses().at(topic)->correct(correction.basis, believed ? correction.coefficients : Eigen::VectorXd());
+        model_->loads().courses().at(topic)->correct(correction.basis,
+                                                     believed ? correction.coefficients : Eigen::VectorXd());
       }
       corrected_ = believed;
       filter_run_->rerun(frames_, inputs.mode);
@@ -293,7 +294,7 @@ class UnscentedScheme : public Scheme {
   Validity validity_;
   std::vector<Frame> frames_, waiting_;
   ChangeHistory change_history_;
-  ChangeWatch watch_{(model_->drift().array() > 0.0).any()};
+  ChangeWatch watch_{(model_->parameters().drift().array() > 0.0).any()};
   std::size_t window_ = static_cast<std::size_t>(model_->settings().window);
   bool complete_ = true;                                  ///< every frame since the filter's start is in frames_
   std::unique_ptr<BackgroundReprocessing> reprocessing_;  ///< reprocessing under way

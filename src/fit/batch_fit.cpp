@@ -143,10 +143,10 @@ PosteriorLinearizationFilter fit_filter(const FitProblem& problem, PosteriorLine
 }
 
 BatchFit fit_batch(const FitProblem& problem, const Eigen::VectorXd& start, const Eigen::VectorXd& spread, double rival) {
-  const Eigen::VectorXd prior = problem.model.prior_std();
-  const PosteriorLinearizationFilter filter =
-      fit_filter(problem, PosteriorLinearizationFilter(problem.model.prior_mean(), prior.cwiseAbs2().asDiagonal()), start,
-                 spread, rival);
+  const Eigen::VectorXd prior = problem.model.parameters().prior_std();
+  const PosteriorLinearizationFilter filter = fit_filter(
+      problem, PosteriorLinearizationFilter(problem.model.parameters().prior_mean(), prior.cwiseAbs2().asDiagonal()), start,
+      spread, rival);
   return {filter.anchor(), filter.covariance(), filter.cost()};
 }
 

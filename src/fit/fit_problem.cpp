@@ -14,8 +14,8 @@ Eigen::ArrayXd errors(const Prediction& p) {
 }  // namespace
 
 void run_freely(const FitProblem& problem, const Eigen::VectorXd& w, const ShowFrame& show) {
-  const Eigen::VectorXd theta = problem.model.theta(w);
-  const double delay = problem.model.delay(theta);
+  const Eigen::VectorXd theta = problem.model.parameters().theta(w);
+  const double delay = problem.model.sensors().delay(theta);
   const auto run = problem.forward.begin(theta, problem.start);
   std::vector<double> times;
   for (const Frame& frame : problem.frames) times.push_back(frame.time - delay);

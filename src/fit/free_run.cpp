@@ -12,11 +12,11 @@ std::vector<Misfit> free_run(const FitProblem& problem, Eigen::VectorXd theta, c
   auto run = problem.forward.begin(theta, problem.start);
   auto change = changes.begin();
   for (const Frame& frame : problem.frames) {
-    for (; change != changes.end() && change->time <= frame.time - model.delay(theta); ++change) {
+    for (; change != changes.end() && change->time <= frame.time - model.sensors().delay(theta); ++change) {
       run->advance(change->time);
       run = problem.forward.resume(theta = change->theta, *run);
     }
-    run->advance(frame.time - model.delay(theta));
+    run->advance(frame.time - model.sensors().delay(theta));
     const Eigen::VectorXd u = run->displacement();
     const Prediction p = predict_frame(model, problem.operators, frame, theta, u);
     misfits.push_back(

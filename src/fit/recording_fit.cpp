@@ -56,7 +56,7 @@ RecordingFit::RecordingFit(const ModelSettings& settings, const RecordingFit& re
 
 void RecordingFit::prepare(const BasisOptions& basis, const ForwardModel* relative) {
   recording_.checkpoint();  // what follows may take longer than a frame
-  model_.drive(recording_.first_stamp, recording_.loads);
+  model_.loads().drive(recording_.first_stamp, recording_.loads);
   BasisOptions whole = basis;
   whole.steps_per_frame = kSteps;
   forward_ = make_forward_model(model_, whole, relative);
@@ -134,15 +134,16 @@ Eigen::VectorXd RecordingFit::predicted(const Eigen::VectorXd& w) const {
 void RecordingFit::show(const Eigen::VectorXd& w, const FreeFrameVisitor& visit) {
   forward_->restrict_output_to({});
   const FitProblem all = problem(*forward_, recording_.frames);
-  free_run({model_, *forward_, operators_, all.frames, all.start}, model_.theta(w), [&](const FreeFrame& frame) {
-    recording_.checkpoint();
-    visit(frame);
-  });
+  free_run({model_, *forward_, operators_, all.frames, all.start}, model_.parameters().theta(w),
+           [&](const FreeFrame& frame) {
+             recording_.checkpoint();
+             visit(frame);
+           });
 }
 
 Eigen::MatrixXd RecordingFit::rows_along(const Eigen::VectorXd& w, const Eigen::MatrixXd& shapes, const Rows& rows) const {
   const FitProblem all = problem(quick(), recording_.frames);
-  const Eigen::VectorXd theta = model_.theta(w);
+  const Eigen::VectorXd theta = model_.parameters().theta(w);
   const auto run = quick().begin(theta, all.start);
   Eigen::MatrixXd out(rows.error.size(), shapes.cols());
   for (std::size_t k = 0; k < all.frames.size(); ++k) {
@@ -196,7 +197,7 @@ BatchFit RecordingFit::fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd s
   for (const Frame& frame : recording_.frames) times.push_back(frame.time);
   const auto run = [&](const Eigen::VectorXd& w) {
     auto runs = std::make_unique<CorrectedSurrogate>(*forward_, *quick_);
-    runs->anchor(model_.theta(w), start, times, recording_.checkpoint);
+    runs->anchor(model_.parameters().theta(w), start, times, recording_.checkpoint);
     return runs;
   };
   surrogate_ = run(at);
@@ -214,7 +215,9 @@ BatchFit RecordingFit::fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd s
       const double now = free_fit(problem(*there, training_), at + move).cost;
       gain = cost - now;
       if (!(gain > 0.0)) continue;
-      there->follow(*surrogate_, (model_.theta(at + model_.prior_std()) - model_.theta(at)).cwiseAbs());
+      there->follow(
+          *surrogate_,
+          (model_.parameters().theta(at + model_.parameters().prior_std()) - model_.parameters().theta(at)).cwiseAbs());
       at += move;
       cost = now;
       surrogate_ = std::move(there);
@@ -228,8 +231,8 @@ BatchFit RecordingFit::fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd s
 
 Eigen::VectorXd RecordingFit::scan(const Eigen::VectorXd& start) const {
   const FitProblem train = problem(quick(), training_);
-  return scan_coordinates([&](const Eigen::VectorXd& w) { return free_fit(train, w).cost; }, start, model_.prior_mean(),
-                          model_.prior_std(), kScanPoints)
+  return scan_coordinates([&](const Eigen::VectorXd& w) { return free_fit(train, w).cost; }, start,
+                          model_.parameters().prior_mean(), model_.parameters().prior_std(), kScanPoints)
       .best;
 }
 
@@ -239,45 +242,46 @@ RecordingFit::Place RecordingFit::scan_near(const Eigen::VectorXd& start, const 
   const std::vector<Frame>& frames = first_of_training(share, room);
   const FitProblem train = problem(quick(), frames);
   const auto cost = [&](const Eigen::VectorXd& w) { return free_fit(train, w).cost; };
-  const ScanResult nearest = scan_around(cost, start, model_.prior_std(), coordinates);
+  const ScanResult nearest = scan_around(cost, start, model_.parameters().prior_std(), coordinates);
   return {nearest.best, nearest.lowest};
 }
 
 std::vector<Eigen::Index> RecordingFit::shared_with(const RecordingFit& base) const {
   std::vector<Eigen::Index> shared;
-  for (std::size_t i = 0; i < model_.free_parameters().size(); ++i) {
-    if (base.index(model_.free_parameters()[i].name) >= 0) shared.push_back(static_cast<Eigen::Index>(i));
+  for (std::size_t i = 0; i < model_.parameters().free().size(); ++i) {
+    if (base.index(model_.parameters().free()[i].name) >= 0) shared.push_back(static_cast<Eigen::Index>(i));
   }
   return shared;
 }
 
 std::vector<Eigen::Index> RecordingFit::tuning_shared_with(const RecordingFit& base) const {
-  const Eigen::VectorXd w = model_.prior_mean(), std = model_.prior_std();
+  const Eigen::VectorXd w = model_.parameters().prior_mean(), std = model_.parameters().prior_std();
   std::vector<Eigen::Index> tuning;
   for (const Eigen::Index i : shared_with(base)) {
-    if (!model_.same_answer(model_.theta(w), model_.theta(w + std[i] * Eigen::VectorXd::Unit(w.size(), i))))
+    if (!model_.same_answer(model_.parameters().theta(w),
+                            model_.parameters().theta(w + std[i] * Eigen::VectorXd::Unit(w.size(), i))))
       tuning.push_back(i);
   }
   return tuning;
 }
 
 Eigen::VectorXd RecordingFit::extend(const RecordingFit& base, const Eigen::VectorXd& w) const {
-  Eigen::VectorXd out = model_.prior_mean();
+  Eigen::VectorXd out = model_.parameters().prior_mean();
   for (const Eigen::Index i : shared_with(base)) {
-    out[i] = w[base.index(model_.free_parameters()[static_cast<std::size_t>(i)].name)];
+    out[i] = w[base.index(model_.parameters().free()[static_cast<std::size_t>(i)].name)];
   }
   return out;
 }
 
 Eigen::VectorXd RecordingFit::spread_beyond(const RecordingFit& base) const {
-  const Eigen::VectorXd prior = model_.prior_std();
+  const Eigen::VectorXd prior = model_.parameters().prior_std();
   Eigen::VectorXd spread = kAddedSpread * prior;
   for (const Eigen::Index i : shared_with(base)) spread[i] = kBaseSpread * prior[i];
   return spread;
 }
 
 Eigen::Index RecordingFit::index(const std::string& parameter) const {
-  const auto& free = model_.free_parameters();
+  const auto& free = model_.parameters().free();
   for (std::size_t i = 0; i < free.size(); ++i) {
     if (free[i].name == parameter) return static_cast<Eigen::Index>(i);
   }
@@ -286,7 +290,7 @@ Eigen::Index RecordingFit::index(const std::string& parameter) const {
 
 FittedModel fit_recording(std::unique_ptr<RecordingFit> recording_fit, const Eigen::VectorXd& start, double spread) {
   FittedModel out;
-  out.fit = recording_fit->fit(start, spread * recording_fit->model().prior_std());
+  out.fit = recording_fit->fit(start, spread * recording_fit->model().parameters().prior_std());
   out.rows = recording_fit->rows(out.fit.w);
   out.recording_fit = std::move(recording_fit);
   return out;

@@ -38,12 +38,12 @@ Eigen::Vector3d acceleration(const Model::Part& part, const Eigen::VectorXd& the
 std::vector<Eigen::VectorXd> moved(const Model& model, const PriorView& prior, const Model::Part& part,
                                    const std::vector<int>& shape) {
   std::vector<Eigen::VectorXd> list;
-  const Eigen::VectorXd mean = model.prior_mean(), std = model.prior_std();
+  const Eigen::VectorXd mean = model.parameters().prior_mean(), std = model.parameters().prior_std();
   for (const int i : shape) {
     if (!model.estimated(part, {i})) continue;
     const int index = part.indices[static_cast<std::size_t>(i)];
     for (const double sign : {-1.0, 1.0}) {
-      const double value = model.theta(mean + sign * std)[index];
+      const double value = model.parameters().theta(mean + sign * std)[index];
       Eigen::VectorXd theta = prior.theta;
       theta[index] = value;
       list.push_back(part.parameters(theta));
@@ -71,16 +71,16 @@ Eigen::VectorXd theta_without_part(const Model& model, std::size_t part, Eigen::
   return theta;
 }
 
-PriorView::PriorView(const Model& model) : theta(model.theta(model.prior_mean())) {
-  Eigen::VectorXd w = model.prior_mean();
-  const Eigen::VectorXd std = model.prior_std();
+PriorView::PriorView(const Model& model) : theta(model.parameters().theta(model.parameters().prior_mean())) {
+  Eigen::VectorXd w = model.parameters().prior_mean();
+  const Eigen::VectorXd std = model.parameters().prior_std();
   for (Eigen::Index i = 0; i < w.size(); ++i) {
     w[i] += (0.3 + 0.7 * std::fmod(0.618034 * static_cast<double>(i + 1), 1.0)) * std[i];
   }
-  generic = model.theta(w);
+  generic = model.parameters().theta(w);
   for (std::size_t p = 0; p < model.parts().size(); ++p) {
     const auto& part = model.parts()[p];
-    if (part.effect->is_compliant(part.parameters(generic)) && model.estimated(part, {0}))
+    if (part.is_compliant(part.parameters(generic)) && model.estimated(part, {0}))
       theta = theta_without_part(model, p, theta);
   }
 }
@@ -164,7 +164,7 @@ std::vector<SparseMatrix> stiffness_groups(const Model& model, const PriorView& 
 std::vector<SparseMatrix> inactive_stiffness(const Model& model, const PriorView& prior) {
   std::vector<SparseMatrix> list;
   for (const auto& part : model.parts()) {
-    if (!part.effect->compliant_nodes().empty()) continue;
+    if (!part.compliant_nodes().empty()) continue;
     const Eigen::VectorXd p = part.parameters(prior.theta), generic = part.parameters(prior.generic);
     SparseMatrix sum = model.fem().pattern();
     bool any = false;
@@ -231,7 +231,7 @@ Eigen::MatrixXd extra_forces(const Model& model, const PriorView& prior, std::si
   const double largest = strains.cwiseAbs().maxCoeff();
   const auto add_forces_of = [&](const Eigen::VectorXd& motion) {
     for (const double sign : {1.0, -1.0}) {
-      const Eigen::VectorXd force = extra(model.first_stamp(), sign * kModerate / largest * motion, still);
+      const Eigen::VectorXd force = extra(model.loads().first_stamp(), sign * kModerate / largest * motion, still);
       if (!force.isZero(0.0)) append(forces, force);
     }
   };

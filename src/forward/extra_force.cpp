@@ -23,7 +23,7 @@ Eigen::VectorXd without_extra_force(const Model& model, Eigen::VectorXd theta) {
 }  // namespace
 
 bool adds_extra_force(const Model::Part& part) {
-  return part.effect->nonlinear() || !part.terms.finite_share.empty();
+  return part.effect->nonlinear_force() != nullptr || !part.terms.finite_share.empty();
 }
 
 ExtraForce::ExtraForce(const Model& model, const Eigen::VectorXd& theta) : model_(model), with_(model.point(theta)) {
@@ -31,7 +31,7 @@ ExtraForce::ExtraForce(const Model& model, const Eigen::VectorXd& theta) : model
   without_ = model.point(without);
   absent_ = theta == without;
   for (const Model::Part& part : model.parts()) {
-    loaded_ = loaded_ || (part.effect->has_finite_form() && !part.terms.loads.empty());
+    loaded_ = loaded_ || (part.effect->finite_strain() != nullptr && !part.terms.loads.empty());
   }
   even_ = finite_share(with_) != finite_share(without_);
 }

@@ -30,18 +30,11 @@ void add(SparseMatrix& to, double scale, const MatrixTerm& term) {
 
 }  // namespace
 
-Eigen::VectorXd Model::Part::parameters(const Eigen::VectorXd& theta) const {
-  Eigen::VectorXd own(static_cast<Eigen::Index>(indices.size()));
-  for (std::size_t i = 0; i < indices.size(); ++i) own[static_cast<Eigen::Index>(i)] = theta[indices[i]];
-  return own;
-}
-
 std::vector<char> Model::fixed(const Eigen::VectorXd& theta) const {
   std::vector<int> holders = constraint_count_;
   for (const Part& part : parts_) {
-    const std::vector<int> nodes = part.effect->compliant_nodes();
-    if (nodes.empty() || !part.effect->is_compliant(part.parameters(theta))) continue;
-    for (const int node : nodes) --holders[static_cast<std::size_t>(node)];
+    if (!part.is_compliant(part.parameters(theta))) continue;
+    for (const int node : part.compliant_nodes()) --holders[static_cast<std::size_t>(node)];
   }
   std::vector<char> flags(fixed_.size());
   for (std::size_t i = 0; i < flags.size(); ++i) flags[i] = holders[i / 3] > 0 ? 1 : 0;
@@ -118,8 +111,8 @@ std::vector<Relaxation> Model::relaxations(const Eigen::VectorXd& theta) const {
 bool Model::same_answer(const Eigen::VectorXd& theta, const Eigen::VectorXd& other) const {
   for (const Part& part : parts_) {
     const Eigen::VectorXd p = part.parameters(theta), q = part.parameters(other);
-    if (part.effect->nonlinear() && p != q) return false;
-    if (part.effect->is_compliant(p) != part.effect->is_compliant(q)) return false;
+    if (part.effect->nonlinear_force() != nullptr && p != q) return false;
+    if (part.is_compliant(p) != part.is_compliant(q)) return false;
     for (const auto* terms : {&part.terms.mass, &part.terms.stiffness}) {
       for (const MatrixTerm& term : *terms) {
         if (term.coefficient(p) != term.coefficient(q)) return false;
@@ -136,10 +129,10 @@ bool Model::same_answer(const Eigen::VectorXd& theta, const Eigen::VectorXd& oth
     }
   }
   for (const auto value :
-       {&Model::mass_factor, &Model::mass_damping, &Model::stiffness_damping, &Model::stiffness_inertia, &Model::delay}) {
+       {&Model::mass_factor, &Model::mass_damping, &Model::stiffness_damping, &Model::stiffness_inertia}) {
     if ((this->*value)(theta) != (this->*value)(other)) return false;
   }
-  return true;
+  return sensors_.delay(theta) == sensors_.delay(other);
 }
 
 Eigen::Vector3d Model::body_acceleration(const Eigen::VectorXd& theta) const {
@@ -153,12 +146,8 @@ Eigen::Vector3d Model::body_acceleration(const Eigen::VectorXd& theta) const {
 }
 
 double Model::finite_share(const Part& part, const Eigen::VectorXd& theta) const {
-  if (!part.effect->has_finite_form()) return 0.0;
+  if (part.effect->finite_strain() == nullptr) return 0.0;
   return finite_law_ ? 1.0 : std::min(1.0, sum_of(parts_, theta, &LinearTerms::finite_share));
-}
-
-double Model::load_value(const LoadTerm& term, const Eigen::VectorXd& p, double load_factor, double time) const {
-  return (term.course ? load_factor : 1.0) * term.value(time, time - first_stamp_, p);
 }
 
 Model::Point Model::point(const Eigen::VectorXd& theta) const {
@@ -181,7 +170,7 @@ void Model::add_loads(const Point& at, double time, Eigen::VectorXd& force) cons
     for (std::size_t k = 0; k < terms.size(); ++k) {
       const LoadTerm& term = terms[k];
       const double value = (1.0 - own.finite_share) * term.coefficient(own.parameters) *
-                           load_value(term, own.parameters, at.load_factor, time);
+                           loads_.value(term, own.parameters, at.load_factor, time);
       if (value != 0.0) force += value * (term.shaped ? own.shaped[k] : term.pattern);
     }
   }
@@ -189,18 +178,19 @@ void Model::add_loads(const Point& at, double time, Eigen::VectorXd& force) cons
 
 void Model::add_nonlinear_force(const Point& at, Motion motion, Eigen::VectorXd& force) const {
   motion.load_factor = at.load_factor;
-  motion.since = motion.time - first_stamp_;
+  motion.since = motion.time - loads_.first_stamp();
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const Effect& effect = *parts_[i].effect;
     const Eigen::VectorXd& p = at.parts[i].parameters;
     motion.finite_share = at.parts[i].finite_share;
-    if (effect.nonlinear()) effect.add_force(motion, p, force);
+    if (const NonlinearForce* own = effect.nonlinear_force()) own->add_force(motion, p, force);
+    const FiniteStrainForm* form = effect.finite_strain();
     if (motion.finite_share == 1.0) {
-      effect.add_finite_force(motion, p, force);
+      form->add_finite_force(motion, p, force);
     } else if (motion.finite_share > 0.0) {
       VectorPool::Loan finite(scratch_, force.size());
       finite->setZero();
-      effect.add_finite_force(motion, p, *finite);
+      form->add_finite_force(motion, p, *finite);
       force += motion.finite_share * *finite;
     }
   }
@@ -208,17 +198,18 @@ void Model::add_nonlinear_force(const Point& at, Motion motion, Eigen::VectorXd&
 
 void Model::add_nonlinear_stiffness(const Point& at, Motion motion, SparseMatrix& stiffness) const {
   motion.load_factor = at.load_factor;
-  motion.since = motion.time - first_stamp_;
+  motion.since = motion.time - loads_.first_stamp();
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const Effect& effect = *parts_[i].effect;
     const Eigen::VectorXd& p = at.parts[i].parameters;
     motion.finite_share = at.parts[i].finite_share;
-    if (effect.nonlinear()) effect.add_stiffness(motion, p, stiffness);
+    if (const NonlinearForce* own = effect.nonlinear_force()) own->add_stiffness(motion, p, stiffness);
+    const FiniteStrainForm* form = effect.finite_strain();
     if (motion.finite_share == 1.0) {
-      effect.add_finite_stiffness(motion, p, stiffness);
+      form->add_finite_stiffness(motion, p, stiffness);
     } else if (motion.finite_share > 0.0) {
       SparseMatrix finite = fem().pattern();
-      effect.add_finite_stiffness(motion, p, finite);
+      form->add_finite_stiffness(motion, p, finite);
       stiffness += motion.finite_share * finite;
     }
   }
@@ -226,7 +217,8 @@ void Model::add_nonlinear_stiffness(const Point& at, Motion motion, SparseMatrix
 
 bool Model::has_velocity_tangent(const Point& at) const {
   for (std::size_t i = 0; i < parts_.size(); ++i) {
-    if (parts_[i].effect->has_velocity_tangent(at.parts[i].parameters)) return true;
+    const NonlinearForce* force = parts_[i].effect->nonlinear_force();
+    if (force != nullptr && force->has_velocity_tangent(at.parts[i].parameters)) return true;
   }
   return false;
 }
@@ -234,7 +226,8 @@ bool Model::has_velocity_tangent(const Point& at) const {
 void Model::add_velocity_tangent(const Point& at, const Motion& motion, SparseMatrix& damping) const {
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const Eigen::VectorXd& p = at.parts[i].parameters;
-    if (parts_[i].effect->has_velocity_tangent(p)) parts_[i].effect->add_velocity_tangent(motion, p, damping);
+    const NonlinearForce* force = parts_[i].effect->nonlinear_force();
+    if (force != nullptr && force->has_velocity_tangent(p)) force->add_velocity_tangent(motion, p, damping);
   }
 }
 
@@ -245,27 +238,6 @@ double Model::stored_energy(const Point& at, Motion motion) const {
     sum += parts_[i].effect->energy(motion, at.parts[i].parameters);
   }
   return sum;
-}
-
-bool Model::observes() const {
-  return std::any_of(parts_.begin(), parts_.end(), [](const Part& part) { return part.effect->observes(); });
-}
-
-double Model::delay(const Eigen::VectorXd& theta) const {
-  double sum = 0.0;
-  for (const Part& part : parts_) {
-    if (part.effect->observes()) sum += part.effect->delay(part.parameters(theta));
-  }
-  return sum;
-}
-
-ObservedMotion Model::observe(const Eigen::VectorXd& theta, double since,
-                              const Eigen::Ref<const Eigen::VectorXd>& displacement) const {
-  ObservedMotion motion{mesh(), since, displacement};
-  for (const Part& part : parts_) {
-    if (part.effect->observes()) part.effect->observe(part.parameters(theta), motion);
-  }
-  return motion;
 }
 
 }  // namespace tissue_stiffness

@@ -257,7 +257,7 @@ class Builder {
     std::vector<Eigen::MatrixXd> blocks;
     int parts = 0;
     for (std::size_t p = 0; p < model_.parts().size(); ++p) {
-      if (!model_.parts()[p].effect->compliant_nodes().empty()) continue;
+      if (!model_.parts()[p].compliant_nodes().empty()) continue;
       const std::size_t before = blocks.size();
       for (Eigen::MatrixXd block :
            {inactive_loads(model_, prior_, mass_, p), inactive_forces(model_, prior_, p, motion, rows),
@@ -325,12 +325,12 @@ class Builder {
   // Adds responses with the nodes on springs for each support that may be compliant. Responses to the springs cover other
   // compliances.
   void add_supports(const OrthonormalBasis& held, const Eigen::MatrixXd& acting, ReducedBasis& result) const {
-    const Eigen::VectorXd prior = model_.theta(model_.prior_mean());
+    const Eigen::VectorXd prior = model_.parameters().theta(model_.parameters().prior_mean());
     for (std::size_t p = 0; p < model_.parts().size(); ++p) {
       const auto& part = model_.parts()[p];
-      if (part.effect->compliant_nodes().empty() || !model_.estimated(part, {0})) continue;
+      if (part.compliant_nodes().empty() || !model_.estimated(part, {0})) continue;
       Eigen::VectorXd theta = prior_.theta;
-      const Eigen::VectorXd& soft = part.effect->is_compliant(part.parameters(prior)) ? prior : prior_.generic;
+      const Eigen::VectorXd& soft = part.is_compliant(part.parameters(prior)) ? prior : prior_.generic;
       for (const int index : part.indices) theta[index] = soft[index];
       const StaticResponse respond(model_.reference_stiffness(theta), mass_, model_.fixed(theta), nullptr);
       const Eigen::Index before = held.size();

@@ -90,7 +90,7 @@ Eigen::MatrixXd project_matrix(const SparseMatrix& k, const Eigen::MatrixXd& bas
 }
 
 Eigen::VectorXd prior_parameters(const Model& model, const Model::Part& part) {
-  return part.parameters(model.theta(model.prior_mean()));
+  return part.parameters(model.parameters().theta(model.parameters().prior_mean()));
 }
 
 bool same_matrix(const Discretisation& fem, const StrainFactorField& a, const StrainFactorField& b) {
@@ -234,7 +234,7 @@ std::vector<int> ReducedModel::active(const Eigen::VectorXd& theta, bool half) c
     const int support = basis_.support[i];
     if (support >= 0) {
       const auto& part = model_.parts()[static_cast<std::size_t>(support)];
-      if (!part.effect->is_compliant(part.parameters(theta))) continue;
+      if (!part.is_compliant(part.parameters(theta))) continue;
     }
     columns.push_back(static_cast<int>(i));
   }
@@ -255,7 +255,7 @@ ReducedModel::Proportions ReducedModel::proportions(const Eigen::VectorXd& theta
       out.stiffnesses.push_back(c);
       for (const int i : term.shape) out.others.push_back(c == 0.0 ? 0.0 : p[i]);
     }
-    out.others.push_back(part.effect->is_compliant(p) ? 1.0 : 0.0);
+    out.others.push_back(part.is_compliant(p) ? 1.0 : 0.0);
   }
   out.mass = divide_by_first(out.masses);
   out.stiffness = divide_by_first(out.stiffnesses);

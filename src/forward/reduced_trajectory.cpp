@@ -51,7 +51,7 @@ void ReducedTrajectory::collect_loads(const Eigen::VectorXd& theta) {
 Eigen::VectorXd ReducedTrajectory::modal_force(double time) const {
   Eigen::VectorXd f = constant_force_;
   for (const Load& load : loads_) {
-    const double value = reduced_.model().load_value(*load.term, load.parameters, load_factor_, time);
+    const double value = reduced_.model().loads().value(*load.term, load.parameters, load_factor_, time);
     if (value != 0.0) f += value * load.modal;
   }
   return f;

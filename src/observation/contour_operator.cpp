@@ -20,8 +20,8 @@ class ContourOperator : public ObservationOperator {
     if (settings.region.empty()) {
       triangles_ = split_facets(mesh_);
     } else {
-      const auto region = model.regions().find(settings.region);
-      if (region == model.regions().end() || region->second.facets.empty()) {
+      const auto region = model.body().regions.find(settings.region);
+      if (region == model.body().regions.end() || region->second.facets.empty()) {
         throw InputError(model.settings().name + ": observations: contour: region", "'" + settings.region + "'",
                          "a region that holds boundary facets");
       }

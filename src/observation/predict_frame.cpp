@@ -13,18 +13,19 @@ constexpr double kProbe = 1e-4;  // of the body's size: displacement at which th
 }  // namespace
 
 bool sees_named_nodes(const Model& model, const Frame& frame) {
-  return !model.observes() && std::all_of(frame.observations.begin(), frame.observations.end(), [](const Observation& o) {
-    return o.kind == ObservationKind::vertices || o.kind == ObservationKind::markers;
-  });
+  return !model.sensors().any() &&
+         std::all_of(frame.observations.begin(), frame.observations.end(), [](const Observation& o) {
+           return o.kind == ObservationKind::vertices || o.kind == ObservationKind::markers;
+         });
 }
 
 Prediction predict_frame(const Model& model, const std::vector<std::unique_ptr<ObservationOperator>>& operators,
                          const Frame& frame, const Eigen::VectorXd& theta,
                          const Eigen::Ref<const Eigen::VectorXd>& displacement) {
-  const double since = frame.time - model.first_stamp() - model.settings().time.start;
-  const bool observes = model.observes();
+  const double since = frame.time - model.loads().first_stamp() - model.settings().time.start;
+  const bool observes = model.sensors().any();
   const ObservedMotion seen =
-      observes ? model.observe(theta, since, displacement) : ObservedMotion{model.mesh(), since, {}};
+      observes ? model.sensors().observe(theta, since, displacement) : ObservedMotion{model.mesh(), since, {}};
   using Field = Eigen::Ref<const Eigen::VectorXd>;
   const Field u = observes ? Field(seen.displacement) : displacement;
   std::vector<Prediction> parts;
@@ -72,7 +73,7 @@ Eigen::MatrixXd predict_along(const Model& model, const std::vector<std::unique_
 
 Prediction predict_at_rest(const Model& model, const std::vector<std::unique_ptr<ObservationOperator>>& operators,
                            const Frame& frame) {
-  return predict_frame(model, operators, frame, model.theta(model.prior_mean()), model.rest());
+  return predict_frame(model, operators, frame, model.parameters().theta(model.parameters().prior_mean()), model.rest());
 }
 
 }  // namespace tissue_stiffness

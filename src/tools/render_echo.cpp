@@ -18,9 +18,10 @@ class EchoRenderer : public Renderer {
  public:
   EchoRenderer(const Model& model, const ObservationSettings& observation, const ImageScene& scene, std::uint64_t seed)
       : scene_(scene), seed_(seed), tets_(refine_mesh(model.mesh()).tets.topRows(4)) {  // linear pieces between all nodes
-    const auto region = model.regions().find(observation.region);
-    const SurfaceTriangles surface =
-        region == model.regions().end() ? split_facets(model.mesh()) : split_facets(model.mesh(), region->second.facets);
+    const auto region = model.body().regions.find(observation.region);
+    const SurfaceTriangles surface = region == model.body().regions.end()
+                                         ? split_facets(model.mesh())
+                                         : split_facets(model.mesh(), region->second.facets);
     triangles_ = surface.nodes;
     draw_beams();
   }

@@ -177,19 +177,19 @@ class Sensor {
 };
 
 void require_known(const Scene& scene, const Model& model) {
-  if (model.free_parameters().empty()) return;
-  throw InputError(scene.model.name + ": " + model.free_parameters().front().name, "an estimated number",
+  if (model.parameters().free().empty()) return;
+  throw InputError(scene.model.name + ": " + model.parameters().free().front().name, "an estimated number",
                    "known numbers only: a scene is the truth");
 }
 
 /// The exact loads act, while the published ones may be noisy.
 void drive(const Scene& scene, Model& model) {
-  model.set_first_stamp(kFirstStamp.toSec());
+  model.loads().set_first_stamp(kFirstStamp.toSec());
   for (const LoadScene& load : scene.loads) {
     const auto count = static_cast<int>(std::ceil(scene.duration / scene.step)) + 1;
     for (int k = 0; k <= count; ++k) {
       const double time = k * scene.step;
-      model.courses().at(load.input.topic)->add(kFirstStamp.toSec() + time, load.value(time));
+      model.loads().courses().at(load.input.topic)->add(kFirstStamp.toSec() + time, load.value(time));
     }
   }
 }
@@ -224,7 +224,7 @@ SimulationSummary simulate_scene(const Scene& scene, const std::string& recordin
   for (const auto& sensor : sensors) sensor->start(writer);
   publish_loads(scene, writer);
   const FullModel forward(model, options);
-  const Eigen::VectorXd theta = model.theta(Eigen::VectorXd(0));
+  const Eigen::VectorXd theta = model.parameters().theta(Eigen::VectorXd(0));
   const double start = kFirstStamp.toSec() + scene.model.time.start;
   const auto trajectory = forward.start(theta, start);
   SimulationSummary summary;
@@ -233,9 +233,9 @@ SimulationSummary simulate_scene(const Scene& scene, const std::string& recordin
   double square = 0.0;
   for (int k = 0; k < total; ++k) {
     const ros::Time stamp = kFirstStamp + ros::Duration(k / scene.rate);
-    trajectory->advance(stamp.toSec() - model.delay(theta));
+    trajectory->advance(stamp.toSec() - model.sensors().delay(theta));
     const Eigen::VectorXd u = trajectory->displacement();
-    const ObservedMotion seen = model.observe(theta, stamp.toSec() - start, u);
+    const ObservedMotion seen = model.sensors().observe(theta, stamp.toSec() - start, u);
     for (const auto& sensor : sensors) sensor->record(seen, k, stamp, writer);
     square += u.squaredNorm() / summary.nodes;
     const Eigen::Map<const Eigen::Matrix3Xd> moved(u.data(), 3, u.size() / 3);

@@ -45,9 +45,9 @@ class CheckRecording : public ::testing::Test {
   /// Frames of the true bar, of vertices with noise.
   void record() {
     Model truth(pushed_bar(std::to_string(kTruth)), mesh_);
-    truth.drive(0.0, recorded_.loads);
+    truth.loads().drive(0.0, recorded_.loads);
     const auto forward = make_forward_model(truth);
-    const auto run = forward->start(truth.theta(truth.prior_mean()), 0.0);
+    const auto run = forward->start(truth.parameters().theta(truth.parameters().prior_mean()), 0.0);
     std::mt19937 random(7);
     std::normal_distribution<double> noise(0.0, kNoise);
     for (int k = 0; k < kFrames; ++k) {

@@ -30,7 +30,7 @@ TEST(BeliefMap, ShowsWhereAndWhenAModelFails) {
   FittedModel model;
   model.recording_fit = std::make_unique<RecordingFit>(settings, bar_mesh(), recording);
   const Model& body = model.recording_fit->model();
-  model.fit = model.recording_fit->fit(body.prior_mean(), 0.1 * body.prior_std());
+  model.fit = model.recording_fit->fit(body.parameters().prior_mean(), 0.1 * body.parameters().prior_std());
   model.rows = model.recording_fit->rows(model.fit.w);
   const ModelComparison comparison(model, Eigen::VectorXd::Zero(model.rows.error.size()));
 

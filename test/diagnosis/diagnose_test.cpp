@@ -70,8 +70,8 @@ TEST(Diagnose, StartsTheGivenModelWhereARefitEnds) {
   FittedModel base;
   base.recording_fit =
       std::make_unique<RecordingFit>(box_settings(bar("{prior: 35.0e3, factor: 3}")), bar_mesh(), recording);
-  base.fit =
-      base.recording_fit->fit(base.recording_fit->model().prior_mean(), 0.1 * base.recording_fit->model().prior_std());
+  base.fit = base.recording_fit->fit(base.recording_fit->model().parameters().prior_mean(),
+                                     0.1 * base.recording_fit->model().parameters().prior_std());
   base.rows = base.recording_fit->rows(base.fit.w);
   EXPECT_FALSE(diagnose_once(base, {}, {}).base_moved);
   base.fit.w[0] = std::log(1.25 * kTruth);
@@ -139,7 +139,8 @@ Recording simulate(const std::vector<std::string>& hidden, double step, unsigned
   FullModel::Options options;
   options.step = step;
   options.spectral_radius = 1.0;
-  const auto run = FullModel(truth.model(), options).start(truth.model().theta(truth.model().prior_mean()), 0.0);
+  const auto run = FullModel(truth.model(), options)
+                       .start(truth.model().parameters().theta(truth.model().parameters().prior_mean()), 0.0);
   std::vector<Experiment::Moment> moments;
   for (int k = 0; k < 60; ++k) {
     run->advance(0.02 * k);
@@ -225,7 +226,7 @@ TEST(Diagnose, ProposesWhatItAddedAsTheLastFitHasIt) {
   const Model next(extend_model(box_settings(bar("{prior: 35.0e3, factor: 3}")), d.entries), bar_mesh());
   for (const auto& [name, value] : d.steps[2].parameters) {
     if (name == "elasticity.young_modulus") continue;
-    EXPECT_NEAR(next.values(next.prior_mean()).at(name), value, 1e-4 * std::abs(value)) << name;
+    EXPECT_NEAR(next.parameters().values(next.parameters().prior_mean()).at(name), value, 1e-4 * std::abs(value)) << name;
   }
 }
 
@@ -306,7 +307,7 @@ TEST(Diagnose, FindsOutWhatAFinerMeshChanges) {
   FittedModel base;
   base.recording_fit = std::make_unique<RecordingFit>(settings, coarse, recording);
   const Model& model = base.recording_fit->model();
-  base.fit = base.recording_fit->fit(model.prior_mean(), 0.1 * model.prior_std());
+  base.fit = base.recording_fit->fit(model.parameters().prior_mean(), 0.1 * model.parameters().prior_std());
   base.rows = base.recording_fit->rows(base.fit.w);
   const FinerMesh alone = finer_mesh(base);
   EXPECT_GT(alone.change.dot(base.rows.error), 0.9 * alone.change.norm() * base.rows.error.norm());

@@ -25,7 +25,7 @@ MissingForce lacking(const std::vector<std::string>& hidden) {
   Recording recording;
   recording.frames = see_all(experiment, experiment.film(0.0, 0.02, 60), kNoise, 1);
   const RecordingFit recording_fit(box_settings(bar()), bar_mesh(), recording);
-  return missing_force(recording_fit, recording_fit.model().prior_mean());
+  return missing_force(recording_fit, recording_fit.model().parameters().prior_mean());
 }
 
 TEST(MissingForce, IsNoneWhereNothingIsMissing) {

@@ -29,7 +29,7 @@ class CleanBar : public ::testing::Test {
     recording_.frames = see_all(experiment, experiment.film(0.0, 0.02, 20), kNoise, 1);
     base_.recording_fit = std::make_unique<RecordingFit>(settings, bar_mesh(), recording_);
     const Model& model = base_.recording_fit->model();
-    base_.fit = base_.recording_fit->fit(model.prior_mean(), 0.1 * model.prior_std());
+    base_.fit = base_.recording_fit->fit(model.parameters().prior_mean(), 0.1 * model.parameters().prior_std());
     base_.rows = base_.recording_fit->rows(base_.fit.w);
   }
 

@@ -30,7 +30,7 @@ class BarWithADamping : public ::testing::Test {
     recording_.frames = see_all(experiment, experiment.film(0.0, 0.02, 40), kNoise, 1);
     base_.recording_fit = std::make_unique<RecordingFit>(given_, bar_mesh(), recording_);
     const Model& model = base_.recording_fit->model();
-    base_.fit = base_.recording_fit->fit(model.prior_mean(), 0.1 * model.prior_std());
+    base_.fit = base_.recording_fit->fit(model.parameters().prior_mean(), 0.1 * model.parameters().prior_std());
     base_.rows = base_.recording_fit->rows(base_.fit.w);
   }
 
@@ -56,7 +56,7 @@ TEST_F(BarWithADamping, ReadsTangentsInTheVectorsOfAnEarlierScreening) {
   FittedModel next;
   next.recording_fit = std::make_unique<RecordingFit>(damped, *base_.recording_fit);
   const Model& model = next.recording_fit->model();
-  next.fit = next.recording_fit->fit(model.prior_mean(), 0.1 * model.prior_std());
+  next.fit = next.recording_fit->fit(model.parameters().prior_mean(), 0.1 * model.parameters().prior_std());
   next.rows = next.recording_fit->rows(next.fit.w);
   const Screening alone(next, {}), after(next, {}, {first.finer.recording_fit, nullptr, first.library, true});
   ASSERT_EQ(alone.candidates.size(), after.candidates.size());

@@ -22,7 +22,7 @@ Eigen::VectorXd zero(const Model& model) {
   return Eigen::VectorXd::Zero(model.fem().dof_count());
 }
 Eigen::VectorXd prior(const Model& model) {
-  return model.theta(model.prior_mean());
+  return model.parameters().theta(model.parameters().prior_mean());
 }
 
 Eigen::Vector3d resultant(const Eigen::VectorXd& force) {
@@ -41,8 +41,8 @@ Eigen::Vector3d moment(const TetMesh& mesh, const Eigen::VectorXd& u, const Eige
 Eigen::VectorXd load(Model& model, double time, const Eigen::VectorXd& u) {
   Eigen::VectorXd elastic = zero(model);
   for (const Model::Part& part : model.parts()) {
-    if (part.label != "elasticity" || !part.effect->always_finite()) continue;
-    part.effect->add_finite_force({time, u, zero(model)}, part.parameters(prior(model)), elastic);
+    if (part.label != "elasticity" || !part.effect->finite_strain()->always_finite()) continue;
+    part.effect->finite_strain()->add_finite_force({time, u, zero(model)}, part.parameters(prior(model)), elastic);
   }
   const ModelSystem system(model, prior(model));
   return system.force(time, u, zero(model)) - elastic + model.stiffness(prior(model)) * u;
@@ -120,8 +120,8 @@ TEST(Foundation, HoldsTheSideThatFacesADirection) {
 TEST(Pressure, OnAPatchIsPressureTimesArea) {
   const TetMesh mesh = bar_mesh();
   Model model(box_settings({kInertia, kLinear, "pressure: {region: top, topic: /p, scale: 0.5}"}), mesh);
-  model.courses().at("/p")->add(0.0, one(0.0));
-  model.courses().at("/p")->add(1.0, one(800.0));
+  model.loads().courses().at("/p")->add(0.0, one(0.0));
+  model.loads().courses().at("/p")->add(1.0, one(800.0));
   const Eigen::VectorXd force = load(model, 0.25, zero(model));
   const Eigen::Vector3d expected(0.0, 0.0, -0.5 * 200.0 * 0.10 * 0.02);
   EXPECT_LT((resultant(force) - expected).norm(), 1e-13 * expected.norm());
@@ -132,7 +132,7 @@ TEST(Pressure, OnAPatchIsPressureTimesArea) {
 TEST(Pressure, FollowsTheSurfaceWhenTheStrainIsFinite) {
   const TetMesh mesh = bar_mesh();
   Model model(box_settings({kInertia, kFinite, "pressure: {region: top, topic: /p}"}), mesh);
-  model.courses().at("/p")->add(0.0, one(300.0));
+  model.loads().courses().at("/p")->add(0.0, one(300.0));
   // Turned about y and stretched along the bar: the area is larger, the normal another one.
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.8, Eigen::Vector3d::UnitY()).toRotationMatrix();
   const Eigen::Matrix3d deformation = turn * Eigen::Vector3d(1.5, 0.9, 0.8).asDiagonal();
@@ -147,7 +147,7 @@ TEST(PressureOffset, IsAPressureThatStays) {
   const TetMesh mesh = bar_mesh();
   for (const std::string& law : {kLinear, kFinite}) {
     Model measured(box_settings({kInertia, law, "pressure: {region: top, topic: /p}"}), mesh);
-    measured.courses().at("/p")->add(0.0, one(300.0));
+    measured.loads().courses().at("/p")->add(0.0, one(300.0));
     Model offset(box_settings({kInertia, law, "pressure_offset: {region: top, pressure: 300}"}), mesh);
     const Eigen::VectorXd u = 0.003 * Eigen::VectorXd::LinSpaced(zero(measured).size(), 0.0, 30.0).array().sin();
     const Eigen::VectorXd expected = load(measured, 0.5, u);
@@ -160,12 +160,12 @@ TEST(PressureOffset, IsAPressureThatStays) {
 TEST(Pressure, TangentOnAPatchIsTheSymmetricPart) {
   const TetMesh mesh = bar_mesh(2);
   Model model(box_settings({kInertia, kFinite, "pressure: {region: top, topic: /p}"}), mesh);
-  model.courses().at("/p")->add(0.0, one(300.0));
+  model.loads().courses().at("/p")->add(0.0, one(300.0));
   const Model::Part& part = model.parts().back();
   const Eigen::VectorXd u = 0.01 * Eigen::VectorXd::LinSpaced(zero(model).size(), 0.0, 30.0).array().sin();
   const auto force = [&](const Eigen::VectorXd& at) {
     Eigen::VectorXd f = zero(model);
-    part.effect->add_finite_force({0.0, at, zero(model)}, part.parameters(prior(model)), f);
+    part.effect->finite_strain()->add_finite_force({0.0, at, zero(model)}, part.parameters(prior(model)), f);
     return f;
   };
   Eigen::MatrixXd d(u.size(), u.size());
@@ -174,7 +174,7 @@ TEST(Pressure, TangentOnAPatchIsTheSymmetricPart) {
     d.col(j) = -(force(u + h) - force(u - h)) / 2e-6;
   }
   SparseMatrix tangent = model.fem().pattern();
-  part.effect->add_finite_stiffness({0.0, u, zero(model)}, part.parameters(prior(model)), tangent);
+  part.effect->finite_strain()->add_finite_stiffness({0.0, u, zero(model)}, part.parameters(prior(model)), tangent);
   const Eigen::MatrixXd symmetric = 0.5 * (d + d.transpose());
   EXPECT_LT((Eigen::MatrixXd(tangent) - symmetric).norm(), 1e-8 * symmetric.norm());
   EXPECT_GT((d - symmetric).norm(), 1e-3 * symmetric.norm());
@@ -202,7 +202,7 @@ TEST(Pressure, InAClosedCavityHasNoResultant) {
     ModelSettings settings = box_settings({kInertia, law, "pressure: {region: cavity, topic: /p}"});
     settings.regions = {{"cavity", BoxShape{Eigen::Vector3d::Constant(0.009), Eigen::Vector3d::Constant(0.021)}}};
     Model model(settings, mesh);
-    model.courses().at("/p")->add(0.0, one(500.0));
+    model.loads().courses().at("/p")->add(0.0, one(500.0));
     const Eigen::VectorXd u = 3e-4 * Eigen::VectorXd::LinSpaced(zero(model).size(), 0.0, 90.0).array().sin();
     const Eigen::VectorXd at = law == kFinite ? u : zero(model);
     const Eigen::VectorXd force = load(model, 0.0, at);
@@ -220,7 +220,7 @@ TEST(Traction, ResultantIsTheMeasuredForce) {
   Model model(box_settings({kInertia, kLinear, "traction: {region: tip, topic: /w, scale: 2}"}), mesh);
   Eigen::VectorXd wrench(6);
   wrench << 0.3, -0.2, 0.5, 9.0, 9.0, 9.0;
-  model.courses().at("/w")->add(0.0, wrench);
+  model.loads().courses().at("/w")->add(0.0, wrench);
   const Eigen::VectorXd force = load(model, 0.0, zero(model));
   const Eigen::Vector3d expected = 2.0 * wrench.head<3>();
   EXPECT_LT((resultant(force) - expected).norm(), 1e-13);

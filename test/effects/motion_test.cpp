@@ -15,7 +15,7 @@ const std::string kLinear = "elasticity: {law: linear, young_modulus: 3.0e4, poi
 const std::string kFinite = "elasticity: {law: neo_hookean, young_modulus: 3.0e4, poisson_ratio: 0.4}";
 
 Eigen::VectorXd prior(const Model& model) {
-  return model.theta(model.prior_mean());
+  return model.parameters().theta(model.parameters().prior_mean());
 }
 
 struct Mode {
@@ -168,7 +168,7 @@ TEST_F(Fall, TheGapMovesThePlaneAlongItsNormal) {
   const auto push = [&](const Eigen::VectorXd& u) {
     Eigen::VectorXd f = rest;
     const Model::Part& part = model_->parts().back();
-    part.effect->add_force({0.0, u, rest}, part.parameters(prior(*model_)), f);
+    part.effect->nonlinear_force()->add_force({0.0, u, rest}, part.parameters(prior(*model_)), f);
     return f.sum();
   };
   EXPECT_EQ(push(rest), 0.0);  // 1 mm above
@@ -181,7 +181,7 @@ TEST_F(Fall, TheGivenStiffnessIsForcePerVolumeOfPenetration) {
   const Eigen::VectorXd rest = u;
   for (Eigen::Index i = 2; i < u.size(); i += 3) u[i] = -0.0005;
   const Model::Part& part = model_->parts().back();
-  part.effect->add_force({0.0, u, rest}, part.parameters(prior(*model_)), f);
+  part.effect->nonlinear_force()->add_force({0.0, u, rest}, part.parameters(prior(*model_)), f);
   // The underside sinks in by 0.5 mm; the sides' lowest points lean on the plane too, by at most as much again.
   const double underside = 2.0e6 * 0.0005 * 0.02 * 0.02;
   EXPECT_GE(f.sum(), underside * (1.0 - 1e-12));

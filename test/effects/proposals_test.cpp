@@ -20,7 +20,7 @@ const std::string kObservations =
     "[{vertices: {topic: /vertices, noise: 1.0e-4}}, {points: {topic: /points, noise: 1.0e-4}}]";
 
 std::vector<Proposal> proposals_of(const EffectSpec& spec, const Model& model) {
-  const ProposalContext context{model.settings(), model.mesh(), model.regions(), 3e4, 0.4, 1000.0, 0.02, 2.0};
+  const ProposalContext context{model.settings(), model.mesh(), model.body().regions, 3e4, 0.4, 1000.0, 0.02, 2.0};
   return spec.proposals ? spec.proposals(context) : std::vector<Proposal>{};
 }
 
@@ -31,16 +31,16 @@ struct Swing {
 
 Swing swing(const std::vector<std::string>& effects, const TetMesh& mesh) {
   Model model(box_settings(effects, kObservations), mesh);
-  for (auto& course : model.courses()) {
+  for (auto& course : model.loads().courses()) {
     if (!course.second->from_file()) course.second->add(0.0, Eigen::VectorXd::LinSpaced(6, 0.01, 0.02));
   }
-  const Eigen::VectorXd theta = model.theta(model.prior_mean());
+  const Eigen::VectorXd theta = model.parameters().theta(model.parameters().prior_mean());
   FullModel::Options options;
   options.step = 0.005;
   const auto run = FullModel(model, options).start(theta, 0.0);
   run->advance(0.02);
-  const ObservedMotion seen = model.observe(theta, 0.02, run->displacement());
-  return {seen.displacement, model.delay(theta), seen.outward};
+  const ObservedMotion seen = model.sensors().observe(theta, 0.02, run->displacement());
+  return {seen.displacement, model.sensors().delay(theta), seen.outward};
 }
 
 std::vector<std::string> with(const std::string& effect) {
@@ -76,10 +76,10 @@ TEST(Proposals, EstimateTheirAmplitudeAndNothingElse) {
       const auto parameter = std::find_if(spec.parameters.begin(), spec.parameters.end(),
                                           [&](const ParameterSpec& p) { return p.name == proposal.amplitude; });
       ASSERT_NE(parameter, spec.parameters.end()) << to_yaml(proposal.entry);
-      ASSERT_EQ(model.free_parameters().size(), 1U + static_cast<std::size_t>(parameter->components))
+      ASSERT_EQ(model.parameters().free().size(), 1U + static_cast<std::size_t>(parameter->components))
           << to_yaml(proposal.entry);
-      for (std::size_t i = 1; i < model.free_parameters().size(); ++i) {
-        const FreeParameter& free = model.free_parameters()[i];
+      for (std::size_t i = 1; i < model.parameters().free().size(); ++i) {
+        const FreeParameter& free = model.parameters().free()[i];
         EXPECT_EQ(free.name.find(spec.name + "." + proposal.amplitude), 0U) << free.name;
         EXPECT_EQ(free.prior.value, parameter->absent) << to_yaml(proposal.entry);
         EXPECT_GT(free.prior.spread, 0.0);
@@ -97,7 +97,7 @@ TEST(Proposals, StartARefitThatMovesTheModel) {
     for (const Proposal& proposal : proposals_of(spec, base)) {
       EXPECT_EQ(++seen[to_yaml(proposal.entry)], 1) << to_yaml(proposal.entry) << " twice";
       const Model model(box_settings(with(proposal.refine), kObservations), mesh);
-      EXPECT_TRUE(model.free_parameters().size() >= 2U || model.nonlinear()) << to_yaml(proposal.refine);
+      EXPECT_TRUE(model.parameters().free().size() >= 2U || model.nonlinear()) << to_yaml(proposal.refine);
       EXPECT_EQ(proposal.entry.effect, spec.name);
       EXPECT_EQ(proposal.refine.effect, spec.name);
     }

@@ -32,13 +32,14 @@ class BasisErrorOfABar : public testing::Test {
   }
 
   BasisError reported(const ReducedModel& model) const {
-    return basis_error(model, {model_, model, operators_, frames_, 0.0}, model_.prior_mean(), surface_nodes(mesh_));
+    return basis_error(model, {model_, model, operators_, frames_, 0.0}, model_.parameters().prior_mean(),
+                       surface_nodes(mesh_));
   }
 
   // Compares with a basis so large that nothing is missing from it.
   double real(const ReducedModel& model) const {
     const ReducedModel full = reduced(200);
-    const Eigen::VectorXd theta = model_.theta(model_.prior_mean());
+    const Eigen::VectorXd theta = model_.parameters().theta(model_.parameters().prior_mean());
     const auto a = model.start(theta, 0.0), b = full.start(theta, 0.0);
     double worst = 0.0;
     for (const Frame& frame : frames_) {
@@ -68,7 +69,8 @@ TEST_F(BasisErrorOfABar, BoundsTheRealErrorWithinAFactorOfTwenty) {
 
 TEST_F(BasisErrorOfABar, TellsWhatItDoesToTheModulus) {
   const auto fitted = [&](const ReducedModel& model) {
-    return fit_batch({model_, model, operators_, frames_, 0.0}, model_.prior_mean(), 0.05 * model_.prior_std());
+    return fit_batch({model_, model, operators_, frames_, 0.0}, model_.parameters().prior_mean(),
+                     0.05 * model_.parameters().prior_std());
   };
   const double best = fitted(reduced(200)).w[0];
   for (const int size : {4, 6, 10}) {
@@ -76,7 +78,8 @@ TEST_F(BasisErrorOfABar, TellsWhatItDoesToTheModulus) {
     const BatchFit fit = fitted(model);
     const Eigen::VectorXd spread = 2.0 * fit.covariance.diagonal().cwiseSqrt();
     const double told =
-        basis_shift(model, {model_, model, operators_, frames_, 0.0}, fit.w, spread, model_.prior_std()).cwiseAbs()[0];
+        basis_shift(model, {model_, model, operators_, frames_, 0.0}, fit.w, spread, model_.parameters().prior_std())
+            .cwiseAbs()[0];
     const double truth = std::abs(fit.w[0] - best);
     EXPECT_GE(2.0 * told, truth) << size << " vectors";
     EXPECT_LE(told, 60.0 * truth + 2.0 * std::sqrt(fit.covariance(0, 0))) << size << " vectors";
@@ -88,7 +91,7 @@ TEST_F(BasisErrorOfABar, AgreesWithTheFullModel) {
   fine.step = 2e-4;
   fine.spectral_radius = 1.0;
   const ReducedModel model = reduced(24);
-  const Eigen::VectorXd theta = model_.theta(model_.prior_mean());
+  const Eigen::VectorXd theta = model_.parameters().theta(model_.parameters().prior_mean());
   const auto a = model.start(theta, 0.0), b = FullModel(model_, fine).start(theta, 0.0);
   double worst = 0.0, motion = 0.0;
   for (int k = 1; k <= 10; ++k) {

@@ -22,7 +22,9 @@ ModelSettings drifting(const std::string& drift, double start = 45e3) {
 std::vector<Frame> film(const std::function<double(double)>& course, int steps, unsigned seed, int frames = kFrames) {
   const Experiment bar(drifting(""), bar_mesh(), {course(0.0)});
   const ReducedModel runs(bar.model());
-  const auto theta = [&](double time) { return bar.model().theta(Eigen::VectorXd::Constant(1, std::log(course(time)))); };
+  const auto theta = [&](double time) {
+    return bar.model().parameters().theta(Eigen::VectorXd::Constant(1, std::log(course(time))));
+  };
   std::unique_ptr<Trajectory> run = runs.start(theta(0.0), 0.0);
   std::vector<Experiment::Moment> moments;
   for (int k = 0; k < steps * frames; ++k) {

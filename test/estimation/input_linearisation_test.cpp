@@ -37,21 +37,21 @@ struct Setting {
   Setting() {
     Experiment bar(settings, mesh, {kTruth});
     model = std::make_unique<Model>(settings, mesh);
-    model->set_first_stamp(0.0);
+    model->loads().set_first_stamp(0.0);
     for (int k = 0; k < 260; ++k) {
       bar.add_load(wrench(0.005 * k));
-      model->courses().at("/wrench")->add(0.005 * k, wrench(0.005 * k).value);
+      model->loads().courses().at("/wrench")->add(0.005 * k, wrench(0.005 * k).value);
     }
     const std::vector<Frame> frames = see_all(bar, bar.film(0.0, kFilmed, kFrames), kNoise, 7);
     models = std::make_unique<InputModels>(*model);
-    const Eigen::VectorXd std = model->prior_std();
-    question = std::make_unique<MeshError::Question>(*model, frames, model->prior_mean(), 1e-3 * std, std);
+    const Eigen::VectorXd std = model->parameters().prior_std();
+    question = std::make_unique<MeshError::Question>(*model, frames, model->parameters().prior_mean(), 1e-3 * std, std);
     for (std::size_t k = 0; k < frames.size(); ++k) {
       question->mesh_changes.push_back(1e-4 * Eigen::VectorXd::LinSpaced(3 * mesh.node_count(), -1.0, 1.0));
     }
-    models->base.set_first_stamp(0.0);
-    models->uncertain.set_first_stamp(0.0);
-    for (const auto& [topic, course] : question->courses) *models->uncertain.courses().at(topic) = course;
+    models->base.loads().set_first_stamp(0.0);
+    models->uncertain.loads().set_first_stamp(0.0);
+    for (const auto& [topic, course] : question->courses) *models->uncertain.loads().courses().at(topic) = course;
     models->runs->restrict_output_to(observed_nodes(models->operators, frames));
   }
 };
@@ -84,7 +84,7 @@ TEST(InputLinearisation, ColumnsAreTheDerivativesOfTheRows) {
   Setting setting;
   InputLinearisation linearisation(*setting.question, *setting.models);
   Eigen::VectorXd z = Eigen::VectorXd::Zero(linearisation.size());
-  z[0] = setting.model->prior_mean()[0];
+  z[0] = setting.model->parameters().prior_mean()[0];
   const Rows there = rows_at(linearisation, z);
   for (Eigen::Index i = 0; i < z.size(); ++i) {
     const double step = i == 0 ? 1e-3 : 0.05;

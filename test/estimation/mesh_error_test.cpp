@@ -46,8 +46,9 @@ TEST(MeshError, OfACoarseMeshIsCorrectedAndInTheInterval) {
 
 TEST(MeshError, ChangesAreLeastAtTheShift) {
   const Model model(settings(true), coarse());
-  const Eigen::VectorXd w = model.prior_mean(), none = Eigen::VectorXd::Zero(w.size());
-  const MeshError::Question question(model, recording(20), w, 0.01 * model.prior_std(), model.prior_std());
+  const Eigen::VectorXd w = model.parameters().prior_mean(), none = Eigen::VectorXd::Zero(w.size());
+  const MeshError::Question question(model, recording(20), w, 0.01 * model.parameters().prior_std(),
+                                     model.parameters().prior_std());
   MeshError study(model);
   const Eigen::VectorXd shift = study.study(question).shift;
   const auto size = [&](const Eigen::VectorXd& at) {
@@ -96,7 +97,7 @@ TEST(MeshError, IsTheSameBesideRelatives) {
   const std::vector<Frame> frames = recording(40);
   const Model own(settings(false), coarse());
   const TetMesh refined = refined_mesh(own.mesh(), model.mesh);
-  const Model fine(settings(false), refined, refine_regions(own.regions(), own.mesh(), refined));
+  const Model fine(settings(false), refined, refine_regions(own.body().regions, own.mesh(), refined));
   BasisOptions keeping, beside = basis_beside(own.mesh(), refined);
   keeping.keep_root = beside.keep_root = true;
   const ReducedModel own_runs(own, keeping), fine_runs(fine, beside);

@@ -110,8 +110,8 @@ TEST(PatchModel, IsTheSameModelWhileThePatchesAgree) {
   const Division quarters = divide_patches(mesh, {mapped_tets(whole)}, 4);
   const PatchModel patched = with_patches(whole, quarters.patches, Eigen::VectorXd::Constant(4, std::log(30e3)));
   const Model parts(patched.settings, mesh, patched.regions);
-  const SparseMatrix k = whole.stiffness(whole.theta(whole.prior_mean()));
-  EXPECT_LT((k - parts.stiffness(parts.theta(parts.prior_mean()))).norm(), 1e-12 * k.norm());
+  const SparseMatrix k = whole.stiffness(whole.parameters().theta(whole.parameters().prior_mean()));
+  EXPECT_LT((k - parts.stiffness(parts.parameters().theta(parts.parameters().prior_mean()))).norm(), 1e-12 * k.norm());
 }
 
 }  // namespace

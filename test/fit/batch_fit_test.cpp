@@ -40,10 +40,10 @@ ModelSettings model_of(const Ball& ball) {
 
 // Scans the modulus first, as the diagnosis does before it fits.
 Eigen::VectorXd with_best_modulus(const FitProblem& problem) {
-  Eigen::VectorXd best = problem.model.prior_mean();
+  Eigen::VectorXd best = problem.model.parameters().prior_mean();
   double lowest = std::numeric_limits<double>::infinity();
   for (double off = -0.4; off < 0.4; off += 0.01) {
-    Eigen::VectorXd w = problem.model.prior_mean();
+    Eigen::VectorXd w = problem.model.parameters().prior_mean();
     w[0] = std::log(kModulus) + off;
     const double cost = free_fit(problem, w).cost;
     if (cost < lowest) lowest = cost, best = w;
@@ -73,7 +73,7 @@ TEST(BatchFit, FollowsValleysOfParametersThatMakeUpForOneAnother) {
     const auto operators = make_observation_operators(model);
     const FitProblem problem{model, runs, operators, frames, 0.0};
     const Eigen::VectorXd start = with_best_modulus(problem);
-    const BatchFit fit = fit_batch(problem, start, 0.02 * model.prior_std());
+    const BatchFit fit = fit_batch(problem, start, 0.02 * model.parameters().prior_std());
     const FreeFit left = free_fit(problem, fit.w);
     EXPECT_LT(left.cost, 1.05 * left.rows) << "ball " << draw << ", from " << free_fit(problem, start).cost;
   }
@@ -91,8 +91,8 @@ class WithoutItsFoundation : public ::testing::Test {
     int frames = 0;
     FitProblem problem{model_, runs_, operators_, frames_, RunStart{}};
     problem.checkpoint = [&] { ++frames; };
-    const Eigen::VectorXd start = model_.prior_mean() + Eigen::VectorXd::Constant(1, off);
-    const BatchFit fit = fit_batch(problem, start, 0.1 * model_.prior_std(), rival);
+    const Eigen::VectorXd start = model_.parameters().prior_mean() + Eigen::VectorXd::Constant(1, off);
+    const BatchFit fit = fit_batch(problem, start, 0.1 * model_.parameters().prior_std(), rival);
     return {fit, frames / kFrames};
   }
   static std::vector<std::string> supported() {

@@ -25,7 +25,7 @@ class CorrectedSurrogateTest : public ::testing::Test {
     return options;
   }
   Eigen::VectorXd theta(double deviations) const {
-    return model_.theta(model_.prior_mean() + deviations * model_.prior_std());
+    return model_.parameters().theta(model_.parameters().prior_mean() + deviations * model_.parameters().prior_std());
   }
   CorrectedSurrogate at(double deviations) const {
     CorrectedSurrogate out(full_, reduced_);

@@ -31,14 +31,14 @@ std::string elasticity(const std::string& law) {
 class HeapInSteps : public testing::TestWithParam<Case> {
  protected:
   HeapInSteps() : model_(box_settings(effects()), bar_mesh(10, 3, 3)) {
-    for (const auto& [topic, course] : model_.courses()) {
+    for (const auto& [topic, course] : model_.loads().courses()) {
       course->add(0.0, Eigen::VectorXd::Zero(course->components()));
       course->add(1.0, Eigen::VectorXd::Constant(course->components(), 500.0));
     }
     std::vector<const DynamicSystem*> views;
     for (const double modulus : {90e3, 92e3, 110e3}) {
-      const double w = model_.free_parameters().front().to_coordinate(modulus);
-      systems_.push_back(std::make_unique<ModelSystem>(model_, model_.theta(Eigen::VectorXd::Constant(1, w))));
+      const double w = model_.parameters().free().front().to_coordinate(modulus);
+      systems_.push_back(std::make_unique<ModelSystem>(model_, model_.parameters().theta(Eigen::VectorXd::Constant(1, w))));
       views.push_back(systems_.back().get());
     }
     stepper_ = std::make_unique<GeneralizedAlpha>(views, 0.9, 1e-7);

@@ -24,7 +24,7 @@ double since(Clock::time_point start) {
 
 // As a model file has them.
 std::vector<std::string> linear_proposals(const Model& base, const std::vector<std::string>& effects) {
-  const ProposalContext context{base.settings(), base.mesh(), base.regions(), 3e4, 0.45, 1000.0, 0.02, 0.4};
+  const ProposalContext context{base.settings(), base.mesh(), base.body().regions, 3e4, 0.45, 1000.0, 0.02, 0.4};
   std::vector<std::string> list;
   for (const EffectSpec& spec : effect_specs()) {
     if (!spec.proposals) continue;
@@ -65,17 +65,18 @@ TEST(ManyEffects, TangentsOfTheReducedModelAreThoseOfTheFullOne) {
   options.step = 5e-4;
   options.spectral_radius = 1.0;
   const FullModel full(model, options);
-  const Eigen::VectorXd w = model.prior_mean(), std = model.prior_std();
-  const Eigen::MatrixXd a0 = run(reduced, model.theta(w)), b0 = run(full, model.theta(w));
+  const Eigen::VectorXd w = model.parameters().prior_mean(), std = model.parameters().prior_std();
+  const Eigen::MatrixXd a0 = run(reduced, model.parameters().theta(w)), b0 = run(full, model.parameters().theta(w));
   EXPECT_LT((a0 - b0).norm(), 1e-3 * b0.norm());
   std::string previous;
   for (Eigen::Index i = 1; i < w.size(); ++i) {
-    const std::string& name = model.free_parameters()[static_cast<std::size_t>(i)].name;
+    const std::string& name = model.parameters().free()[static_cast<std::size_t>(i)].name;
     const std::string effect = name.substr(0, name.find_first_of("#."));
     if (effect == previous && i % 7 != 0) continue;  // some of each
     previous = effect;
     const Eigen::VectorXd step = 0.02 * std[i] * Eigen::VectorXd::Unit(w.size(), i);
-    const Eigen::MatrixXd a = run(reduced, model.theta(w + step)) - a0, b = run(full, model.theta(w + step)) - b0;
+    const Eigen::MatrixXd a = run(reduced, model.parameters().theta(w + step)) - a0,
+                          b = run(full, model.parameters().theta(w + step)) - b0;
     const std::vector<std::string> sensors{"image_scale", "rigid_drift", "sensor_rotation", "time_offset"};
     if (std::find(sensors.begin(), sensors.end(), effect) != sensors.end()) {  // they leave the body alone
       EXPECT_TRUE(a.isZero(0.0)) << name;
@@ -104,9 +105,9 @@ TEST(ManyEffects, AreProjectedInSeconds) {
   const ReducedModel reduced(model);
   const double reduce = since(start);
   start = Clock::now();
-  const Eigen::VectorXd w = model.prior_mean();
+  const Eigen::VectorXd w = model.parameters().prior_mean();
   for (Eigen::Index i = 0; i < w.size(); ++i) {
-    ReducedTrajectory trajectory(reduced, model.theta(w + 0.01 * Eigen::VectorXd::Unit(w.size(), i)), 0.0);
+    ReducedTrajectory trajectory(reduced, model.parameters().theta(w + 0.01 * Eigen::VectorXd::Unit(w.size(), i)), 0.0);
     for (int k = 1; k <= 100; ++k) trajectory.advance(0.02 * k);
     EXPECT_TRUE(trajectory.coordinates().allFinite());
   }

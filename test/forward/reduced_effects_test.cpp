@@ -22,15 +22,15 @@ std::vector<std::string> bar_with(const std::vector<std::string>& more) {
 double worst(const std::vector<std::string>& effects, const std::vector<Eigen::VectorXd>& values, double step = 2e-4) {
   const TetMesh mesh = bar_mesh(4);
   Model model(box_settings(bar_with(effects)), mesh);
-  model.set_first_stamp(0.1);
+  model.loads().set_first_stamp(0.1);
   const ReducedModel reduced(model);
   double error = 0.0;
   for (const Eigen::VectorXd& value : values) {
-    Eigen::VectorXd w = model.prior_mean();
+    Eigen::VectorXd w = model.parameters().prior_mean();
     for (Eigen::Index i = 0; i < value.size(); ++i) {
-      w[i + 1] = model.free_parameters()[static_cast<std::size_t>(i + 1)].to_coordinate(value[i]);
+      w[i + 1] = model.parameters().free()[static_cast<std::size_t>(i + 1)].to_coordinate(value[i]);
     }
-    const double here = full_against_reduced(model, reduced, model.theta(w), step);
+    const double here = full_against_reduced(model, reduced, model.parameters().theta(w), step);
     std::printf("%s at %g: %.1e of the motion\n", effects.front().c_str(), value[0], here);
     error = std::max(error, here);
   }
@@ -120,7 +120,8 @@ TEST(ReducedEffects, PeriodElongationStandsForLongSteps) {
     const Model stepped(box_settings(bar_with({})), mesh);
     const Model model(box_settings(bar_with({to_yaml(EffectEntry{"period_elongation", {{"step_squared", step_squared}}})})),
                       mesh);
-    const double error = full_against_reduced(stepped, ReducedModel(model), model.theta(model.prior_mean()), h);
+    const double error =
+        full_against_reduced(stepped, ReducedModel(model), model.parameters().theta(model.parameters().prior_mean()), h);
     std::printf("steps of %g s, step_squared %g: %.1e of the motion\n", h, step_squared, error);
     return error;
   };

@@ -29,7 +29,7 @@ std::string elastic(const std::string& modulus, const std::string& region = "") 
 }
 
 Eigen::VectorXd prior(const Model& model) {
-  return model.theta(model.prior_mean());
+  return model.parameters().theta(model.parameters().prior_mean());
 }
 
 double difference(const Model& model, const Eigen::VectorXd& theta, double step) {
@@ -42,9 +42,9 @@ void push(Model& model) {
     const double t = 0.1 + 0.008 * k;
     Eigen::VectorXd wrench = Eigen::VectorXd::Zero(6);
     wrench.head<3>() << 2e-3 * std::sin(20.0 * t), 0.0, 4e-3 * std::cos(9.0 * t);
-    model.courses().at("/wrench")->add(t, wrench);
-    if (model.courses().count("/pressure") == 0) continue;
-    model.courses().at("/pressure")->add(t, Eigen::VectorXd::Constant(1, 5.0 * std::sin(14.0 * t)));
+    model.loads().courses().at("/wrench")->add(t, wrench);
+    if (model.loads().courses().count("/pressure") == 0) continue;
+    model.loads().courses().at("/pressure")->add(t, Eigen::VectorXd::Constant(1, 5.0 * std::sin(14.0 * t)));
   }
 }
 
@@ -56,7 +56,8 @@ TEST(ReducedModel, FollowsTheFullOneUnderLoads) {
               mesh);
   push(model);
   const double at_prior = difference(model, prior(model), 2e-4);
-  const double away = difference(model, model.theta(model.prior_mean().array() + std::log(1.9)), 2e-4);
+  const double away =
+      difference(model, model.parameters().theta(model.parameters().prior_mean().array() + std::log(1.9)), 2e-4);
   std::printf("reduced against full, loaded bar: %.1e, E 1.9x: %.1e of the motion\n", at_prior, away);
   EXPECT_LT(at_prior, 1e-3);
   EXPECT_LT(away, 1e-3);
@@ -178,7 +179,7 @@ TEST(ReducedModel, FollowsTheFullOneWithSeveralModuli) {
                     mesh);
   for (const auto& [near, far] : std::vector<std::pair<double, double>>{{1.0, 1.0}, {2.0, 0.5}, {0.6, 2.5}}) {
     const Eigen::Vector2d w(std::log(3e4 * near), std::log(3e4 * far));
-    const double error = difference(model, model.theta(w), 1e-4);
+    const double error = difference(model, model.parameters().theta(w), 1e-4);
     std::printf("reduced against full, moduli %.1fx and %.1fx: %.1e of the motion\n", near, far, error);
     EXPECT_LT(error, 2e-3);
   }
@@ -232,7 +233,7 @@ TEST(ReducedModel, OneModeIsTheClosedForm) {
               mesh);
   Eigen::VectorXd wrench(6);
   wrench << 0.02, 0, 0, 0, 0, 0;  // along x: the basis begins with this component's response
-  model.courses().at("/wrench")->add(0.0, wrench);
+  model.loads().courses().at("/wrench")->add(0.0, wrench);
   expect_one_mode(model);
 }
 
@@ -241,9 +242,9 @@ TEST(ReducedModel, OneModeUnderARampIsTheClosedForm) {
   const TetMesh mesh = bar_mesh(3);
   Model model(box_settings({kInertia, elastic("3.0e4"), kFixed, "traction: {region: tip, topic: /wrench}"}), mesh);
   Eigen::VectorXd wrench = Eigen::VectorXd::Zero(6);
-  model.courses().at("/wrench")->add(0.0, wrench);
+  model.loads().courses().at("/wrench")->add(0.0, wrench);
   wrench[0] = 0.02;
-  model.courses().at("/wrench")->add(1.0, wrench);
+  model.loads().courses().at("/wrench")->add(1.0, wrench);
   const ReducedModel reduced(model, {1});
   ASSERT_EQ(reduced.basis().cols(), 1);
   const Eigen::VectorXd b = reduced.basis().col(0);
@@ -295,14 +296,15 @@ TEST(Model, KnowsWhatChangesTheAnswerToALoad) {
                     "time_offset: {offset: {mean: 0, std: 0.01}}", "image_scale: {ratio: {mean: 1, std: 0.1}}",
                     "viscoelasticity: {gamma: {mean: 0.2, std: 0.1}, tau: 0.3}"}),
       bar_mesh(2));
-  const Eigen::VectorXd w = model.prior_mean(), std = model.prior_std();
+  const Eigen::VectorXd w = model.parameters().prior_mean(), std = model.parameters().prior_std();
   const std::set<std::string> tuning{"elasticity.young_modulus", "viscous_damping.beta", "time_offset.offset",
                                      "viscoelasticity.gamma"};
   std::size_t found = 0;
   for (Eigen::Index i = 0; i < w.size(); ++i) {
-    const std::string& name = model.free_parameters()[static_cast<std::size_t>(i)].name;
+    const std::string& name = model.parameters().free()[static_cast<std::size_t>(i)].name;
     const Eigen::VectorXd moved = w + std[i] * Eigen::VectorXd::Unit(w.size(), i);
-    EXPECT_EQ(model.same_answer(model.theta(w), model.theta(moved)), tuning.count(name) == 0) << name;
+    EXPECT_EQ(model.same_answer(model.parameters().theta(w), model.parameters().theta(moved)), tuning.count(name) == 0)
+        << name;
     found += tuning.count(name);
   }
   EXPECT_EQ(found, tuning.size());
@@ -352,13 +354,13 @@ TEST(ReducedModel, ModesAreOrthonormalInMassAndDiagonalInStiffness) {
                     mesh);
   const ReducedModel reduced(model);
   const Eigen::MatrixXd& b = reduced.basis();
-  Eigen::VectorXd all = model.prior_mean(), last = all;
+  Eigen::VectorXd all = model.parameters().prior_mean(), last = all;
   for (Eigen::Index i = 0; i < all.size(); ++i) {
-    Eigen::VectorXd one = model.prior_mean();
-    one[i] += model.prior_std()[i];  // scaled, but for the foundation's and the modulus'
-    all += 0.5 * model.prior_std()[i] * Eigen::VectorXd::Unit(all.size(), i);
+    Eigen::VectorXd one = model.parameters().prior_mean();
+    one[i] += model.parameters().prior_std()[i];  // scaled, but for the foundation's and the modulus'
+    all += 0.5 * model.parameters().prior_std()[i] * Eigen::VectorXd::Unit(all.size(), i);
     for (const Eigen::VectorXd& w : {one, all, last}) {
-      const Eigen::VectorXd theta = model.theta(w);
+      const Eigen::VectorXd theta = model.parameters().theta(w);
       const auto modes = reduced.modes(theta);
       const Eigen::MatrixXd body = model.mass(theta) * b, stiffness = b.transpose() * (model.stiffness(theta) * b),
                             inertia = model.stiffness_inertia(theta) * (model.reference_stiffness(theta) * b),
@@ -387,7 +389,7 @@ TEST(ReducedModel, NeedsNoFactorBesideTheMeshThatItsOwnWasRefinedFrom) {
     const Model parent(box_settings(effects), coarse), model(box_settings(effects), fine);
     ASSERT_GT(model.fem().dof_count(), 6000);
     const auto lowest = [](const Model& of, const BasisOptions& options) {
-      const Eigen::VectorXd theta = of.theta(of.prior_mean() + 0.3 * of.prior_std());
+      const Eigen::VectorXd theta = of.parameters().theta(of.parameters().prior_mean() + 0.3 * of.parameters().prior_std());
       return Eigen::ArrayXd(ReducedModel(of, options).modes(theta)->square.head(6));
     };
     const Eigen::ArrayXd wanted = lowest(model, {}), found = lowest(model, between);

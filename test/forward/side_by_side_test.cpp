@@ -16,7 +16,7 @@ std::vector<std::string> swinging(const std::string& law) {
 }
 
 Eigen::VectorXd at_modulus(const Model& model, double value) {
-  return model.theta(Eigen::VectorXd::Constant(1, model.free_parameters().front().to_coordinate(value)));
+  return model.parameters().theta(Eigen::VectorXd::Constant(1, model.parameters().free().front().to_coordinate(value)));
 }
 
 // Generalised-alpha (Chung & Hulbert 1993) with a fresh factor for every correction, until nothing is left to correct.
@@ -124,8 +124,8 @@ TEST(SideBySide, StepsAsTheMassOfEachAllows) {
   effects[1] = "elasticity: {law: neo_hookean, poisson_ratio: 0.45, young_modulus: 40e3}";
   effects.push_back("period_elongation: {step_squared: {mean: 0, std: 1.0e-4}}");
   const Model model(box_settings(effects), bar_mesh(4, 1, 1));
-  const std::vector<Eigen::VectorXd> thetas{model.theta(Eigen::VectorXd::Zero(1)),
-                                            model.theta(Eigen::VectorXd::Constant(1, 1e-4))};
+  const std::vector<Eigen::VectorXd> thetas{model.parameters().theta(Eigen::VectorXd::Zero(1)),
+                                            model.parameters().theta(Eigen::VectorXd::Constant(1, 1e-4))};
   FullModel::Options options;
   options.tolerance = 1e-9;
   const FullModel full(model, options);

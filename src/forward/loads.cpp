@@ -1,0 +1,22 @@
+#include "forward/loads.hpp"
+
+namespace tissue_stiffness {
+
+void Loads::set_first_stamp(double time) {
+  first_stamp_ = time;
+  for (auto& course : courses_) course.second->shift(time);
+}
+
+void Loads::drive(double first_stamp, const std::vector<LoadSample>& samples) {
+  set_first_stamp(first_stamp);
+  for (const LoadSample& sample : samples) {
+    const auto course = courses_.find(sample.topic);
+    if (course != courses_.end()) course->second->add(sample.time, sample.value);
+  }
+}
+
+double Loads::value(const LoadTerm& term, const Parameters& parameters, double factor, double time) const {
+  return (term.course ? factor : 1.0) * term.value(time, time - first_stamp_, parameters);
+}
+
+}  // namespace tissue_stiffness
