@@ -1,6 +1,7 @@
 # tissue_stiffness_layer(NAME [LAYERS above...] [LIBRARIES ...] [INCLUDES ...] [ROS])
 # One static library a folder of src/. Headers-only layers become interface libraries.
-set(tissue_stiffness_layer_targets)
+set(tissue_stiffness_core_targets)   # without ROS
+set(tissue_stiffness_layer_targets)  # with ROS
 set(tissue_stiffness_executable_targets)
 set(tissue_stiffness_warnings -Wall -Wextra -Wconversion -Werror)
 
@@ -17,7 +18,9 @@ macro(tissue_stiffness_layer name)
     set(scope INTERFACE)
     add_library(${target} INTERFACE)
   endif()
-  target_include_directories(${target} ${scope} ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
+  # Public headers are in include, the others beside their sources; only the first are installed.
+  target_include_directories(${target} ${scope} $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:${CATKIN_GLOBAL_INCLUDE_DESTINATION}>)
   target_include_directories(${target} SYSTEM ${scope} ${LAYER_INCLUDES})
   foreach(above ${LAYER_LAYERS})
     target_link_libraries(${target} ${scope} ${PROJECT_NAME}_${above})
@@ -27,8 +30,11 @@ macro(tissue_stiffness_layer name)
     target_include_directories(${target} SYSTEM ${scope} ${catkin_INCLUDE_DIRS})
     target_link_libraries(${target} ${scope} ${catkin_LIBRARIES})
     add_dependencies(${target} ${PROJECT_NAME}_generate_messages_cpp ${catkin_EXPORTED_TARGETS})
+    list(APPEND tissue_stiffness_layer_targets ${target})
+  else()
+    set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+    list(APPEND tissue_stiffness_core_targets ${target})
   endif()
-  list(APPEND tissue_stiffness_layer_targets ${target})
 endmacro()
 
 macro(tissue_stiffness_executables layer)
