@@ -39,6 +39,18 @@ bool ProposalContext::estimates(const std::string& effect, const std::string& pa
   });
 }
 
+Eigen::Vector3d ProposalContext::low() const {
+  return mesh.nodes.rowwise().minCoeff();
+}
+
+Eigen::Vector3d ProposalContext::high() const {
+  return mesh.nodes.rowwise().maxCoeff();
+}
+
+double ProposalContext::size() const {
+  return (high() - low()).norm();
+}
+
 bool ProposalContext::observes(ObservationSettings::Kind kind) const {
   return std::any_of(settings.observations.begin(), settings.observations.end(),
                      [kind](const ObservationSettings& entry) { return entry.kind == kind; });

@@ -33,9 +33,10 @@ struct ProposalContext {
   std::vector<std::string> regions_of(const std::string& acting, const std::string& absent) const;
   /// Returns whether an effect of this name has this parameter estimated.
   bool estimates(const std::string& effect, const std::string& parameter) const;
-  Eigen::Vector3d low() const { return mesh.nodes.rowwise().minCoeff(); }
-  Eigen::Vector3d high() const { return mesh.nodes.rowwise().maxCoeff(); }
-  double size() const { return (high() - low()).norm(); }
+  /// These return the corners of the body's bounding box [m], and its diagonal.
+  Eigen::Vector3d low() const;
+  Eigen::Vector3d high() const;
+  double size() const;
   bool observes(ObservationSettings::Kind kind) const;
 };
 

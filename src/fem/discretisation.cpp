@@ -159,6 +159,10 @@ SparseMatrix Discretisation::assemble(const Eigen::VectorXd& element_weight, con
   return result;
 }
 
+double Discretisation::volume() const {
+  return weights_.sum();
+}
+
 SparseMatrix Discretisation::mass(const Eigen::VectorXd& element_weight) const {
   const int n = nodes_per_element();
   const ShapeTable table(n, mass_rule());

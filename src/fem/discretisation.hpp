@@ -1,7 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/Sparse>
+#include <Eigen/SparseCore>
 #include <array>
 #include <memory>
 #include <utility>
@@ -36,7 +36,7 @@ class Discretisation {
   }
   /// Returns quadrature weight times Jacobian [m^3]. These products sum to the volume.
   double weight(int e, int q) const { return weights_(q, e); }
-  double volume() const { return weights_.sum(); }
+  double volume() const;
   /// Returns the position of quadrature point q of element e at rest [m].
   auto position(int e, int q) const { return positions_.col(static_cast<Eigen::Index>(e) * points_ + q); }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <limits>
 
 namespace tissue_stiffness {
 
@@ -19,12 +18,7 @@ struct Camera {
 
   /// Projects a point of the model frame [m] to the undistorted image [pixel], as a pinhole or a slice. Returns NaN for a
   /// point at or behind the pinhole.
-  Eigen::Vector2d project(const Eigen::Vector3d& point) const {
-    const Eigen::Vector3d p = model_from_sensor.inverse() * point;
-    if (projection == Projection::slice) return {fx * p.x() + cx, fy * p.y() + cy};
-    if (p.z() <= 0.0) return Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
-    return {fx * p.x() / p.z() + cx, fy * p.y() / p.z() + cy};
-  }
+  Eigen::Vector2d project(const Eigen::Vector3d& point) const;
 };
 
 }  // namespace tissue_stiffness
