@@ -19,15 +19,31 @@ void find_probabilities_of(std::vector<Hypothesis>& hypotheses) {
   for (Hypothesis& h : hypotheses) h.probability /= sum;
 }
 
+// Returns the weight at which the most evident extension gains no more than the structure of the residual says. What gains
+// more does so where the test does not look, across the lowest modes, and there the mesh's error is not known.
+double least_weight(const Hypothesis& model, const std::vector<Hypothesis>& all) {
+  constexpr double none = -std::numeric_limits<double>::infinity();
+  if (std::isinf(model.structure)) return none;
+  double evident = none;
+  for (const Hypothesis& h : all) {
+    if (h.extends(model)) evident = std::max(evident, h.log_weight - h.log_prior);
+  }
+  return evident - log_bayes_factor_bound(model.structure) + model.log_prior;
+}
+
 }  // namespace
 
 bool Hypothesis::holds(const std::string& effect) const {
   return std::find(effects.begin(), effects.end(), effect) != effects.end();
 }
 
-bool Hypothesis::superfluous_beside(const Hypothesis& other) const {
+bool Hypothesis::extends(const Hypothesis& other) const {
   const bool all = std::all_of(other.effects.begin(), other.effects.end(), [this](const auto& e) { return holds(e); });
-  return all && !other.structured && (effects.size() > other.effects.size() || random_force);
+  return all && !other.random_force && (effects.size() > other.effects.size() || random_force);
+}
+
+bool Hypothesis::superfluous_beside(const Hypothesis& other) const {
+  return extends(other) && !other.structured;
 }
 
 void Hypothesis::weigh(const Assessment& assessment, const ModelComparison& models) {
@@ -36,6 +52,7 @@ void Hypothesis::weigh(const Assessment& assessment, const ModelComparison& mode
   z = assessment.test.z();
   passes = !random_force && assessment.test.passes();
   structured = random_force || assessment.test.discrepancy() > 0.0;
+  structure = assessment.test.structure();
 }
 
 const Hypothesis& Comparison::best() const {
@@ -79,6 +96,9 @@ void Comparison::find_probabilities() {
   std::vector<Hypothesis> weighed = hypotheses;
   for (Hypothesis& h : weighed) {
     if (h.superfluous) h.log_weight = none;
+  }
+  for (Hypothesis& h : weighed) {
+    if (!h.random_force && h.log_weight > none) h.log_weight = std::max(h.log_weight, least_weight(h, weighed));
   }
   const Hypothesis* best = &weighed.front();
   for (const Hypothesis& h : weighed) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,11 +23,13 @@ struct Hypothesis {
   double z = 0.0;                              ///< of the residual's test; with a random force, of the test without it
   bool passes = false;                         ///< that test; false with a random force
   bool structured = true;                      ///< something beyond chance is left, or a random force acts
-  bool superfluous = false;                    ///< another hypothesis already suffices
+  double structure = std::numeric_limits<double>::infinity();  ///< of the residual, in standard deviations beyond chance
+  bool superfluous = false;                                    ///< another hypothesis already suffices
   double probability = 0.0;
   bool holds(const std::string& effect) const;
-  /// Returns whether this one has all that the other one has and something more, while the other one leaves no structure
-  /// beyond chance.
+  /// Returns whether this one has all that the other one has and something more.
+  bool extends(const Hypothesis& other) const;
+  /// Returns whether this one extends another one that leaves no structure beyond chance.
   bool superfluous_beside(const Hypothesis& other) const;
   /// Sets weight and test as `models` assess the explained model.
   void weigh(const Assessment& assessment, const ModelComparison& models);
@@ -50,8 +53,8 @@ struct Comparison {
   /// Assigns weights, tests and probabilities to all hypotheses by one likelihood.
   void assess(const ModelComparison& models);
   /// Computes probabilities from the weights. A superfluous hypothesis has none: what it has more is too small to be
-  /// missing, whatever it gains. Where the most probable model does not pass its test, a random force beside it gains what
-  /// that test says, or more.
+  /// missing, whatever it gains. No hypothesis loses more to what extends it than the structure of its residual says. Where
+  /// the most probable model does not pass its test, a random force beside it gains what that test says, or more.
   void find_probabilities();
   /// `deeper` is a comparison about the model with `effects` added. Its hypotheses take the place of those with these
   /// effects alone, and have to be assessed together with the others.

@@ -58,6 +58,10 @@ double MisfitTest::z() const {
   return frames_ > 0 ? std::max((excess() - tolerated * noise_level()) / deviation(), z_across()) : 0.0;
 }
 
+double MisfitTest::structure() const {
+  return frames_ > 0 ? std::max(excess() / deviation(), z_across()) : 0.0;
+}
+
 // Only what is far above the known noise counts, because less is known of the mesh's error there.
 double MisfitTest::z_across() const {
   if (known_noise_ >= most_noise || !(rest_dof_ > 0.0)) return -std::numeric_limits<double>::infinity();

@@ -32,6 +32,8 @@ class MisfitTest {
   /// Returns (excess - tolerated v) / deviation with v = noise_level(). After set_noise() it returns the larger one of this
   /// and the same statistic across the modes.
   double z() const;
+  /// Returns how far the residual is from noise, mesh and basis alone, with nothing tolerated, in standard deviations.
+  double structure() const;
   /// The test passes while z <= bound.
   bool passes() const { return z() <= bound; }
   /// Returns the mean square of what is unexplained, over all rows, in noise variances; 0 where it is no more than chance.

@@ -295,6 +295,21 @@ TEST(Comparison, GivesNothingToWhatExtendsASufficientModel) {
   EXPECT_EQ(judge(c), Verdict::adequate);
 }
 
+// Evidence that lies where the test does not look counts no more than what the residual of the smaller model shows.
+TEST(Comparison, TakesNoMoreEvidenceThanTheResidualShows) {
+  std::vector<Hypothesis> list{hypothesis({}, 0.0, true), hypothesis({"a"}, 500.0, true), hypothesis({"b"}, 499.0, true)};
+  list[0].structure = 2.0;
+  const Comparison slight = compared(list);
+  const double given = std::exp(-log_bayes_factor_bound(2.0)), both = 1.0 + std::exp(-1.0);
+  EXPECT_NEAR(slight.given().probability, given / (given + both), 1e-9);
+  EXPECT_NEAR(slight.probability_of("a") / slight.probability_of("b"), std::exp(1.0), 1e-9);
+  EXPECT_EQ(judge(slight), Verdict::adequate);
+  list[0].structure = 4.0;
+  EXPECT_EQ(judge(compared(list)), Verdict::missing);
+  list[1].log_weight = list[2].log_weight = 1.0;  // less than that is not raised
+  EXPECT_NEAR(compared(list).given().probability, 1.0 / (1.0 + 2.0 * std::exp(1.0)), 1e-9);
+}
+
 // The evidence of what is superfluous still counts for E, but no more than the test that does without it.
 TEST(Comparison, TracesWhatMayActWithoutBeingMissed) {
   std::vector<Hypothesis> list{hypothesis({}, 0.0, true), hypothesis({"a"}, 2000.0, true), hypothesis({"b"}, 1999.0, true),
