@@ -5,6 +5,16 @@
 #include <limits>
 
 namespace tissue_stiffness {
+
+// Each effect's file defines these two.
+namespace effects {
+#define EFFECT(name)        \
+  EffectSpec name##_spec(); \
+  std::unique_ptr<Effect> make_##name(const Value& arguments, const EffectContext& context);
+#include "effects/effects.def"
+#undef EFFECT
+}  // namespace effects
+
 namespace {
 
 using Maker = std::unique_ptr<Effect> (*)(const Value&, const EffectContext&);

@@ -10,14 +10,6 @@
 
 namespace tissue_stiffness {
 
-namespace effects {
-#define EFFECT(name)        \
-  EffectSpec name##_spec(); \
-  std::unique_ptr<Effect> make_##name(const Value& arguments, const EffectContext& context);
-#include "effects/effects.def"
-#undef EFFECT
-}  // namespace effects
-
 /// Returns the time course of a measured load from the keys `topic` or `course: {file}`. Registers the topic in
 /// context.inputs.
 std::shared_ptr<Course> load_course(const Value& arguments, LoadInput::Kind kind, const EffectContext& context);

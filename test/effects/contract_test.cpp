@@ -259,6 +259,23 @@ SparseMatrix nonlinear_tangent(const Model& model, const Eigen::VectorXd& u) {
   return k;
 }
 
+// Whoever implements an interface must hand it out: otherwise the model would never call it.
+TEST(EveryEffect, HandsOutTheInterfacesThatItImplements) {
+  const TetMesh mesh = bar_mesh(2);
+  int more = 0;
+  for (const EffectSpec& spec : effect_specs()) {
+    const std::string law = fits(spec, "linear") ? "linear" : "neo_hookean";
+    const Model model(box_settings(bar_with(spec.name, example_arguments(spec, law, "skin"), law)), mesh);
+    const Effect* effect = model.parts().back().effect.get();
+    EXPECT_EQ(effect->nonlinear_force(), dynamic_cast<const NonlinearForce*>(effect)) << spec.name;
+    EXPECT_EQ(effect->finite_strain(), dynamic_cast<const FiniteStrainForm*>(effect)) << spec.name;
+    EXPECT_EQ(effect->support(), dynamic_cast<const Support*>(effect)) << spec.name;
+    EXPECT_EQ(effect->sensor_model(), dynamic_cast<const SensorModel*>(effect)) << spec.name;
+    more += effect->sensor_model() != nullptr || effect->support() != nullptr ? 1 : 0;
+  }
+  EXPECT_GE(more, 6);
+}
+
 // The surface is closed, so that a follower pressure's tangent is symmetric and must match to the last entry.
 TEST(EveryEffect, TangentEqualsFiniteDifferencesOfTheForce) {
   const TetMesh mesh = bar_mesh(2);
