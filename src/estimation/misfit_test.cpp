@@ -9,7 +9,6 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr double kMostAutocorrelation = 0.95;
-constexpr double kBeyondChance = 2.0;  // standard deviations from which on an excess is believed
 
 }  // namespace
 
@@ -79,7 +78,7 @@ double MisfitTest::repeated() const {
 
 double MisfitTest::discrepancy() const {
   if (frames_ == 0) return 0.0;
-  const double along = excess() < kBeyondChance * deviation() ? 0.0 : excess() * along_dof_;
+  const double along = excess() < beyond_chance * deviation() ? 0.0 : excess() * along_dof_;
   const double across = z_across() <= bound ? 0.0 : excess_across() * rest_dof_;
   return (along + across) / std::max(1.0, rows_);
 }

@@ -47,9 +47,10 @@ class MisfitTest {
   double lag1_autocorrelation() const;
   bool empty() const { return frames_ == 0; }
 
-  static constexpr double most_noise = 9.0;  ///< noise variances: noise beyond three times the stated one is a misfit
-  static constexpr double tolerated = 1.0;   ///< of noise_level(): an excess that counts as no misfit
-  static constexpr double bound = 3.0;       ///< standard deviations
+  static constexpr double most_noise = 9.0;     ///< noise variances: noise beyond three times the stated one is a misfit
+  static constexpr double tolerated = 1.0;      ///< of noise_level(): an excess that counts as no misfit
+  static constexpr double bound = 3.0;          ///< standard deviations
+  static constexpr double beyond_chance = 2.0;  ///< standard deviations from which on an excess is believed
 
  private:
   double along_ = 0.0, along_dof_ = 0.0, rest_ = 0.0, rest_dof_ = 0.0;

@@ -181,6 +181,10 @@ TEST(ComparisonNumbers, AreThoseOfTheMethodsTable) {
   row("`most_numerics`", text(kComparison.most_numerics));
   row("`modes`", text(kComparison.modes));
   row("`most_traces`", text(kComparison.most_traces));
+  row("`bound`", text(MisfitTest::bound));
+  row("`tolerated`", text(MisfitTest::tolerated));
+  row("`most_noise`", text(MisfitTest::most_noise));
+  row("`beyond_chance`", text(MisfitTest::beyond_chance));
 }
 
 // `random_force` adds one that does nothing.
