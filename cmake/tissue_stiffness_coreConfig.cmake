@@ -10,5 +10,5 @@ include(${CMAKE_CURRENT_LIST_DIR}/targets.cmake)
 if(NOT TARGET tissue_stiffness::core)
   add_library(tissue_stiffness::core INTERFACE IMPORTED)
   set_property(TARGET tissue_stiffness::core PROPERTY INTERFACE_LINK_LIBRARIES
-    tissue_stiffness::check tissue_stiffness::report tissue_stiffness::diagnosis tissue_stiffness::segmentation)
+    tissue_stiffness::diagnosis tissue_stiffness::segmentation)
 endif()

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "tissue_stiffness/report/results.hpp"
+#include "report/results.hpp"
 
 namespace tissue_stiffness {
 

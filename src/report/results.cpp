@@ -1,4 +1,4 @@
-#include "tissue_stiffness/report/results.hpp"
+#include "report/results.hpp"
 
 #include <algorithm>
 #include <cmath>

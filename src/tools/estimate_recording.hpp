@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tissue_stiffness/report/results.hpp"
+#include "report/results.hpp"
 #include "tools/paint.hpp"
 #include "types/replay.hpp"
 #include "types/stop_request.hpp"

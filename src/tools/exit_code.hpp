@@ -1,6 +1,6 @@
 #pragma once
 
-#include "tissue_stiffness/report/results.hpp"
+#include "report/results.hpp"
 #include "tissue_stiffness/types/diagnosis.hpp"
 
 namespace tissue_stiffness {

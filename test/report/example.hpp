@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tissue_stiffness/report/results.hpp"
+#include "report/results.hpp"
 
 namespace tissue_stiffness {
 
