@@ -1,0 +1,31 @@
+# Builds that watch themselves, each in a folder of its own: scripts/test --sanitize and --coverage.
+option(TISSUE_STIFFNESS_SANITIZE "Stop at wrong memory accesses, leaks and undefined behaviour" OFF)
+option(TISSUE_STIFFNESS_COVERAGE "Count which lines run" OFF)
+
+if(TISSUE_STIFFNESS_SANITIZE OR TISSUE_STIFFNESS_COVERAGE)
+  # Without NDEBUG: Eigen's assertions see a wrong index that still hits memory of the same matrix.
+  set(CMAKE_CXX_FLAGS_RELEASE "-O1 -g")
+endif()
+
+if(TISSUE_STIFFNESS_SANITIZE)
+  # GCC leaves float-cast-overflow out of `undefined`.
+  set(sanitizers -fsanitize=address,undefined,float-cast-overflow)
+  add_compile_options(${sanitizers} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+    # GCC's bug 105616: with AddressSanitizer it warns of the standard library's own std::regex.
+    add_compile_options(-Wno-maybe-uninitialized)
+    # Of the shared libraries only one writes its reports where log_path says.
+    add_link_options(-static-libasan -static-libubsan)
+  endif()
+  add_compile_definitions(_GLIBCXX_ASSERTIONS)
+  add_link_options(${sanitizers})
+  # Plugins of programs that are not ours: AddressSanitizer must be loaded first, and these programs do not load it.
+  set(CMAKE_DISABLE_FIND_PACKAGE_nodelet TRUE)
+  set(CMAKE_DISABLE_FIND_PACKAGE_rviz TRUE)
+endif()
+
+if(TISSUE_STIFFNESS_COVERAGE)
+  # Threads count too, and what other libraries' headers compute is not our coverage.
+  add_compile_options(--coverage -fprofile-update=atomic "-fprofile-filter-files=${PROJECT_SOURCE_DIR}/(src|include)/.*")
+  add_link_options(--coverage)
+endif()
