@@ -46,7 +46,7 @@ struct Cloud {
   const ObservationSettings& settings;
   const TetMesh& mesh;
   Eigen::Matrix3Xd points, rest;
-  bool named() const { return settings.kind != ObservationSettings::Kind::points; }
+  bool named() const { return traits_of(settings.kind).identified; }
   double distance() const {
     if (!named()) return distance_from_surface(points, mesh);
     return std::sqrt((points - rest).squaredNorm() / static_cast<double>(points.cols()));

@@ -8,7 +8,7 @@ namespace tissue_stiffness {
 
 SetupFindings check_images(const ObservationSettings& observation, const std::vector<cv::Mat>& images) {
   const bool silhouette = observation.segmentation.kind == SegmentationSettings::Kind::silhouette;
-  if (observation.kind != ObservationSettings::Kind::contour || !silhouette) return {};
+  if (!traits_of(observation.kind).image || !silhouette) return {};
   const auto dark = std::count_if(images.begin(), images.end(), shows_dark_body);
   if (2 * dark <= static_cast<std::ptrdiff_t>(images.size())) return {};
   return {{observation.topic,

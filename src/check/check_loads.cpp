@@ -5,6 +5,7 @@
 
 #include "check/check_motion.hpp"
 #include "check/words.hpp"
+#include "effects/registry.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -56,7 +57,7 @@ std::string topic_of(const EffectSettings& effect) {
 }
 
 bool is_force(const EffectSettings& effect) {
-  return effect.name == "traction";
+  return effect_spec(effect).load == LoadInput::Kind::wrench;
 }
 
 SetupFindings check_signs(const MotionStudy& study, const ModelSettings& settings) {

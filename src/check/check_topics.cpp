@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "effects/registry.hpp"
 #include "settings/suggestion.hpp"
 
 namespace tissue_stiffness {
@@ -34,20 +35,6 @@ SetupFinding missing(const NeededTopic& needed, const std::vector<Topic>& there,
                           ", there is " + join_words(alike) + "; mend the name or remap it."};
 }
 
-std::string kind_name(ObservationSettings::Kind kind) {
-  switch (kind) {
-    case ObservationSettings::Kind::vertices:
-      return "vertices";
-    case ObservationSettings::Kind::markers:
-      return "markers";
-    case ObservationSettings::Kind::points:
-      return "points";
-    case ObservationSettings::Kind::contour:
-      break;
-  }
-  return "contour";
-}
-
 }  // namespace
 
 std::vector<NeededTopic> needed_topics(const ModelSettings& settings) {
@@ -59,18 +46,18 @@ std::vector<NeededTopic> needed_topics(const ModelSettings& settings) {
   for (std::size_t i = 0; i < settings.observations.size(); ++i) {
     const ObservationSettings& observation = settings.observations[i];
     const std::string key = "observations[" + std::to_string(i) + "]";
-    if (observation.kind == ObservationSettings::Kind::contour) {
+    if (traits_of(observation.kind).image) {
       add(key + ".contour.image", observation.topic, "sensor_msgs/Image");
       add(key + ".contour.camera_info", observation.camera_info, "sensor_msgs/CameraInfo");
     } else {
-      add(key + "." + kind_name(observation.kind) + ".topic", observation.topic, "sensor_msgs/PointCloud2");
+      add(key + "." + traits_of(observation.kind).name + ".topic", observation.topic, "sensor_msgs/PointCloud2");
     }
   }
   for (EffectSettings effect : settings.effects) {  // a copy: asking marks keys as known
     if (!effect.arguments.has("topic")) continue;
     const Value& topic = effect.arguments.at("topic");
     add(topic.path(), topic.as_text(),
-        effect.name == "traction" ? "geometry_msgs/WrenchStamped" : "sensor_msgs/FluidPressure");
+        effect_spec(effect).load == LoadInput::Kind::wrench ? "geometry_msgs/WrenchStamped" : "sensor_msgs/FluidPressure");
   }
   return needed;
 }

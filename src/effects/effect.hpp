@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,7 @@ struct EffectSpec {
   std::string source;
   std::vector<ParameterSpec> parameters;
   std::vector<std::pair<std::string, std::string>> keys;  ///< further keys and their values
+  std::optional<LoadInput::Kind> load = std::nullopt;     ///< what its key `topic` carries; empty: it has none
   Proposer proposals = nullptr;                           ///< null: its absence is not searched for
   bool of_simulation = false;                             ///< not physics, but a property of simulated recordings
 };

@@ -47,6 +47,7 @@ EffectSpec pressure_spec() {
   spec.keys = {{"region", "facets it pushes on"},
                {"topic", "sensor_msgs/FluidPressure, positive pushes on the tissue"},
                {"course", "{file: p.csv} with rows of time [s], pressure [Pa]; instead of topic"}};
+  spec.load = LoadInput::Kind::pressure;
   for (auto& key : load_error_keys("Pa", false)) spec.keys.push_back(std::move(key));
   return spec;
 }

@@ -40,6 +40,7 @@ EffectSpec traction_spec() {
   spec.keys = {{"region", "facets it acts on"},
                {"topic", "geometry_msgs/WrenchStamped"},
                {"course", "{file: f.csv} with rows of time [s], fx, fy, fz [N], tx, ty, tz [N m]; instead of topic"}};
+  spec.load = LoadInput::Kind::wrench;
   for (auto& key : load_error_keys("N", true)) spec.keys.push_back(std::move(key));
   return spec;
 }

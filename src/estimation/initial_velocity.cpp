@@ -24,7 +24,7 @@ Eigen::Vector2d centroid(const Eigen::Matrix2Xd& points) {
 }
 
 Eigen::Vector3d centre(const Observation& observation, const Eigen::Vector3d& body_centre) {
-  if (observation.kind != ObservationKind::contour) return observation.points.rowwise().mean();
+  if (!traits_of(observation.kind).image) return observation.points.rowwise().mean();
   const Camera& camera = *observation.camera;
   const Eigen::Vector2d pixel = centroid(observation.contour->points);
   const Eigen::Vector2d ray((pixel.x() - camera.cx) / camera.fx, (pixel.y() - camera.cy) / camera.fy);

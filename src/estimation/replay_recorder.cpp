@@ -21,12 +21,6 @@ void halve(List& list) {
   list.resize(to);
 }
 
-Eigen::Index row_count(const Observation& observation) {
-  if (observation.kind == ObservationKind::contour) return observation.contour->size();
-  const bool named = observation.kind == ObservationKind::vertices || observation.kind == ObservationKind::markers;
-  return named ? 3 * observation.ids.size() : observation.points.cols();
-}
-
 /// Returns the left, right, upper and lower edge [pixel]; NaN without points.
 Eigen::Vector4d edges(const Eigen::Matrix2Xd& points) {
   Eigen::Vector4d out = Eigen::Vector4d::Constant(kNaN);
@@ -112,13 +106,14 @@ void ReplayRecorder::add_tracks(const FreeFrame& frame) {
   seen_.emplace_back();
   Eigen::Index from = 0;
   for (const Observation& observation : frame.frame.observations) {
-    const Eigen::Index rows = row_count(observation);
+    const Eigen::Index rows = observation.row_count();
     const Key whole{observation.source, -1};
-    if (observation.kind == ObservationKind::contour) {
+    const ObservationTraits& traits = traits_of(observation.kind);
+    if (traits.image) {
       kinds_[whole] = observation.kind;
       const FacingPoints points = facing_points(*observation.contour, frame.prediction, from);
       seen_.back()[whole] = {edges(points.measured), edges(points.predicted)};
-    } else if (observation.kind == ObservationKind::points) {
+    } else if (!traits.identified) {
       kinds_[whole] = observation.kind;
       const Prediction& p = frame.prediction;
       const double distance = mean_finite(p.measured.segment(from, rows) - p.predicted.segment(from, rows));
@@ -159,11 +154,11 @@ void ReplayRecorder::add_surface(const FreeFrame& frame) {
 ReplayTrack ReplayRecorder::track(const Key& key, ObservationKind kind) const {
   ReplayTrack out;
   out.unit = "m";
-  if (kind == ObservationKind::contour) {
+  if (traits_of(kind).image) {
     out.name = "outline " + std::to_string(key.first + 1);
     out.unit = "pixel";
     out.components = {"left edge", "right edge", "upper edge", "lower edge"};
-  } else if (kind == ObservationKind::points) {
+  } else if (!traits_of(kind).identified) {
     out.name = "points " + std::to_string(key.first + 1);
     out.components = {"mean distance from the surface"};
   } else {

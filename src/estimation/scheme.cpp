@@ -17,17 +17,6 @@ namespace {
 constexpr int kManyNodes = 10000;  // nodes beyond which every vector of the basis delays the first estimate noticeably
 constexpr int kFewVectors = 24;    // vectors to start with there; the basis grows when that is not enough
 
-// Returns true when some point or some piece of the outline has a number.
-bool saw_something(const Observation& observation) {
-  if (observation.kind == ObservationKind::contour) {
-    return (observation.contour->sigma.array() < INFINITY).any() && observation.contour->points.array().isFinite().any();
-  }
-  for (Eigen::Index i = 0; i < observation.points.cols(); ++i) {
-    if (observation.points.col(i).allFinite()) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 Scheme::Scheme(const ModelSettings& settings, const TetMesh& mesh, const ReuseSources& relatives)
@@ -145,7 +134,7 @@ bool Scheme::seen(const Frame& frame) const {
                        "0 to " + std::to_string(operators_.size() - 1));
     }
     operators_[source]->check(observation);
-    any = saw_something(observation) || any;
+    any = observation.holds_anything() || any;
   }
   return any;
 }

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 
+#include "effects/registry.hpp"
 #include "nodes/message_conversions.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
@@ -16,8 +18,8 @@ std::vector<LoadInput> load_topics(const ModelSettings& settings) {
     if (!effect.arguments.has("topic")) continue;
     const std::string topic = effect.arguments.at("topic").as_text();
     const bool known = std::any_of(inputs.begin(), inputs.end(), [&](const LoadInput& i) { return i.topic == topic; });
-    const auto kind = effect.name == "traction" ? LoadInput::Kind::wrench : LoadInput::Kind::pressure;
-    if (!known) inputs.push_back({topic, kind});
+    const std::optional<LoadInput::Kind> kind = effect_spec(effect).load;
+    if (!known && kind) inputs.push_back({topic, *kind});
   }
   return inputs;
 }
@@ -31,7 +33,7 @@ void EstimatorInputs::listen(std::uint32_t queue_size) {
   for (const LoadInput& input : load_topics(settings_)) listen_load(input, queue_size);
   int contours = 0;
   for (std::size_t i = 0; i < settings_.observations.size(); ++i) {
-    if (settings_.observations[i].kind == ObservationSettings::Kind::contour) {
+    if (traits_of(settings_.observations[i].kind).image) {
       listen_contour(static_cast<int>(i), ++contours, queue_size);
     } else {
       listen_cloud(static_cast<int>(i), queue_size);

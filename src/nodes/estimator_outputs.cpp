@@ -20,7 +20,7 @@ void EstimatorOutputs::prepare(const ModelSettings& settings, const TetMesh& mes
   outlines_.clear();
   int contours = 0;
   for (std::size_t i = 0; i < settings.observations.size(); ++i) {
-    if (settings.observations[i].kind != ObservationSettings::Kind::contour) continue;
+    if (!traits_of(settings.observations[i].kind).image) continue;
     const int source = static_cast<int>(i);
     outlines_.emplace(source, ModelOutline(settings, settings.observations[i], mesh));
     const std::string topic = ++contours == 1 ? "predicted_contour" : "predicted_contour_" + std::to_string(contours);

@@ -33,7 +33,7 @@ MeshNode::MeshNode(ros::NodeHandle node, const NodeSettings& settings)
       poses_(read_text(settings.own, key("model_frame")), read_number(settings.own, key("transform_timeout"))) {
   camera_info_topic_ = node_.resolveName("camera_info");
   for (const ObservationSettings& observation : settings_.observations) {
-    if (observation.kind != ObservationSettings::Kind::contour) continue;
+    if (!traits_of(observation.kind).image) continue;
     projection_ = observation.projection;
     if (camera_info_topic_ == node_.resolveName("camera_info", false)) camera_info_topic_ = observation.camera_info;
     break;

@@ -35,7 +35,7 @@ SegmentationSettings read_segmentation(const Value& map) {
 const ObservationSettings* find_contour(const ModelSettings& model, int number) {
   int contours = 0;
   for (const ObservationSettings& observation : model.observations) {
-    if (observation.kind == ObservationSettings::Kind::contour && ++contours == number) return &observation;
+    if (traits_of(observation.kind).image && ++contours == number) return &observation;
   }
   if (contours == 0) return nullptr;
   throw InputError(model.name + ": contour_number", std::to_string(number), "1 to " + std::to_string(contours));

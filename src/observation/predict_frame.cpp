@@ -13,10 +13,8 @@ constexpr double kProbe = 1e-4;  // of the body's size: displacement at which th
 }  // namespace
 
 bool sees_named_nodes(const Model& model, const Frame& frame) {
-  return !model.sensors().any() &&
-         std::all_of(frame.observations.begin(), frame.observations.end(), [](const Observation& o) {
-           return o.kind == ObservationKind::vertices || o.kind == ObservationKind::markers;
-         });
+  return !model.sensors().any() && std::all_of(frame.observations.begin(), frame.observations.end(),
+                                               [](const Observation& o) { return traits_of(o.kind).identified; });
 }
 
 Prediction predict_frame(const Model& model, const std::vector<std::unique_ptr<ObservationOperator>>& operators,
@@ -32,8 +30,7 @@ Prediction predict_frame(const Model& model, const std::vector<std::unique_ptr<O
   for (const Observation& observation : frame.observations) {
     const auto& sensor = *operators[static_cast<std::size_t>(observation.source)];
     parts.push_back(sensor.predict(observation, u));
-    const bool named = observation.kind == ObservationKind::vertices || observation.kind == ObservationKind::markers;
-    if (!named) parts.back().predicted.array() += seen.outward;
+    if (!traits_of(observation.kind).identified) parts.back().predicted.array() += seen.outward;
   }
   return concatenate_predictions(std::move(parts));
 }

@@ -48,17 +48,15 @@ void read_contour(const Value& map, ObservationSettings& observation) {
 }
 
 ObservationSettings read_observation(const Value& entry) {
-  static const std::vector<std::pair<std::string, Kind>> kinds = {
-      {"vertices", Kind::vertices}, {"markers", Kind::markers}, {"points", Kind::points}, {"contour", Kind::contour}};
   const std::vector<std::string> keys = entry.keys();
   std::vector<std::string> names;
-  for (const auto& kind : kinds) names.push_back(kind.first);
+  for (const Kind kind : kObservationKinds) names.emplace_back(traits_of(kind).name);
   if (keys.size() != 1) throw InputError(entry.path(), entry.shown(), "one observation an entry: " + join_words(names));
   ObservationSettings observation;
   bool known = false;
-  for (const auto& kind : kinds) {
-    if (kind.first != keys.front()) continue;
-    observation.kind = kind.second;
+  for (const Kind kind : kObservationKinds) {
+    if (traits_of(kind).name != keys.front()) continue;
+    observation.kind = kind;
     known = true;
   }
   const Value& map = entry.at(keys.front());

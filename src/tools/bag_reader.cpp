@@ -15,8 +15,6 @@
 namespace tissue_stiffness {
 namespace {
 
-using Kind = ObservationSettings::Kind;
-
 constexpr double kReorderSpan = 0.5;         // [s] a message may lag behind the newest stamp
 constexpr std::size_t kReorderFrames = 256;  // the same, in frames: bounds the memory
 constexpr std::size_t kMostPictures = 40;    // of each sensor, in the report
@@ -72,7 +70,7 @@ void BagReader::open() {
 
 void BagReader::check_topics() {
   for (const ObservationSettings& observation : settings_.observations) {
-    const bool image = observation.kind == Kind::contour;
+    const bool image = traits_of(observation.kind).image;
     require_topic(observation.topic, image ? "sensor_msgs/Image" : "sensor_msgs/PointCloud2");
     if (image) require_topic(observation.camera_info, "sensor_msgs/CameraInfo");
     rosbag::View messages(bag_, rosbag::TopicQuery(observation.topic));
@@ -100,7 +98,7 @@ std::vector<std::string> BagReader::topics() const {
   std::vector<std::string> out{"/tf"};
   for (const ObservationSettings& observation : settings_.observations) {
     out.push_back(observation.topic);
-    if (observation.kind == Kind::contour) out.push_back(observation.camera_info);
+    if (traits_of(observation.kind).image) out.push_back(observation.camera_info);
   }
   for (const LoadInput& input : load_inputs_) out.push_back(input.topic);
   return out;
@@ -130,7 +128,7 @@ bool BagReader::read_message() {
   for (std::size_t i = 0; i < settings_.observations.size(); ++i) {
     const ObservationSettings& observation = settings_.observations[i];
     const int source = static_cast<int>(i);
-    if (topic == observation.topic && observation.kind == Kind::contour) {
+    if (topic == observation.topic && traits_of(observation.kind).image) {
       const auto image = read_as<sensor_msgs::Image>(message, file_);
       require_stamp(image->header, topic);
       add_measurement(image->header.stamp, {source, nullptr, image});

@@ -34,9 +34,8 @@ SetupFindings check_bag(const ModelSettings& settings, const std::string& record
 }
 
 SetupFindings check_run(const ModelSettings& settings, const std::string& file, const std::function<void()>& checkpoint) {
-  const bool clouds = std::any_of(settings.observations.begin(), settings.observations.end(), [](const auto& observation) {
-    return observation.kind != ObservationSettings::Kind::contour;
-  });
+  const bool clouds = std::any_of(settings.observations.begin(), settings.observations.end(),
+                                  [](const auto& observation) { return !traits_of(observation.kind).image; });
   if (!clouds && !MotionStudy::applies(settings)) return {};
   RecordingReader reader(file, settings, checkpoint, MotionStudy::most_outlines);
   Recording recording = read_recording(reader, settings, file);

@@ -130,7 +130,12 @@ TEST(EveryEffect, IsDescribedAndHasAFileOfItsName) {
     EXPECT_FALSE(spec.summary.empty()) << spec.name;
     EXPECT_FALSE(spec.formula.empty()) << spec.name;
     EXPECT_FALSE(spec.source.empty()) << spec.name;
-    for (const auto& key : spec.keys) EXPECT_FALSE(key.second.empty()) << spec.name << "." << key.first;
+    bool topic = false;
+    for (const auto& key : spec.keys) {
+      EXPECT_FALSE(key.second.empty()) << spec.name << "." << key.first;
+      topic = topic || key.first == "topic";
+    }
+    EXPECT_EQ(topic, spec.load.has_value()) << spec.name << ": nodes and checks ask what its topic carries";
   }
   EXPECT_GE(names.size(), 10U);
 }

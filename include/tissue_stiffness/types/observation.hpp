@@ -10,6 +10,16 @@
 namespace tissue_stiffness {
 
 enum class ObservationKind { vertices, markers, points, contour };
+constexpr ObservationKind kObservationKinds[] = {ObservationKind::vertices, ObservationKind::markers,
+                                                 ObservationKind::points, ObservationKind::contour};
+
+/// What all observations of a kind have in common.
+struct ObservationTraits {
+  const char* name;  ///< its key in the model file
+  bool identified;   ///< its points have numbers: each is a point of the body, and gives three rows
+  bool image;        ///< it is a contour in an image, seen by a camera
+};
+const ObservationTraits& traits_of(ObservationKind kind);
 
 /// The measurement of one sensor at one instant. `source` is the index of its entry in the model file's list
 /// `observations`.
@@ -21,6 +31,11 @@ struct Observation {
   Eigen::VectorXi ids;                     ///< mesh vertex (vertices) or index in `rest` (markers); empty otherwise
   std::shared_ptr<const Contour> contour;  ///< only for contour
   std::shared_ptr<const Camera> camera;    ///< only for contour
+
+  /// Returns the number of rows that it gives.
+  Eigen::Index row_count() const;
+  /// Returns whether some point or some piece of the contour has a number.
+  bool holds_anything() const;
 };
 
 /// All observations of one instant; the estimator makes one step for each frame.
