@@ -113,7 +113,7 @@ Refit refit_with(const FittedModel& base, const RefitTask& task, double rival) {
   const double gain = base.rows.error.squaredNorm() - rows.error.squaredNorm();
   const bool only_quick = known.model().nonlinear() && gain < kComparison.promising * structured_squares(base.rows);
   if (recording_fit.model().nonlinear() && !only_quick) {
-    start->fit = recording_fit.fit(start->fit.w, start->spread, rival);
+    start->fit = model->recording_fit->fit(start->fit.w, start->spread, rival);
     rows = recording_fit.rows(start->fit.w);  // the last full run was at just this place
   }
   model->fit = start->fit;

@@ -171,7 +171,7 @@ std::shared_ptr<const ReducedModel> RecordingFit::reduced() const {
   return std::make_shared<ReducedModel>(model_, options);
 }
 
-BatchFit RecordingFit::fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread, double rival) const {
+BatchFit RecordingFit::fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread, double rival) {
   return quick_ ? fit_from_run_to_run(start, spread, rival) : quick_fit(start, spread, 1.0, rival);
 }
 
@@ -191,7 +191,7 @@ BatchFit RecordingFit::quick_fit(const Eigen::VectorXd& start, const Eigen::Vect
 
 // Every full run tells by how much quick runs are off there. A fit with that correction tells where the next full run has
 // to be.
-BatchFit RecordingFit::fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd spread, double rival) const {
+BatchFit RecordingFit::fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd spread, double rival) {
   const double start = problem(*forward_, training_).start.time;
   std::vector<double> times;
   for (const Frame& frame : recording_.frames) times.push_back(frame.time);

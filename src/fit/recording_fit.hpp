@@ -47,7 +47,7 @@ class RecordingFit {
     double count() const { return static_cast<double>((used.array() > 0.0).count()); }
   };
   /// Returns the rows of the free run at w. A nonlinear model takes a quick run, corrected by what quick runs were off at
-  /// the last full run of a fit. That fit was made here or in the fit that was borrowed from.
+  /// the last full run. Only fit() and borrow() change which run that is.
   Rows rows(const Eigen::VectorXd& w) const;
   /// Returns what the free run at w predicts for each row, over sigma; 0 where that is not finite.
   Eigen::VectorXd predicted(const Eigen::VectorXd& w) const;
@@ -58,7 +58,7 @@ class RecordingFit {
   Eigen::MatrixXd rows_along(const Eigen::VectorXd& w, const Eigen::MatrixXd& shapes, const Rows& rows) const;
   /// Fits the training frames. `rival` is explained at fit_batch. A nonlinear model ends where quick runs promise no
   /// better.
-  BatchFit fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread, double rival = no_rival) const;
+  BatchFit fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread, double rival = no_rival);
   /// Fits the first `share` of the training frames without full runs. `rival` is explained at fit_batch.
   BatchFit quick_fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread, double share = 1.0,
                      double rival = no_rival) const;
@@ -96,15 +96,15 @@ class RecordingFit {
   FitProblem problem(const ForwardModel& forward, const std::vector<Frame>& frames) const;
   /// Returns all training frames, or the first of them copied into `room`.
   const std::vector<Frame>& first_of_training(double share, std::vector<Frame>& room) const;
-  BatchFit fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd spread, double rival) const;
+  BatchFit fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd spread, double rival);
   const ForwardModel& quick() const { return surrogate_ ? *surrogate_ : quick_ ? *quick_ : *forward_; }
 
   const Recording& recording_;
   std::vector<Frame> training_;
-  mutable Model model_;
+  Model model_;
   std::shared_ptr<ForwardModel> forward_;
   std::unique_ptr<ForwardModel> quick_;                    ///< null: forward_ is quick itself
-  mutable std::unique_ptr<CorrectedSurrogate> surrogate_;  ///< at the last full run; null: none yet
+  std::unique_ptr<CorrectedSurrogate> surrogate_;  ///< at the last full run; null: none yet
   std::vector<std::unique_ptr<ObservationOperator>> operators_;
 };
 
