@@ -20,7 +20,7 @@ void find_probabilities_of(std::vector<Hypothesis>& hypotheses) {
 }
 
 // Returns the weight at which the most evident extension gains no more than the structure of the residual says. What gains
-// more does so where the test does not look, across the lowest modes, and there the mesh's error is not known.
+// more gains it across the lowest modes, which the test does not use, because the mesh's error is not known there.
 double least_weight(const Hypothesis& model, const std::vector<Hypothesis>& all) {
   constexpr double none = -std::numeric_limits<double>::infinity();
   if (std::isinf(model.structure)) return none;

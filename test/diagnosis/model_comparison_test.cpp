@@ -299,7 +299,7 @@ TEST(Comparison, GivesNothingToWhatExtendsASufficientModel) {
   EXPECT_EQ(judge(c), Verdict::adequate);
 }
 
-// Evidence that lies where the test does not look counts no more than what the residual of the smaller model shows.
+// Evidence from across the lowest modes counts no more than what the residual of the smaller model shows.
 TEST(Comparison, TakesNoMoreEvidenceThanTheResidualShows) {
   std::vector<Hypothesis> list{hypothesis({}, 0.0, true), hypothesis({"a"}, 500.0, true), hypothesis({"b"}, 499.0, true)};
   list[0].structure = 2.0;
