@@ -268,6 +268,9 @@ void EstimatorNode::show_state(const Estimate& estimate) {
 
 void EstimatorNode::report(const StepResult& result) {
   diagnostics_.set("frames dropped", std::to_string(queue_.dropped()));
+  if (queue_.broken_stamps() > 0) {
+    diagnostics_.set("broken stamps", std::to_string(queue_.broken_stamps()) + ", last " + queue_.last_broken_stamp());
+  }
   if (!result.used) {
     ROS_WARN_STREAM_THROTTLE(1.0, "frame skipped: " << result.reason);
     diagnostics_.count("frames skipped");

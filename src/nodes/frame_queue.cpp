@@ -1,12 +1,18 @@
 #include "nodes/frame_queue.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <sstream>
 
 namespace tissue_stiffness {
 namespace {
 
 const ros::Duration kJumpBack(0.5);
 const ros::Duration kJumpAhead(60.0);
+const ros::Duration kPause(1.0);      // a longer one, in stamps, may be a broken stamp
+constexpr double kPauses = 5.0;       // the same, in intervals between a topic's messages
+constexpr double kSmooth = 0.8;       // of the interval so far, in its running mean
+constexpr std::size_t kAgreeing = 3;  // messages whose stamps agree that the clock has jumped
 constexpr std::chrono::seconds kIdle{1};
 constexpr std::size_t kMostLoads = 100000;  // a load at 1 kHz without a frame for 100 s
 
@@ -22,46 +28,102 @@ void FrameQueue::expect(const std::string& topic) {
 
 void FrameQueue::add_observation(const std::string& topic, const ros::Time& stamp, MakeObservation make) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const Place where = place(topic, stamp);
-  if (where.first < taken_epoch_) {
-    ++dropped_;
-    return;
-  }
-  const auto [frame, is_new] = frames_.try_emplace(where);
-  if (is_new) frame->second.arrival = Clock::now();
-  frame->second.observations.push_back(std::move(make));
-  if (frames_.size() > capacity_) {
-    frames_.erase(frames_.begin());
-    ++dropped_;
-  }
+  accept(topic, stamp, [this, make = std::move(make)](const Place& where) {
+    if (where.first < taken_epoch_) {
+      ++dropped_;
+      return;
+    }
+    const auto [frame, is_new] = frames_.try_emplace(where);
+    if (is_new) frame->second.arrival = Clock::now();
+    frame->second.observations.push_back(make);
+    if (frames_.size() > capacity_) {
+      frames_.erase(frames_.begin());
+      ++dropped_;
+    }
+  });
   changed_.notify_one();
 }
 
 void FrameQueue::add_load(const std::string& topic, const ros::Time& stamp, MakeLoad make) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const Place where = place(topic, stamp);
-  if (where.first < taken_epoch_) return;
-  loads_.emplace(where, std::move(make));
-  if (loads_.size() > kMostLoads) loads_.erase(loads_.begin());
+  accept(topic, stamp, [this, make = std::move(make)](const Place& where) {
+    if (where.first < taken_epoch_) return;
+    loads_.emplace(where, make);
+    if (loads_.size() > kMostLoads) loads_.erase(loads_.begin());
+  });
   changed_.notify_one();
 }
 
-// Returns the epoch that a message belongs to. When its topic's stamps jump, the topic enters the next epoch.
-FrameQueue::Place FrameQueue::place(const std::string& name, const ros::Time& stamp) {
+void FrameQueue::accept(const std::string& name, const ros::Time& stamp, Put put) {
   Topic& topic = topics_[name];
-  const auto epoch = epochs_.find(topic.epoch);
   if (!topic.seen) {
-    topic = {true, newest_epoch_, stamp, stamp};
-  } else if (stamp + kJumpBack < topic.last || (stamp <= topic.first && epoch->second.last > stamp) ||
-             stamp > epoch->second.last + kJumpAhead) {
-    if (topic.epoch == newest_epoch_) ++newest_epoch_;
-    topic = {true, newest_epoch_, stamp, stamp};
+    topic = {true, newest_epoch_, stamp, stamp, {}, {}};
+  } else if (jumps(topic, stamp)) {
+    if (!topic.held.empty() && stamp + kJumpBack < topic.held.back().stamp) leave_out(name, topic);
+    topic.held.push_back({stamp, Clock::now(), std::move(put)});
+    if (topic.held.size() >= kAgreeing) release(topic);
+    return;
   }
-  topic.last = std::max(topic.last, stamp);
+  leave_out(name, topic);
+  put(place(topic, stamp));
+}
+
+// Returns whether the topic's stamps begin anew with this one.
+bool FrameQueue::starts_over(const Topic& topic, const ros::Time& stamp) const {
+  const ros::Time newest = epochs_.at(topic.epoch).last;
+  return stamp + kJumpBack < topic.last || (stamp <= topic.first && newest > stamp) || stamp > newest + kJumpAhead;
+}
+
+bool FrameQueue::jumps(const Topic& topic, const ros::Time& stamp) const {
+  const ros::Duration pause = std::max(kPause, topic.interval * kPauses);
+  return starts_over(topic, stamp) || (!topic.interval.isZero() && stamp > topic.last + pause);
+}
+
+FrameQueue::Place FrameQueue::place(Topic& topic, const ros::Time& stamp) {
+  if (stamp > topic.last) {
+    const ros::Duration since = stamp - topic.last;
+    topic.interval = topic.interval.isZero() ? since : topic.interval * kSmooth + since * (1.0 - kSmooth);
+    topic.last = stamp;
+  }
   const auto [span, is_new] = epochs_.try_emplace(topic.epoch, Span{stamp, stamp});
   span->second.first = std::min(span->second.first, stamp);
   span->second.last = std::max(span->second.last, stamp);
   return {topic.epoch, stamp};
+}
+
+void FrameQueue::release(Topic& topic) {
+  const std::vector<Held> held = std::exchange(topic.held, {});
+  if (starts_over(topic, held.front().stamp)) {
+    if (topic.epoch == newest_epoch_) ++newest_epoch_;
+    topic = {true, newest_epoch_, held.front().stamp, held.front().stamp, topic.interval, {}};
+  }
+  for (const Held& message : held) message.put(place(topic, message.stamp));
+}
+
+void FrameQueue::leave_out(const std::string& name, Topic& topic) {
+  for (const Held& message : topic.held) {
+    const double jump = (message.stamp - topic.last).toSec();
+    std::ostringstream text;
+    text << name << ": " << std::abs(jump) << (jump < 0.0 ? " s back" : " s ahead");
+    last_broken_ = text.str();
+    ++broken_;
+  }
+  topic.held.clear();
+}
+
+FrameQueue::Clock::time_point FrameQueue::release_overdue() {
+  const auto patience = std::chrono::duration_cast<Clock::duration>(patience_);
+  Clock::time_point next = Clock::now() + kIdle;
+  for (auto& [name, topic] : topics_) {
+    if (topic.held.empty()) continue;
+    const Clock::time_point due = topic.held.back().arrival + patience;
+    if (due <= Clock::now()) {
+      release(topic);
+    } else {
+      next = std::min(next, due);
+    }
+  }
+  return next;
 }
 
 bool FrameQueue::complete(const Place& frame) const {
@@ -73,16 +135,19 @@ bool FrameQueue::complete(const Place& frame) const {
 
 std::optional<FrameQueue::Work> FrameQueue::take() {
   std::unique_lock<std::mutex> lock(mutex_);
+  const Clock::time_point idle = Clock::now() + kIdle;
   while (!stopped_) {
     if (std::exchange(woken_, false)) return Work();
+    const Clock::time_point next = release_overdue();
     if (frames_.empty()) {
-      if (changed_.wait_for(lock, kIdle) == std::cv_status::timeout) return Work();
+      if (Clock::now() >= idle) return Work();
+      changed_.wait_until(lock, std::min(idle, next));
       continue;
     }
     const auto& [place, frame] = *frames_.begin();
     const auto deadline = frame.arrival + std::chrono::duration_cast<Clock::duration>(patience_);
     if (complete(place) || Clock::now() >= deadline) return take_front();
-    changed_.wait_until(lock, deadline);
+    changed_.wait_until(lock, std::min(deadline, next));
   }
   return std::nullopt;
 }
@@ -120,7 +185,7 @@ void FrameQueue::restart() {
   dropped_ += frames_.size();
   frames_.clear();
   loads_.clear();
-  for (auto& [name, topic] : topics_) topic.seen = false;
+  for (auto& [name, topic] : topics_) topic = {};
   ++newest_epoch_;
 }
 
@@ -144,6 +209,16 @@ std::size_t FrameQueue::waiting() const {
 std::size_t FrameQueue::dropped() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return dropped_;
+}
+
+std::size_t FrameQueue::broken_stamps() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return broken_;
+}
+
+std::string FrameQueue::last_broken_stamp() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return last_broken_;
 }
 
 }  // namespace tissue_stiffness

@@ -26,6 +26,10 @@ namespace tissue_stiffness {
 /// An epoch is one run of the experiment. A topic starts a new epoch when its stamps go back by more than 0.5 s, or to the
 /// topic's first stamp (a bag that loops), or ahead by more than a minute. Topics may notice this at different times, so
 /// each message is kept in the epoch of its topic.
+///
+/// A clock that jumps stamps many messages, and a broken message is alone. So a message whose stamp jumps, or is ahead of
+/// its topic by more than a pause would be, is held back until two more of its topic agree, or until `patience` has passed
+/// without any. A message that goes on where the topic was before shows that the held ones are broken: they are left out.
 class FrameQueue {
  public:
   /// Conversions run in the worker, because they may wait for a transform. They may throw InputError.
@@ -61,14 +65,26 @@ class FrameQueue {
 
   std::size_t waiting() const;
   std::size_t dropped() const;
+  /// Returns the number of messages that were left out for their stamps.
+  std::size_t broken_stamps() const;
+  /// Names topic and jump of the last one of them; empty: none.
+  std::string last_broken_stamp() const;
 
  private:
   using Clock = std::chrono::steady_clock;
   using Place = std::pair<int, ros::Time>;  ///< epoch and stamp
+  using Put = std::function<void(const Place&)>;
+  struct Held {
+    ros::Time stamp;
+    Clock::time_point arrival;
+    Put put;
+  };
   struct Topic {
     bool seen = false;
     int epoch = 0;
     ros::Time first, last;
+    ros::Duration interval;  ///< between its messages; 0: not known yet
+    std::vector<Held> held;  ///< messages whose stamps have jumped
   };
   struct Span {
     ros::Time first, last;
@@ -78,7 +94,14 @@ class FrameQueue {
     std::vector<MakeObservation> observations;
   };
 
-  Place place(const std::string& topic, const ros::Time& stamp);
+  void accept(const std::string& name, const ros::Time& stamp, Put put);
+  bool starts_over(const Topic& topic, const ros::Time& stamp) const;
+  bool jumps(const Topic& topic, const ros::Time& stamp) const;
+  Place place(Topic& topic, const ros::Time& stamp);
+  void release(Topic& topic);
+  void leave_out(const std::string& name, Topic& topic);
+  /// Releases what no message has contradicted in time. Returns when that has to be asked next.
+  Clock::time_point release_overdue();
   bool complete(const Place& place) const;
   Work take_front();
   int oldest_epoch() const;
@@ -93,7 +116,8 @@ class FrameQueue {
   std::multimap<Place, MakeLoad> loads_;
   int newest_epoch_ = 0;
   int taken_epoch_ = -1;
-  std::size_t dropped_ = 0;
+  std::size_t dropped_ = 0, broken_ = 0;
+  std::string last_broken_;
   bool stopped_ = false, woken_ = false;
 };
 

@@ -139,6 +139,67 @@ TEST_F(FrameQueueTest, ATopicThatMissedALapJoinsTheNewest) {
   EXPECT_EQ(work->loads.size(), 1U);
 }
 
+// One message of a topic is stamped wrongly, and the next ones go on as before.
+TEST_F(PatientFrameQueueTest, ABrokenStampIsLeftOut) {
+  std::size_t broken = 0;
+  double now = 0.0;
+  const auto go_on = [&] {
+    load(now);
+    frame(now);
+    const auto work = queue.take();
+    EXPECT_NEAR((work->stamp - at(now)).toSec(), 0.0, 1e-9);
+    EXPECT_EQ(work->loads.size(), 1U);
+    EXPECT_EQ(work->new_epoch, now == 0.0);
+    now += 0.1;
+  };
+  for (int k = 0; k < 3; ++k) go_on();
+  for (const double jump : {5.0, 3600.0, -1.0, -900.0}) {
+    frame(now + jump);
+    go_on();
+    load(now + jump);
+    go_on();
+    EXPECT_EQ(queue.broken_stamps(), broken += 2);
+  }
+  EXPECT_NE(queue.last_broken_stamp().find("pressure: 899.9 s back"), std::string::npos) << queue.last_broken_stamp();
+  EXPECT_EQ(queue.dropped(), 0U);
+}
+
+// A clock that has jumped stamps all that follow.
+TEST_F(PatientFrameQueueTest, AJumpIsBelievedWhenThreeMessagesAgree) {
+  for (const double t : {0.0, 0.1, 0.2}) {
+    frame(t);
+    take();
+  }
+  frame(1000.0);
+  frame(1000.1);
+  EXPECT_EQ(queue.waiting(), 0U);
+  frame(1000.2);
+  EXPECT_EQ(queue.waiting(), 3U);
+  const auto work = queue.take();
+  EXPECT_TRUE(work->new_epoch);
+  EXPECT_NEAR((work->first_stamp - at(1000.0)).toSec(), 0.0, 1e-9);
+  EXPECT_EQ(queue.broken_stamps(), 0U);
+}
+
+// A pause in the recording is no new run.
+TEST_F(PatientFrameQueueTest, APauseGoesOn) {
+  for (const double t : {0.0, 0.1, 0.2}) {
+    frame(t);
+    take();
+  }
+  for (const double t : {10.0, 10.1, 10.2}) frame(t);
+  const auto work = queue.take();
+  EXPECT_FALSE(work->new_epoch);
+  EXPECT_NEAR((work->stamp - at(10.0)).toSec(), 0.0, 1e-9);
+}
+
+TEST_F(PatientFrameQueueTest, ASlowTopicHasNoBrokenStamps) {
+  for (const double t : {0.0, 2.5, 5.0, 7.5}) {
+    frame(t);
+    EXPECT_NEAR(take(), t, 1e-9);
+  }
+}
+
 TEST_F(FrameQueueTest, AMinuteOfSilenceStartsANewEpoch) {
   frame(0.0);
   take();
