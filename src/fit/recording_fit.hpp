@@ -103,7 +103,7 @@ class RecordingFit {
   std::vector<Frame> training_;
   Model model_;
   std::shared_ptr<ForwardModel> forward_;
-  std::unique_ptr<ForwardModel> quick_;                    ///< null: forward_ is quick itself
+  std::unique_ptr<ForwardModel> quick_;            ///< null: forward_ is quick itself
   std::unique_ptr<CorrectedSurrogate> surrogate_;  ///< at the last full run; null: none yet
   std::vector<std::unique_ptr<ObservationOperator>> operators_;
 };
