@@ -19,7 +19,7 @@ constexpr std::size_t kMostLoads = 100000;  // a load at 1 kHz without a frame f
 }  // namespace
 
 FrameQueue::FrameQueue(std::chrono::duration<double> patience, std::size_t capacity)
-    : patience_(patience), capacity_(capacity) {}
+    : patience_(std::chrono::duration_cast<Clock::duration>(patience)), capacity_(capacity) {}
 
 void FrameQueue::expect(const std::string& topic) {
   const std::lock_guard<std::mutex> lock(mutex_);
@@ -28,14 +28,14 @@ void FrameQueue::expect(const std::string& topic) {
 
 void FrameQueue::add_observation(const std::string& topic, const ros::Time& stamp, MakeObservation make) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  accept(topic, stamp, [this, make = std::move(make)](const Place& where) {
+  accept(topic, stamp, [this, make = std::move(make)](const Place& where) mutable {
     if (where.first < taken_epoch_) {
       ++dropped_;
       return;
     }
     const auto [frame, is_new] = frames_.try_emplace(where);
     if (is_new) frame->second.arrival = Clock::now();
-    frame->second.observations.push_back(make);
+    frame->second.observations.push_back(std::move(make));
     if (frames_.size() > capacity_) {
       frames_.erase(frames_.begin());
       ++dropped_;
@@ -46,9 +46,9 @@ void FrameQueue::add_observation(const std::string& topic, const ros::Time& stam
 
 void FrameQueue::add_load(const std::string& topic, const ros::Time& stamp, MakeLoad make) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  accept(topic, stamp, [this, make = std::move(make)](const Place& where) {
+  accept(topic, stamp, [this, make = std::move(make)](const Place& where) mutable {
     if (where.first < taken_epoch_) return;
-    loads_.emplace(where, make);
+    loads_.emplace(where, std::move(make));
     if (loads_.size() > kMostLoads) loads_.erase(loads_.begin());
   });
   changed_.notify_one();
@@ -112,11 +112,10 @@ void FrameQueue::leave_out(const std::string& name, Topic& topic) {
 }
 
 FrameQueue::Clock::time_point FrameQueue::release_overdue() {
-  const auto patience = std::chrono::duration_cast<Clock::duration>(patience_);
   Clock::time_point next = Clock::now() + kIdle;
   for (auto& [name, topic] : topics_) {
     if (topic.held.empty()) continue;
-    const Clock::time_point due = topic.held.back().arrival + patience;
+    const Clock::time_point due = topic.held.back().arrival + patience_;
     if (due <= Clock::now()) {
       release(topic);
     } else {
@@ -145,7 +144,7 @@ std::optional<FrameQueue::Work> FrameQueue::take() {
       continue;
     }
     const auto& [place, frame] = *frames_.begin();
-    const auto deadline = frame.arrival + std::chrono::duration_cast<Clock::duration>(patience_);
+    const auto deadline = frame.arrival + patience_;
     if (complete(place) || Clock::now() >= deadline) return take_front();
     changed_.wait_until(lock, std::min(deadline, next));
   }

@@ -106,7 +106,7 @@ class FrameQueue {
   Work take_front();
   int oldest_epoch() const;
 
-  const std::chrono::duration<double> patience_;
+  const Clock::duration patience_;
   const std::size_t capacity_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
