@@ -21,6 +21,7 @@ MOTION = (0.01, 0.025)          # rms over the body's length
 MOTION_OVER_NOISE = (4.0, 20.0)
 NOISE = (1e-4, 6e-4)            # m, rms of a coordinate
 STEP, LONG_STEP = 0.001, 0.003  # s, of small and finite strain; a truth is extrapolated from it and its half
+SHORTER = 0.03                  # of the motion: where the half step changes more, a finite strain takes shorter steps
 TRIALS = 3                      # of a hidden effect's strength
 CLOSE = (0.65, 1.5)             # moves the body so many times as far as it should: near enough
 WORST = 0.4                     # displacement over length beyond which a body is not bent
@@ -287,13 +288,13 @@ def rms(values):
     return float(np.sqrt(np.mean(np.square(values))))
 
 
-def step_of(hidden, step=None):
-    return step or (LONG_STEP if any(h.effect == 'geometric_nonlinearity' for h in hidden) else STEP)
+def step_of(effects, step=None):
+    return step or (LONG_STEP if 'geometric_nonlinearity' in effects else STEP)
 
 
 def moved(simulator, scene, hidden, strengths, step=None):
     """With what is hidden; None where the body cannot bear it."""
-    c, extra = scene.config(simulator.simulate, step_of(hidden, step))
+    c, extra = scene.config(simulator.simulate, step_of([h.effect for h in hidden], step))
     for h, s in zip(hidden, strengths):
         h.put(c, extra, s)
     try:
@@ -304,10 +305,19 @@ def moved(simulator, scene, hidden, strengths, step=None):
 
 
 def extrapolated(simulator, scene, hidden, strengths, step=None):
-    """The same without the second-order error of the time steps, by which an undamped body would ring too slowly."""
-    step = step_of(hidden, step)
-    (coarse, _), (fine, area) = (moved(simulator, scene, hidden, strengths, step / part) for part in (1, 2))
-    return (None, 0.0) if coarse is None or fine is None else ((4 * fine - coarse) / 3, area)
+    """The same without the second-order error of the time steps, by which an undamped body would ring too slowly. The
+    extrapolation holds while that error is small, so long steps are halved until it is."""
+    step = step_of([h.effect for h in hidden], step)
+    coarse, _ = moved(simulator, scene, hidden, strengths, step)
+    while coarse is not None:
+        step *= 0.5
+        fine, area = moved(simulator, scene, hidden, strengths, step)
+        if fine is None:
+            break
+        if step <= 0.5 * STEP or rms(fine - coarse) < SHORTER * rms(fine):
+            return (4 * fine - coarse) / 3, area
+        coarse = fine
+    return None, 0.0
 
 
 def find_strength(simulator, scene, h, plain, share):
@@ -338,18 +348,18 @@ def simulate_truth(path, name, folder):
     begun = time.time()
     _, _, body, what = next(row for row in truth_list() if row[0] == name)
     simulator, scene = Simulator(path), Scene(name, body, what)
-    plain, _ = moved(simulator, scene, [], [])
+    shares = dict(what)
+    plain, _ = moved(simulator, scene, [], [], step_of(shares))  # compared with runs of the same steps
     scene.factor = float(scene.rng.uniform(*MOTION) * scene.length / rms(plain))
     if any(scene.gravity):
         scene.factor = min(1.0, scene.factor)
     plain = plain * scene.factor
     hidden = sorted((Hidden(effect, scene) for effect, _ in what), key=lambda h: h.effect != 'geometric_nonlinearity')
-    shares = dict(what)
     found = [find_strength(simulator, scene, h, plain, shares[h.effect]) for h in hidden]
     positions, area = extrapolated(simulator, scene, hidden, [s for s, _ in found])
     if positions is None:
         raise RuntimeError('the body does not bear ' + ' and '.join(h.effect for h in hidden))
-    config, _ = scene.config(simulator.simulate, step_of(hidden))
+    config, _ = scene.config(simulator.simulate, step_of(shares))
     write_truth(simulator, scene, config, positions, area, folder)
     modulus = [scene.modulus]
     for h, (s, _) in zip(hidden, found):
@@ -402,7 +412,7 @@ def check_steps(path, name):
     simulator, scene = Simulator(path), Scene(name, body, what)
     hidden = [Hidden(effect, scene) for effect, _ in what]
     strengths = [h.start() for h in hidden]
-    runs = [extrapolated(simulator, scene, hidden, strengths, step_of(hidden) / part)[0] for part in (1, 2)]
+    runs = [extrapolated(simulator, scene, hidden, strengths, step_of(dict(what)) / part)[0] for part in (1, 2)]
     print('%s: half the step changes %.2f %% of the motion' % (name, 100 * rms(runs[1] - runs[0]) / rms(runs[0])))
 
 
