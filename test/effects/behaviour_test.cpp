@@ -88,6 +88,38 @@ TEST(AddedMass, SitsOnItsRegion) {
   EXPECT_NEAR(spin.dot(extra * spin), 0.05 * (0.1 * 0.1 + 0.02 * 0.02 / 3.0), 1e-12);
 }
 
+// Returns the mass that each node carries.
+Eigen::VectorXd lump(const std::string& place) {
+  const TetMesh mesh = bar_mesh(8, 2, 2);
+  const Model bare(box_settings({kInertia, kLinear}), mesh);
+  const Model loaded(box_settings({kInertia, kLinear, "added_mass: {" + place + ", mass: 0.05}"}), mesh);
+  const SparseMatrix extra = loaded.mass(prior(loaded)) - bare.mass(prior(bare));
+  Eigen::VectorXd out(mesh.node_count());
+  for (int i = 0; i < mesh.node_count(); ++i) out[i] = extra.row(3 * i).sum();
+  return out;
+}
+
+TEST(AddedMass, IsALumpAboutItsPlace) {
+  const TetMesh mesh = bar_mesh(8, 2, 2);
+  double last = 0.0;
+  for (const double x : {0.03, 0.032, 0.07}) {
+    const Eigen::VectorXd mass = lump("center: [" + std::to_string(x) + ", 0, 0]");
+    EXPECT_NEAR(mass.sum(), 0.05, 1e-7);
+    const double middle = mesh.nodes.row(0).dot(mass) / mass.sum();
+    EXPECT_NEAR(middle, x, 0.005);
+    EXPECT_GT(middle, last + 5e-4) << "the lump does not move with its place";
+    last = middle;
+  }
+  const Eigen::VectorXd known = lump("center: [0.03, 0, 0]"), estimated = lump("center: {mean: [0.03, 0, 0], std: 0.01}");
+  EXPECT_LT((known - estimated).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(AddedMass, NeedsARegionOrAPlace) {
+  EXPECT_THROW(lump("region: tip, center: [0, 0, 0]"), InputError);
+  const std::vector<std::string> nowhere{kInertia, kLinear, "added_mass: {mass: 0.05}"};
+  EXPECT_THROW(Model(box_settings(nowhere), bar_mesh()), InputError);
+}
+
 Eigen::VectorXd one(double value) {
   return Eigen::VectorXd::Constant(1, value);
 }

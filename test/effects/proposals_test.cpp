@@ -156,10 +156,8 @@ TEST(Proposals, KnowTheirOtherKinds) {
   EXPECT_TRUE(foundations[1].is_other_kind_of(foundations.back()));
   EXPECT_TRUE(foundations[0].is_other_kind_of(foundations[1]));
   EXPECT_FALSE(foundations[0].is_other_kind_of(foundations[0]));
-  for (const std::string effect : {"foundation", "added_mass"}) {
-    const auto list = proposals_of(effect, base);
-    EXPECT_EQ(other_kinds(list), static_cast<std::ptrdiff_t>(list.size()) - 1) << effect;
-  }
+  EXPECT_EQ(other_kinds(foundations), static_cast<std::ptrdiff_t>(foundations.size()) - 1);
+  EXPECT_EQ(other_kinds(proposals_of("added_mass", base)), 4);  // five regions; a fit moves the places
   // Along x, the bar's length: circumferential, longitudinal and radial without an angle, circumferential with two, y, z
   // and ten oblique directions.
   const auto fibres = proposals_of("fibre_reinforcement", base);
