@@ -10,6 +10,7 @@
 #include "filter/posterior_linearization_filter.hpp"
 #include "fit/coordinate_scan.hpp"
 #include "fit/ensemble.hpp"
+#include "forward/extra_force.hpp"
 #include "forward/reduced_model.hpp"
 #include "meshing/bend_boundary.hpp"
 #include "meshing/refine.hpp"
@@ -192,8 +193,7 @@ std::string MeshError::why_not(const TetMesh& mesh) {
 std::string MeshError::why_not(const Model& model) {
   if (!model.settings().mesh.discretisation_error) return "the model file asks not to";
   for (const Model::Part& part : model.parts()) {
-    if (part.effect->nonlinear_force() != nullptr && part.effect->finite_strain() == nullptr)
-      return part.label + " has no linear form";
+    if (!has_linear_form(part)) return part.label + " has no linear form";
   }
   return why_not(model.mesh());
 }

@@ -13,7 +13,7 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr int kScanPoints = 12;
-constexpr int kSteps = 8;              // a frame: the period error of longer steps would be taken for an effect
+constexpr int kSteps = 6;              // a frame, and half of each: their period error would be taken for an effect
 constexpr int kMostRuns = 8;           // moves of a fit from one full run to the next
 constexpr int kMostCuts = 3;           // cuts of a move that makes it worse
 constexpr double kSettled = 0.2;       // posterior standard deviations: shorter moves need no further run
@@ -59,6 +59,7 @@ void RecordingFit::prepare(const BasisOptions& basis, const ForwardModel* relati
   model_.loads().drive(recording_.first_stamp, recording_.loads);
   BasisOptions whole = basis;
   whole.steps_per_frame = kSteps;
+  whole.extrapolated = true;
   forward_ = make_forward_model(model_, whole, relative);
   const std::vector<int> nodes = observed_nodes(operators_, recording_.frames);
   forward_->restrict_output_to(nodes);

@@ -26,6 +26,10 @@ bool adds_extra_force(const Model::Part& part) {
   return part.effect->nonlinear_force() != nullptr || !part.terms.finite_share.empty();
 }
 
+bool has_linear_form(const Model::Part& part) {
+  return part.effect->nonlinear_force() == nullptr || part.effect->finite_strain() != nullptr;
+}
+
 ExtraForce::ExtraForce(const Model& model, const Eigen::VectorXd& theta) : model_(model), with_(model.point(theta)) {
   const Eigen::VectorXd without = without_extra_force(model, theta);
   without_ = model.point(without);

@@ -27,5 +27,7 @@ class ExtraForce {
 
 /// Returns whether the part may exert such a force.
 bool adds_extra_force(const Model::Part& part);
+/// Returns whether the part is linear under small strain; contact is not.
+bool has_linear_form(const Model::Part& part);
 
 }  // namespace tissue_stiffness

@@ -1,3 +1,7 @@
+#include <algorithm>
+
+#include "forward/extra_force.hpp"
+#include "forward/extrapolated_model.hpp"
 #include "forward/first_order_model.hpp"
 #include "forward/full_model.hpp"
 #include "forward/reduced_model.hpp"
@@ -20,6 +24,9 @@ std::unique_ptr<ForwardModel> make_forward_model(const Model& model, const Basis
   FullModel::Options options;
   options.steps_per_frame = basis.steps_per_frame;
   options.step = model.settings().time.step;
+  const auto& parts = model.parts();
+  if (basis.extrapolated && options.step <= 0.0 && std::all_of(parts.begin(), parts.end(), has_linear_form))
+    return std::make_unique<ExtrapolatedModel>(model, options);
   return std::make_unique<FullModel>(model, options);
 }
 

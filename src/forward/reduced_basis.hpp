@@ -29,6 +29,8 @@ struct BasisOptions {
   /// How nonlinear effects are treated: simulated in full, at first order (FirstOrderModel), or left out.
   enum class Nonlinear { in_full, first_order, left_out } nonlinear = Nonlinear::in_full;
   int steps_per_frame = 4;  ///< for simulations in full
+  /// Extrapolates simulations in full from two lengths of steps, where the model file states none and all is smooth.
+  bool extrapolated = false;
   /// Interpolation from the mesh that this one was refined from. The stiffness then needs no factor, and vectors are
   /// accurate to about a percent.
   std::shared_ptr<const Prolongation> coarser = nullptr;
