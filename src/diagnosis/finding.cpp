@@ -100,7 +100,11 @@ Finding diagnose_once(FittedModel& base, const std::vector<std::string>& wanted,
   Finding out;
   RefitList refits(screening, options, [&](const RefitList& fitted) { so_far(describe_candidate(screening, fitted)); });
   so_far(describe_candidate(screening, refits));
-  out.to_repeat = search_refits(screening, wanted, refits);
+  if (wanted.empty()) {
+    out.to_repeat = search_refits(screening, refits);
+  } else {
+    refit_effects(screening, wanted, refits);
+  }
   out.models = std::make_shared<const ModelComparison>(refits.comparison());
   out.effects = describe_candidate(screening, refits);
   out.believe(refits.compare());

@@ -99,23 +99,28 @@ Refit refit_with(const FittedModel& base, const RefitTask& task, double rival) {
   auto model = std::make_shared<FittedModel>();
   ModelSettings settings = known.model().settings();
   add_effect(settings, task.candidate->proposal.refine);
-  model->recording_fit = std::make_unique<RecordingFit>(settings, known);
-  const RecordingFit& recording_fit = *model->recording_fit;
+  const bool at_first_order = !task.candidate->linear && !known.model().nonlinear();
+  BasisOptions basis = RecordingFit::keeping_root();
+  if (at_first_order) basis.nonlinear = BasisOptions::Nonlinear::first_order;
+  model->recording_fit = std::make_unique<RecordingFit>(settings, known, basis);
   model->recording_fit->borrow(known);
-  const double quick_rival = recording_fit.model().nonlinear() ? no_rival : rival;  // quick runs are off
+  const RecordingFit& quick = *model->recording_fit;
+  const bool nonlinear = quick.model().nonlinear();
+  const double quick_rival = nonlinear ? no_rival : rival;  // quick runs are off
   std::string reason;
-  std::optional<Start> start =
-      task.warm_started
-          ? grown(recording_fit, start_of(recording_fit, task.scanned), quick_rival)
-          : quick_start(recording_fit, known, starts(recording_fit, known, base.fit.w, task), quick_rival, reason);
+  std::optional<Start> start = task.warm_started
+                                   ? grown(quick, start_of(quick, task.scanned), quick_rival)
+                                   : quick_start(quick, known, starts(quick, known, base.fit.w, task), quick_rival, reason);
   if (!start) throw NumericalError(task.effect() + " cannot be refitted: " + reason);
-  RecordingFit::Rows& rows = model->rows = recording_fit.rows(start->fit.w);
+  RecordingFit::Rows& rows = model->rows = quick.rows(start->fit.w);
   const double gain = base.rows.error.squaredNorm() - rows.error.squaredNorm();
-  const bool only_quick = known.model().nonlinear() && gain < kComparison.promising * structured_squares(base.rows);
-  if (recording_fit.model().nonlinear() && !only_quick) {
+  const bool in_full = nonlinear && (task.in_full || gain > kComparison.promising * structured_squares(base.rows));
+  if (in_full) {
+    if (at_first_order) model->recording_fit = std::make_unique<RecordingFit>(settings, known);
     start->fit = model->recording_fit->fit(start->fit.w, start->spread, rival);
-    rows = recording_fit.rows(start->fit.w);  // the last full run was at just this place
+    rows = model->recording_fit->rows(start->fit.w);  // the last full run was at just this place
   }
+  const RecordingFit& recording_fit = *model->recording_fit;
   model->fit = start->fit;
   Refit out;
   out.effect = task.effect();
@@ -130,7 +135,7 @@ Refit refit_with(const FittedModel& base, const RefitTask& task, double rival) {
   out.held_out_rms = rms_error(compared, known.recording(), true);
   out.fitted = start->fit.cost;
   out.cost = rows.error.squaredNorm();
-  if (!only_quick) out.model = std::move(model);
+  if (in_full || !nonlinear) out.model = std::move(model);
   return out;
 }
 

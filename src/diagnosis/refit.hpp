@@ -16,6 +16,7 @@ struct RefitTask {
   Eigen::VectorXd amplitude;
   std::map<std::string, double> scanned = {};  ///< starts for what is neither amplitude nor the base's
   bool warm_started = false;                   ///< `scanned` holds every parameter, from an InitialSegmentFit
+  bool in_full = false;                        ///< a nonlinear model is run in full whatever its first order promises
 
   const std::string& effect() const { return candidate->effect; }
 };
@@ -44,9 +45,10 @@ struct Refit {
   std::shared_ptr<FittedModel> model;  ///< null where it was only run quickly, and for all but the best
 };
 
-/// Fits the training frames by simulation, from the base's fit and the proposal's own starts. A nonlinear model is fitted
-/// in full, unless its quick runs explain next to nothing. `rival` is what another refit was `fitted` with; a fit that does
-/// not beat it may end early. Throws NumericalError when no start can be run.
+/// Fits the training frames by simulation, from the base's fit and the proposal's own starts. A nonlinear model is first
+/// fitted at first order, which costs little. It is run in full if that explains a part of the error. `rival` is what
+/// another refit was `fitted` with; a fit that does not beat it may end early. Throws NumericalError when no start can be
+/// run.
 Refit refit_with(const FittedModel& base, const RefitTask& task, double rival);
 
 }  // namespace tissue_stiffness

@@ -19,11 +19,7 @@ class Search {
   Search(const Screening& screening, RefitList& refits) : screening_(screening), refits_(refits) {}
 
   /// See search_refits.
-  bool operator()(const std::vector<std::string>& wanted) {
-    if (!wanted.empty()) {
-      refit_wanted(wanted);
-      return false;
-    }
+  bool operator()() {
     refit_from_tangents();
     if (!screening_.settled && refits_.move_to_better_base()) return verdict() == Verdict::unexplained;
     if (screening_.tangents_only || !wide()) return false;
@@ -34,7 +30,6 @@ class Search {
   }
 
  private:
-  void refit_wanted(const std::vector<std::string>& wanted);
   void refit_from_tangents();
   void refit_other_variants();
   void refit_from_initial_segment();
@@ -48,22 +43,10 @@ class Search {
   }
   Verdict verdict() const { return judge(refits_.compare()); }
   bool explained() const { return verdict() == Verdict::missing; }
-  /// Returns whether an effect is worth runs in full, which take long: not where its tangent explains next to nothing.
-  bool worth_full_runs(const Ranked& r) const {
-    return r.best->linear || r.score.explained > kComparison.promising * structured_squares(screening_.base.rows);
-  }
 
   const Screening& screening_;
   RefitList& refits_;
 };
-
-void Search::refit_wanted(const std::vector<std::string>& wanted) {
-  std::vector<RefitTask> list;
-  for (const Ranked& r : screening_.ranked) {
-    if (std::find(wanted.begin(), wanted.end(), r.effect) != wanted.end()) list.push_back({r.best, r.score.amplitude});
-  }
-  refits_.add(list);
-}
 
 // Refits every effect where something is to be explained. Elsewhere a tangent has to speak for some effect; then all that
 // tangents hardly tell from it are refitted. The first one goes alone: what falls behind it need not be fitted to the end.
@@ -72,7 +55,7 @@ void Search::refit_from_tangents() {
   const double most = screening_.ranked.empty() ? 0.0 : screening_.ranked.front().evidence;
   const double least = most > kComparison.worthwhile ? most - 2.0 * kComparison.worthwhile : most + 1.0;
   for (const Ranked& r : screening_.ranked) {
-    if (!worth_full_runs(r) || (!wide() && r.evidence < least)) continue;
+    if (!wide() && r.evidence < least) continue;
     (first.empty() ? first : others).push_back({r.best, r.score.amplitude});
   }
   refits_.add(first);
@@ -165,8 +148,18 @@ std::vector<const Candidate*> Search::most_evident_initially() const {
 
 }  // namespace
 
-bool search_refits(const Screening& screening, const std::vector<std::string>& wanted, RefitList& refits) {
-  return Search(screening, refits)(wanted);
+bool search_refits(const Screening& screening, RefitList& refits) {
+  return Search(screening, refits)();
+}
+
+void refit_effects(const Screening& screening, const std::vector<std::string>& effects, RefitList& refits) {
+  std::vector<RefitTask> list;
+  for (const Ranked& r : screening.ranked) {
+    if (std::find(effects.begin(), effects.end(), r.effect) == effects.end()) continue;
+    list.push_back({r.best, r.score.amplitude});
+    list.back().in_full = true;
+  }
+  refits.add(list);
 }
 
 }  // namespace tissue_stiffness

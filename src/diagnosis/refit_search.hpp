@@ -7,10 +7,13 @@
 
 namespace tissue_stiffness {
 
-/// Refits what the tangents rank highest, or `wanted` effects only, if there are any. While nothing is judged to be missing
-/// the search goes on: with other places and directions of the leaders, and with fits that start from the initial segment.
-/// Each stage is one function. Returns true if the round's base has moved and nothing explains what it leaves: the
-/// library's tangents are then to be taken anew there.
-bool search_refits(const Screening& screening, const std::vector<std::string>& wanted, RefitList& refits);
+/// Refits what the tangents rank highest. While nothing is judged to be missing the search goes on: with other places and
+/// directions of the leaders, and with fits that start from the initial segment. Each stage is one function. Returns true
+/// if the round's base has moved and nothing explains what it leaves: the library's tangents are then to be taken anew
+/// there.
+bool search_refits(const Screening& screening, RefitList& refits);
+
+/// Refits these effects only, in full whatever they promise.
+void refit_effects(const Screening& screening, const std::vector<std::string>& effects, RefitList& refits);
 
 }  // namespace tissue_stiffness
