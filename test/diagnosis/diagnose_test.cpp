@@ -120,6 +120,18 @@ TEST(Diagnose, SeesWeakSurroundingsOfASlenderBar) {
   EXPECT_NEAR(d.candidates.front().parameters.at("foundation.stiffness"), 20.0, 1.0);
 }
 
+// No region has it, and no proposal's place is just there.
+TEST(Diagnose, FindsWhereAMassIs) {
+  const Diagnosis d = diagnose_bar(film({"added_mass: {center: [0.07, 0.003, 0.002], mass: 0.004}"}, 8), {});
+  EXPECT_EQ(d.verdict, Verdict::missing);
+  ASSERT_FALSE(d.set.empty());
+  EXPECT_EQ(d.set.front(), "added_mass");
+  const auto& found = d.candidates.front().parameters;
+  EXPECT_NEAR(found.at("added_mass.center_x"), 0.07, 0.005);
+  EXPECT_NEAR(found.at("added_mass.mass"), 0.004, 4e-4);
+  EXPECT_NEAR(found.at("elasticity.young_modulus") / kTruth, 1.0, 0.03);
+}
+
 // The effect is smaller than the noise: what the tangents do not declare may explain it as well.
 TEST(Diagnose, RefitsTheRivalsOfAFaintEffect) {
   const Diagnosis d = diagnose_bar(film({"foundation: {region: top, stiffness: 24}"}, 7), {});
