@@ -205,10 +205,11 @@ class Search {
     const std::size_t most = asked + static_cast<std::size_t>(options_.automatic ? options_.most_steps : 0);
     for (std::size_t k = 0; k < most; ++k) {
       if (k >= asked && finding_.verdict != Verdict::missing) break;
-      const std::vector<Refit> refits =
-          k < asked ? diagnose_once(model_, {options_.add[k]}, options_, finding_.previous).refits : finding_.refits;
-      if (refits.empty()) break;
-      const Library library = add(refits.front());
+      std::optional<Finding> wanted;
+      if (k < asked) wanted = diagnose_once(model_, {options_.add[k]}, options_, finding_.previous);
+      const Finding& from = wanted ? *wanted : finding_;
+      if (from.refits.empty()) break;
+      const Library library = add(from.refits.front(), gained(from));
       bool moved = false;
       finding_ = grown_ ? std::move(*grown_) : examine(model_, after_adding(library), moved);
       grown_.reset();
@@ -307,13 +308,20 @@ class Search {
   Assessment assessment() const { return finding_.models->assess(explained_); }
   BeliefMap validity() const { return belief_map(model_, assessment().left, *finding_.models); }
 
+  // Returns the log evidence that the best refit gains beyond the model that it was found for.
+  static double gained(const Finding& finding) {
+    const auto same = [&](const MissingEffect& e) { return e.effect == finding.refits.front().effect; };
+    return std::find_if(finding.effects.begin(), finding.effects.end(), same)->log_bayes_factor;
+  }
+
   // Returns the library of tangents that the next round may take over.
-  Library add(const Refit& best) {
+  Library add(const Refit& best, double log_bayes_factor) {
     options_.progress("add " + best.effect, 0, 0);
     // What is found beside another effect was compared beside that one only.
     out_.rivals.push_back(grown_ ? std::vector<RivalExplanation>() : rivals_of(finding_, best));
     FittedModel next = extended(model_, best);
     Library library = library_for(next);
+    gained_ = log_bayes_factor;
     out_.final_effects.push_back(best.effect);
     entries_.push_back(best.entry);
     out_.entries.push_back(to_yaml(best.entry));
@@ -338,7 +346,9 @@ class Search {
   // This may be interrupted, so what is published stays whole.
   DiagnosisStep next_step() {
     explained_ = compared_residual(model_);
-    return step_of(model_, explained_, recording_, out_.final_effects);
+    DiagnosisStep step = step_of(model_, explained_, recording_, out_.final_effects);
+    step.log_bayes_factor = gained_;
+    return step;
   }
 
   void publish_step() {
@@ -365,6 +375,7 @@ class Search {
   Finding finding_;                   ///< of model_
   std::optional<Finding> grown_;      ///< of model_ with the best refit; empty where that explains the error alone
   std::vector<EffectEntry> entries_;  ///< of out_.final_effects
+  double gained_ = 0.0;               ///< log evidence, by the last of them
 };
 
 }  // namespace

@@ -243,12 +243,14 @@ std::string staircase(const Diagnosis& d) {
     const std::string name = added.empty() ? "as given" : "+ " + effect_list(added);
     rows += "<tr><td>" + escape_html(name) + "</td><td class=\"n\">" + millimetres(step.held_out_rms) +
             "</td><td class=\"n\">" + millimetres(step.train_rms) + "</td><td class=\"n\">" +
-            millimetres(step.noise_floor) + "</td><td class=\"n\">" + escape_html(moduli(step.parameters)) + "</td></tr>";
+            millimetres(step.noise_floor) + "</td><td class=\"n\">" + escape_html(moduli(step.parameters)) +
+            "</td><td class=\"n\">" + (step.effects.empty() ? "" : short_number(step.log_bayes_factor, 3)) + "</td></tr>";
   }
   return section("staircase", "The error, step by step",
                  "<div id=\"steps\"></div><div class=\"scroll\"><table><thead><tr><th>model</th><th class=\"n\">held-out "
                  "error</th><th class=\"n\">fitted frames</th><th class=\"n\">noise</th><th class=\"n\">Young's "
-                 "modulus</th></tr></thead>" +
+                 "modulus</th><th class=\"n\" title=\"log evidence that the last effect gains\">log Bayes "
+                 "factor</th></tr></thead>" +
                      rows + "</table></div>");
 }
 

@@ -109,6 +109,7 @@ std::string diagnosis_json(const Diagnosis& d) {
                      {"parameters", numbers(s.parameters)},
                      {"train_rms", number(s.train_rms)},
                      {"held_out_rms", number(s.held_out_rms)},
+                     {"log_bayes_factor", number(s.log_bayes_factor)},
                      {"noise_floor", number(s.noise_floor)}});
   }
   json root = {{"complete", d.interrupted.empty()},

@@ -35,6 +35,8 @@ struct DiagnosisStep {
   std::vector<std::string> effects;                               ///< effects added so far
   std::map<std::string, double> parameters;                       ///< values by name
   double train_rms = 0.0, held_out_rms = 0.0, noise_floor = 0.0;  ///< [m]
+  /// Log evidence that the last of them gained when it was added; 0 of the given model.
+  double log_bayes_factor = 0.0;
 };
 
 /// Parts of the free run's error: rms over all rows, either in [m] or in standard deviations.
