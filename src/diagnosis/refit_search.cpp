@@ -26,6 +26,7 @@ class Search {
     if (!explained()) refit_other_variants();
     if (!explained()) refit_from_initial_segment();
     if (!explained()) refit_other_kinds();
+    if (!explained()) refit_faint_nonlinear_effects();
     return false;
   }
 
@@ -34,12 +35,17 @@ class Search {
   void refit_other_variants();
   void refit_from_initial_segment();
   void refit_other_kinds();
+  void refit_faint_nonlinear_effects();
   std::vector<const Candidate*> most_evident_initially() const;
   std::vector<Refit> leaders() const;
   /// Returns whether something is to be explained that tangents may not show. What a model that already has an effect
   /// leaves is small once it passes its test, and tangents are taken at the right place.
   bool wide() const {
     return screening_.tangents_only ? !screening_.given.test.passes() : screening_.given.test.discrepancy() > 0.0;
+  }
+  /// Returns whether the tangent of a nonlinear effect explains little. Fits of such effects take long.
+  bool faint(const Ranked& r) const {
+    return !r.best->linear && !(r.score.explained > kComparison.promising * structured_squares(screening_.base.rows));
   }
   Verdict verdict() const { return judge(refits_.compare()); }
   bool explained() const { return verdict() == Verdict::missing; }
@@ -55,7 +61,7 @@ void Search::refit_from_tangents() {
   const double most = screening_.ranked.empty() ? 0.0 : screening_.ranked.front().evidence;
   const double least = most > kComparison.worthwhile ? most - 2.0 * kComparison.worthwhile : most + 1.0;
   for (const Ranked& r : screening_.ranked) {
-    if (!wide() && r.evidence < least) continue;
+    if (faint(r) || (!wide() && r.evidence < least)) continue;
     (first.empty() ? first : others).push_back({r.best, r.score.amplitude});
   }
   refits_.add(first);
@@ -100,6 +106,15 @@ void Search::refit_other_kinds() {
       if (candidate.effect == leader.effect && candidate.proposal.is_other_kind_of(leader.candidate->proposal))
         list.push_back({&candidate, {}, leader.parameters});
     }
+  }
+  refits_.add(list);
+}
+
+// A tangent says little of an effect that changes the frequencies, and "unexplained" is said of what was tried.
+void Search::refit_faint_nonlinear_effects() {
+  std::vector<RefitTask> list;
+  for (const Ranked& r : screening_.ranked) {
+    if (faint(r) && r.evidence > kComparison.worthwhile) list.push_back({r.best, r.score.amplitude});
   }
   refits_.add(list);
 }

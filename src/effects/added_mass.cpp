@@ -38,7 +38,8 @@ class AddedMass : public Effect {
  public:
   AddedMass(const Value& arguments, const EffectContext& context) {
     if (arguments.has("region") == arguments.has("center")) {
-      throw InputError(arguments.path(), arguments.has("region") ? "region and center" : "neither region nor center",
+      throw InputError(arguments.has("center") ? arguments.at("center").path() : arguments.path(),
+                       arguments.has("center") ? "region and center" : "neither region nor center",
                        "one of `region` and `center`");
     }
     if (arguments.has("region")) {
@@ -138,7 +139,7 @@ EffectSpec added_mass_spec() {
   spec.source = "rigid layer without rotary inertia";
   spec.parameters = {{"mass", "m", "kg", 0.0, 1e4, ParameterSpec::Default::required, 0.0, 0.0, 1},
                      {"center", "c", "m", -1e3, 1e3, ParameterSpec::Default::optional, 0.0, NAN, 3}};
-  spec.keys = {{"region", "facets (or, where it holds none, nodes) that carry it; without it a lump about `center`"}};
+  spec.keys = {{"region", "facets (or, where it holds none, nodes) that carry it, in place of `center`"}};
   spec.proposals = propose;
   return spec;
 }
