@@ -272,9 +272,16 @@ class Search {
       Refit& leader = finding_.refits[i];
       if (!(cost - leader.cost > kComparison.promising * structured)) continue;
       options_.progress("what is missing beside " + leader.effect, 0, 0);
-      auto next = std::make_shared<FittedModel>(extended(model_, leader));
-      bool moved = false;
-      Finding deeper = examine(*next, after_adding(library_for(*next)), moved);
+      std::shared_ptr<FittedModel> next;
+      Finding deeper;
+      try {
+        next = std::make_shared<FittedModel>(extended(model_, leader));
+        bool moved = false;
+        deeper = examine(*next, after_adding(library_for(*next)), moved);
+      } catch (const NumericalError&) {
+        recording_.checkpoint();  // throws if the user ended the diagnosis; otherwise what cannot be run explains nothing
+        continue;
+      }
       leader.model = next;
       if (deeper.models->noise_variance() < finding_.models->noise_variance()) finding_.models = deeper.models;
       Comparison all = finding_.comparison;
