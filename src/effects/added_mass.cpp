@@ -1,5 +1,4 @@
 // Extra mass is attached to the body. It slows the motion, and gravity acts on it.
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -93,11 +92,10 @@ class AddedMass : public Effect {
 
   double share(std::size_t cell, const Eigen::Vector3d& center) const {
     const auto log_weight = [&](const Cell& c) { return -0.5 * ((c.middle - center) / (kWidth * edge_)).squaredNorm(); };
-    double most = log_weight(cells_.front()), sum = 0.0;
-    for (const Cell& c : cells_) most = std::max(most, log_weight(c));
-    for (const Cell& c : cells_) sum += std::exp(log_weight(c) - most);
-    const double out = std::exp(log_weight(cells_[cell]) - most) / sum;
-    return out < kLeast ? 0.0 : out;
+    const double own = log_weight(cells_[cell]);
+    double sum = 0.0;  // of all weights over the own one; infinite where that one is far
+    for (const Cell& c : cells_) sum += std::exp(log_weight(c) - own);
+    return sum * kLeast > 1.0 ? 0.0 : 1.0 / sum;
   }
 
   std::vector<Cell> cells_;  ///< one for a region or a known place
