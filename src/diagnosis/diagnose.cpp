@@ -3,18 +3,19 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
 
 #include "diagnosis/belief_map.hpp"
+#include "diagnosis/describe.hpp"
 #include "diagnosis/finding.hpp"
 #include "diagnosis/fit_entries.hpp"
 #include "diagnosis/missing_force.hpp"
 #include "diagnosis/mix_explanations.hpp"
 #include "diagnosis/residual_views.hpp"
 #include "diagnosis/screening.hpp"
+#include "diagnosis/try_run.hpp"
 #include "effects/registry.hpp"
 #include "estimation/mesh_error.hpp"
 #include "estimation/posterior.hpp"
@@ -48,19 +49,6 @@ FittedModel extended(const FittedModel& base, const Refit& refit) {
                        model.parameters().coordinates(refit.parameters, model.parameters().prior_mean()), kAddedSpread);
 }
 
-DiagnosisStep step_of(const FittedModel& model, const Explained& explained, const Recording& recording,
-                      const std::vector<std::string>& effects) {
-  DiagnosisStep step;
-  step.effects = effects;
-  step.parameters = model.recording_fit->model().parameters().values(model.fit.w);
-  RecordingFit::Rows compared = model.rows;
-  compared.error = explained.error;
-  step.train_rms = rms_error(compared, recording, false);
-  step.held_out_rms = rms_error(compared, recording, true);
-  step.noise_floor = noise_floor(model.rows);
-  return step;
-}
-
 // Returns whether all that `next` has beyond the model acts on the body or in a sensor, and leaves the body's own mass and
 // stiffness alone.
 bool same_body(const Model& model, const Model& next) {
@@ -70,27 +58,6 @@ bool same_body(const Model& model, const Model& next) {
     return std::any_of(model.parts().begin(), model.parts().end(), same) ||
            (terms.mass.empty() && terms.stiffness.empty() && terms.strain_stiffness.empty() && !adds_extra_force(part));
   });
-}
-
-void describe_residual(const FittedModel& model, Diagnosis& out) {
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();  // what the mesh changes is not known yet
-  out.where = where_it_fails(*model.recording_fit, model.rows);
-  out.when = when_it_fails(*model.recording_fit, model.rows);
-  out.residual = residual_views(*model.recording_fit, model.rows);
-  const double count = model.rows.count();
-  const double sigma = noise_floor(model.rows);
-  out.sigmas = {std::sqrt(model.rows.error.squaredNorm() / count), 1.0, unknown, 0.0};
-  out.sigmas.structured = std::sqrt(std::max(0.0, out.sigmas.total * out.sigmas.total - 1.0));
-  const double total = std::sqrt(model.rows.error.cwiseProduct(model.rows.sigma).squaredNorm() / count);
-  out.metres = {total, sigma, unknown, std::sqrt(std::max(0.0, total * total - sigma * sigma))};
-}
-
-BestExplanation best_of(const FittedModel& model, const Finding& finding) {
-  if (finding.refits.empty()) return {};
-  const auto named = [&](const Refit& r) { return !finding.set.empty() && r.effect == finding.set.front(); };
-  const auto at = std::find_if(finding.refits.begin(), finding.refits.end(), named);
-  const Refit& best = at == finding.refits.end() ? finding.refits.front() : *at;
-  return {{best.effect}, 1.0 - best.cost / model.rows.error.squaredNorm(), best.held_out_rms};
 }
 
 // Returns zero for a linear model, whose estimator finds this out and corrects E.
@@ -114,51 +81,10 @@ Eigen::VectorXd believed(const FittedModel& model, const Finding& finding) {
   return model.recording_fit->model().parameters().coordinates(finding.refits.front().parameters, model.fit.w);
 }
 
-std::map<std::string, double> modulus_ratios(const std::map<std::string, double>& parameters,
-                                             const std::map<std::string, double>& over) {
-  std::map<std::string, double> out;
-  for (const auto& [name, value] : parameters) {
-    const auto own = over.find(name);
-    if (is_young_modulus(name) && own != over.end()) out[name] = value / own->second;
-  }
-  return out;
-}
-
-// Returns the other explanations of the set, by their shares of its probability.
-std::vector<RivalExplanation> rivals_of(const Finding& finding, const Refit& added) {
-  const auto believed = [&](const std::string& effect) {
-    return std::find(finding.set.begin(), finding.set.end(), effect) != finding.set.end();
-  };
-  if (!believed(added.effect)) return {};
-  std::vector<RivalExplanation> out;
-  double all = 0.0;
-  for (const MissingEffect& effect : finding.effects) {
-    if (!believed(effect.effect)) continue;
-    all += effect.probability;
-    if (effect.effect == added.effect) continue;
-    out.push_back({effect.effect, effect.probability, modulus_ratios(effect.parameters, added.parameters)});
-  }
-  for (RivalExplanation& rival : out) rival.probability = all > 0.0 ? rival.probability / all : 0.0;
-  return out;
-}
-
-// Returns what else may act, by what it would do to the last model's moduli.
-std::vector<RivalExplanation> traces_of(const Finding& finding, const FittedModel& last) {
-  const std::map<std::string, double> own = last.recording_fit->model().parameters().values(last.fit.w);
-  std::vector<RivalExplanation> out;
-  for (const Trace& trace : finding.comparison.traces()) {
-    const auto same = [&](const Refit& r) { return r.effect == trace.hypothesis->effects.back(); };
-    const auto refit = std::find_if(finding.refits.begin(), finding.refits.end(), same);
-    if (trace.hypothesis->effects.size() > 1 || refit == finding.refits.end()) continue;
-    out.push_back({refit->effect, trace.share, modulus_ratios(refit->parameters, own)});
-  }
-  return out;
-}
-
 /// The search keeps all that is known so far in `out`.
-class Search {
+class ModelSearch {
  public:
-  Search(const Recording& recording, const DiagnosisOptions& options, Diagnosis& out)
+  ModelSearch(const Recording& recording, const DiagnosisOptions& options, Diagnosis& out)
       : recording_(recording), options_(options), out_(out) {
     options_.progress = [this, tell = options.progress](const std::string& step, std::size_t done, std::size_t total) {
       out_.interrupted = step;
@@ -171,7 +97,7 @@ class Search {
     model_ = fit_model(settings, mesh, recording_);
     describe_residual(model_, out_);
     options_.progress("compare the given model with the recording", 0, 0);
-    add_step();
+    add_step(compared_residual(model_), 0.0);
     bool moved = false;
     finding_ = examine(model_, {}, moved, [&](std::vector<MissingEffect> candidates) {
       out_.candidates = std::move(candidates);
@@ -187,7 +113,7 @@ class Search {
     out_.none_of_these = finding_.comparison.none_of_these();
     out_.z = finding_.comparison.given().z;
     out_.set = finding_.set;
-    out_.best = best_of(model_, grown_ ? *grown_ : finding_);
+    out_.best = best_explanation(model_, grown_ ? *grown_ : finding_);
     if (grown_) out_.best.effects.insert(out_.best.effects.begin(), finding_.set.front());
     out_.candidates = finding_.effects;
     out_.next_experiment = next_experiment(finding_.set);
@@ -205,16 +131,7 @@ class Search {
     const std::size_t most = asked + static_cast<std::size_t>(options_.automatic ? options_.most_steps : 0);
     for (std::size_t k = 0; k < most; ++k) {
       if (k >= asked && finding_.verdict != Verdict::missing) break;
-      std::optional<Finding> wanted;
-      if (k < asked) wanted = diagnose_once(model_, {options_.add[k]}, options_, finding_.previous);
-      const Finding& from = wanted ? *wanted : finding_;
-      if (from.refits.empty()) break;
-      const Library library = add(from.refits.front(), gained(from));
-      bool moved = false;
-      finding_ = grown_ ? std::move(*grown_) : examine(model_, after_adding(library), moved);
-      grown_.reset();
-      if (moved) replace_step();
-      out_.final_verdict = finding_.verdict;
+      if (!add_one(k < asked ? options_.add[k] : "")) break;
     }
   }
 
@@ -274,14 +191,12 @@ class Search {
       options_.progress("what is missing beside " + leader.effect, 0, 0);
       std::shared_ptr<FittedModel> next;
       Finding deeper;
-      try {
+      const auto examine_rest = [&] {
         next = std::make_shared<FittedModel>(extended(model_, leader));
         bool moved = false;
         deeper = examine(*next, after_adding(library_for(*next)), moved);
-      } catch (const NumericalError&) {
-        recording_.checkpoint();  // throws if the user ended the diagnosis; otherwise what cannot be run explains nothing
-        continue;
-      }
+      };
+      if (!try_run(recording_, examine_rest)) continue;
       leader.model = next;
       if (deeper.models->noise_variance() < finding_.models->noise_variance()) finding_.models = deeper.models;
       Comparison all = finding_.comparison;
@@ -289,7 +204,7 @@ class Search {
       all.assess(*finding_.models);
       finding_.believe(all);
       if (finding_.verdict != Verdict::missing) continue;
-      take_over(leader.effect, deeper.effects);
+      finding_.take_over(leader.effect, deeper.effects);
       finding_.believe(std::move(all));
       std::rotate(finding_.refits.begin(), finding_.refits.begin() + static_cast<std::ptrdiff_t>(i),
                   finding_.refits.begin() + static_cast<std::ptrdiff_t>(i) + 1);
@@ -298,64 +213,66 @@ class Search {
     }
   }
 
-  // What was found beside the leader takes the place of what was found without it.
-  void take_over(const std::string& leader, const std::vector<MissingEffect>& deeper) {
-    std::vector<MissingEffect>& known = finding_.effects;
-    for (const MissingEffect& effect : deeper) {
-      if (std::count(finding_.set.begin(), finding_.set.end(), effect.effect) == 0) continue;
-      const auto at = std::find_if(known.begin(), known.end(), [&](const auto& k) { return k.effect == effect.effect; });
-      if (at == known.end()) {
-        known.push_back(effect);
-      } else if (effect.effect != leader) {
-        *at = effect;
-      }
-    }
-  }
-
   Assessment assessment() const { return finding_.models->assess(explained_); }
   BeliefMap validity() const { return belief_map(model_, assessment().left, *finding_.models); }
 
-  // Returns the log evidence that the best refit gains beyond the model that it was found for.
-  static double gained(const Finding& finding) {
-    const auto same = [&](const MissingEffect& e) { return e.effect == finding.refits.front().effect; };
-    return std::find_if(finding.effects.begin(), finding.effects.end(), same)->log_bayes_factor;
+  // Adds the `wanted` effect, or the best one if it is empty, and judges what is left. Returns false where that cannot be
+  // done; the diagnosis then says why.
+  bool add_one(const std::string& wanted) {
+    std::string reason;
+    std::optional<Finding> asked;
+    if (!wanted.empty()) asked = diagnose_once(model_, {wanted}, options_, finding_.previous);
+    const Finding& from = asked ? *asked : finding_;
+    const std::string name = wanted.empty() ? from.refits.front().effect : wanted;
+    Library library;
+    const auto add_it = [&] { library = add(from.refits.front()); };
+    if (from.refits.empty() || !try_run(recording_, add_it, &reason)) {
+      out_.failure = name + " cannot be added: " + (from.refits.empty() ? from.failure : reason);
+      return false;
+    }
+    const auto judge_it = [&] {
+      bool moved = false;
+      finding_ = grown_ ? std::move(*grown_) : examine(model_, after_adding(library), moved);
+      if (moved) replace_step();
+    };
+    const bool judged = try_run(recording_, judge_it, &reason);
+    if (!judged) out_.failure = "what is left beside " + name + " cannot be judged: " + reason;
+    grown_.reset();
+    out_.final_verdict = judged ? finding_.verdict : Verdict::unexplained;
+    return judged;
   }
 
-  // Returns the library of tangents that the next round may take over.
-  Library add(const Refit& best, double log_bayes_factor) {
+  // Returns the library of tangents that the next round may take over. Nothing changes where it throws NumericalError.
+  Library add(const Refit& best) {
     options_.progress("add " + best.effect, 0, 0);
+    FittedModel next = extended(model_, best);
+    Explained explained = compared_residual(next);
+    Library library = library_for(next);
     // What is found beside another effect was compared beside that one only.
     out_.rivals.push_back(grown_ ? std::vector<RivalExplanation>() : rivals_of(finding_, best));
-    FittedModel next = extended(model_, best);
-    Library library = library_for(next);
-    gained_ = log_bayes_factor;
     out_.final_effects.push_back(best.effect);
     entries_.push_back(best.entry);
     out_.entries.push_back(to_yaml(best.entry));
     out_.final_verdict = Verdict::unfinished;
     if (!given_.recording_fit) given_ = std::move(model_);
     model_ = std::move(next);
-    add_step();
+    add_step(std::move(explained), best.log_bayes_factor);
     return library;
   }
 
-  void add_step() {
-    out_.steps.emplace_back(next_step());
+  void add_step(Explained explained, double log_bayes_factor) {
+    explained_ = std::move(explained);
+    out_.steps.push_back(describe_step(model_, explained_, out_.final_effects));
+    out_.steps.back().log_bayes_factor = log_bayes_factor;
     publish_step();
   }
 
-  // Replaces the last step after the model has been fitted anew.
+  // Replaces the last step after the model has been fitted anew. This may be interrupted, so what is published stays whole.
   void replace_step() {
-    out_.steps.back() = next_step();
-    publish_step();
-  }
-
-  // This may be interrupted, so what is published stays whole.
-  DiagnosisStep next_step() {
-    explained_ = compared_residual(model_);
-    DiagnosisStep step = step_of(model_, explained_, recording_, out_.final_effects);
-    step.log_bayes_factor = gained_;
-    return step;
+    Explained explained = compared_residual(model_);
+    const double log_bayes_factor = out_.steps.back().log_bayes_factor;
+    out_.steps.pop_back();
+    add_step(std::move(explained), log_bayes_factor);
   }
 
   void publish_step() {
@@ -382,7 +299,6 @@ class Search {
   Finding finding_;                   ///< of model_
   std::optional<Finding> grown_;      ///< of model_ with the best refit; empty where that explains the error alone
   std::vector<EffectEntry> entries_;  ///< of out_.final_effects
-  double gained_ = 0.0;               ///< log evidence, by the last of them
 };
 
 }  // namespace
@@ -395,7 +311,7 @@ Diagnosis diagnose(const ModelSettings& settings, const TetMesh& mesh, const Rec
   }
   for (const std::string& name : options.ignore) effect_spec({name, name, {}});  // throws for an unknown effect
   Diagnosis out;
-  Search search(recording, options, out);
+  ModelSearch search(recording, options, out);
   try {
     search.judge_given(settings, mesh);
     search.add_effects();

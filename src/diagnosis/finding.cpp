@@ -44,7 +44,7 @@ MissingEffect describe_candidate(const Screening& screening, const RefitList& re
   out.effect = refit.effect;
   out.entry = to_yaml(refit.entry);
   out.parameters = refit.parameters;
-  out.log_bayes_factor = refits.log_bayes_factor(refit);
+  out.log_bayes_factor = refit.log_bayes_factor;
   const double gain = 2.0 * (refit.assessment.log_likelihood - refits.given().log_likelihood);
   out.p_value = likelihood_ratio_p_value(gain, static_cast<double>(parameters_of(*refit.candidate)));
   out.explained = 1.0 - refit.cost / screening.cost;
@@ -93,6 +93,19 @@ void Finding::believe(Comparison known) {
   }
 }
 
+void Finding::take_over(const std::string& leader, const std::vector<MissingEffect>& deeper) {
+  std::vector<MissingEffect>& known = effects;
+  for (const MissingEffect& effect : deeper) {
+    if (std::count(set.begin(), set.end(), effect.effect) == 0) continue;
+    const auto at = std::find_if(known.begin(), known.end(), [&](const auto& k) { return k.effect == effect.effect; });
+    if (at == known.end()) {
+      known.push_back(effect);
+    } else if (effect.effect != leader) {
+      *at = effect;
+    }
+  }
+}
+
 Finding diagnose_once(FittedModel& base, const std::vector<std::string>& wanted, const DiagnosisOptions& options,
                       const PreviousRound& previous, const CandidatesSoFar& so_far) {
   Screening screening(base, options, previous);
@@ -109,6 +122,7 @@ Finding diagnose_once(FittedModel& base, const std::vector<std::string>& wanted,
   out.effects = describe_candidate(screening, refits);
   out.believe(refits.compare());
   out.refits = refits.take();
+  out.failure = refits.failure();
   out.discretisation_error = screening.discretisation_error;
   out.previous = {screening.finer.recording_fit, out.models, screening.library, screening.tangents_only};
   out.base_moved = refits.base_moved();

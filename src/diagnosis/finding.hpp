@@ -24,9 +24,12 @@ struct Finding {
   bool base_moved = false;             ///< the base fits better elsewhere, and has been moved there
   bool to_repeat = false;  ///< the search has to be repeated from the moved base, because nothing explains what it leaves
   std::shared_ptr<const ModelComparison> models;
+  std::string failure;  ///< why the last refit that could not be run failed; empty: none
 
   /// Takes verdict, set and the effects' probabilities from that comparison.
   void believe(Comparison known);
+  /// Replaces what was found without the `leader` by what was found beside it.
+  void take_over(const std::string& leader, const std::vector<MissingEffect>& deeper);
 };
 
 /// It hears of the candidates, best first, whenever more is known of them.

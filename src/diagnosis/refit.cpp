@@ -92,50 +92,62 @@ Start grown(const RecordingFit& recording_fit, Start start, double rival) {
   return start;
 }
 
-}  // namespace
-
-Refit refit_with(const FittedModel& base, const RefitTask& task, double rival) {
+// Returns where the quick runs of a model fit best.
+Start quick_fit_of(const RecordingFit& quick, const FittedModel& base, const RefitTask& task, double rival) {
+  if (task.warm_started) return grown(quick, start_of(quick, task.scanned), rival);
   const RecordingFit& known = *base.recording_fit;
-  auto model = std::make_shared<FittedModel>();
+  std::string reason;
+  std::optional<Start> start = quick_start(quick, known, starts(quick, known, base.fit.w, task), rival, reason);
+  if (!start) throw NumericalError(task.effect() + " cannot be refitted: " + reason);
+  return *start;
+}
+
+// Fits the base with the task's proposal. `in_full` says whether a nonlinear model was run in full.
+FittedModel fit_extended(const FittedModel& base, const RefitTask& task, double rival, bool& in_full) {
+  const RecordingFit& known = *base.recording_fit;
   ModelSettings settings = known.model().settings();
   add_effect(settings, task.candidate->proposal.refine);
   const bool at_first_order = !task.candidate->linear && !known.model().nonlinear();
   BasisOptions basis = RecordingFit::keeping_root();
   if (at_first_order) basis.nonlinear = BasisOptions::Nonlinear::first_order;
-  model->recording_fit = std::make_unique<RecordingFit>(settings, known, basis);
-  model->recording_fit->borrow(known);
-  const RecordingFit& quick = *model->recording_fit;
-  const bool nonlinear = quick.model().nonlinear();
-  const double quick_rival = nonlinear ? no_rival : rival;  // quick runs are off
-  std::string reason;
-  std::optional<Start> start = task.warm_started
-                                   ? grown(quick, start_of(quick, task.scanned), quick_rival)
-                                   : quick_start(quick, known, starts(quick, known, base.fit.w, task), quick_rival, reason);
-  if (!start) throw NumericalError(task.effect() + " cannot be refitted: " + reason);
-  RecordingFit::Rows& rows = model->rows = quick.rows(start->fit.w);
-  const double gain = base.rows.error.squaredNorm() - rows.error.squaredNorm();
-  const bool in_full = nonlinear && (task.in_full || gain > kComparison.promising * structured_squares(base.rows));
-  if (in_full) {
-    if (at_first_order) model->recording_fit = std::make_unique<RecordingFit>(settings, known);
-    start->fit = model->recording_fit->fit(start->fit.w, start->spread, rival);
-    rows = model->recording_fit->rows(start->fit.w);  // the last full run was at just this place
-  }
-  const RecordingFit& recording_fit = *model->recording_fit;
-  model->fit = start->fit;
+  FittedModel out;
+  out.recording_fit = std::make_unique<RecordingFit>(settings, known, basis);
+  out.recording_fit->borrow(known);
+  const bool nonlinear = out.recording_fit->model().nonlinear();
+  const Start start = quick_fit_of(*out.recording_fit, base, task, nonlinear ? no_rival : rival);  // quick runs are off
+  out.fit = start.fit;
+  out.rows = out.recording_fit->rows(out.fit.w);
+  const double gain = base.rows.error.squaredNorm() - out.rows.error.squaredNorm();
+  in_full = nonlinear && (task.in_full || gain > kComparison.promising * structured_squares(base.rows));
+  if (!in_full) return out;
+  if (at_first_order) out.recording_fit = std::make_unique<RecordingFit>(settings, known);
+  out.fit = out.recording_fit->fit(start.fit.w, start.spread, rival);
+  out.rows = out.recording_fit->rows(out.fit.w);  // the last full run was at just this place
+  return out;
+}
+
+}  // namespace
+
+Refit refit_with(const FittedModel& base, const RefitTask& task, double rival) {
+  const RecordingFit& known = *base.recording_fit;
+  bool in_full = false;
+  auto fitted = std::make_shared<FittedModel>(fit_extended(base, task, rival, in_full));
+  const Model& model = fitted->recording_fit->model();
   Refit out;
   out.effect = task.effect();
   out.candidate = task.candidate;
   std::vector<EffectEntry> entries{task.candidate->proposal.refine};
-  fit_entries(entries, recording_fit.model(), start->fit);
+  fit_entries(entries, model, fitted->fit);
   out.entry = entries.front();
-  out.parameters = recording_fit.model().parameters().values(start->fit.w);
-  out.explained = std::make_shared<const Explained>(compared_residual(*model, added_amplitudes(recording_fit, known)));
-  RecordingFit::Rows compared = rows;
+  out.parameters = model.parameters().values(fitted->fit.w);
+  out.explained =
+      std::make_shared<const Explained>(compared_residual(*fitted, added_amplitudes(*fitted->recording_fit, known)));
+  RecordingFit::Rows compared = fitted->rows;
   compared.error = out.explained->error;
   out.held_out_rms = rms_error(compared, known.recording(), true);
-  out.fitted = start->fit.cost;
-  out.cost = rows.error.squaredNorm();
-  if (in_full || !nonlinear) out.model = std::move(model);
+  out.fitted = fitted->fit.cost;
+  out.cost = fitted->rows.error.squaredNorm();
+  if (in_full || !model.nonlinear()) out.model = std::move(fitted);
   return out;
 }
 

@@ -42,6 +42,7 @@ struct Refit {
   double cost = 0.0;                           ///< sum of squared errors over sigma, all frames
   std::shared_ptr<const Explained> explained;  ///< the model as it is compared
   Assessment assessment;
+  double log_bayes_factor = 0.0;       ///< beyond the given model, over all variants of the effect, of which one was fitted
   std::shared_ptr<FittedModel> model;  ///< null where it was only run quickly, and for all but the best
 };
 

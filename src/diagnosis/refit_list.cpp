@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "diagnosis/missing_force.hpp"
+#include "diagnosis/try_run.hpp"
 #include "effects/registry.hpp"
 #include "forward/for_each_index.hpp"
-#include "tissue_stiffness/types/error.hpp"
 #include "types/stop_request.hpp"
 
 namespace tissue_stiffness {
@@ -28,23 +28,21 @@ std::ptrdiff_t parameters_of(const Candidate& candidate) {
 }
 
 void RefitList::try_each(std::size_t count, const std::function<std::string(std::size_t)>& name,
-                         const std::function<void(std::size_t)>& work) const {
+                         const std::function<void(std::size_t)>& work) {
   std::mutex telling;
   std::size_t over = 0;
-  const auto& checkpoint = screening_.base.recording_fit->recording().checkpoint;
+  const Recording& recording = screening_.base.recording_fit->recording();
   const auto try_one = [&](std::size_t i) {
-    checkpoint();
+    recording.checkpoint();
     {
       const std::lock_guard<std::mutex> lock(telling);
       options_.progress(name(i), over, count);
     }
-    try {
-      work(i);
-    } catch (const NumericalError&) {
-      // The checkpoint throws if the user ended the diagnosis; otherwise a model that cannot be run explains nothing.
-      checkpoint();
-    }
+    std::string reason;
+    const bool run = try_run(
+        recording, [&] { work(i); }, &reason);
     const std::lock_guard<std::mutex> lock(telling);
+    if (!run) failure_ = reason;
     ++over;
   };
   for_each_index(count, try_one, tbb::simple_partitioner());
@@ -88,10 +86,6 @@ void RefitList::keep(std::vector<std::optional<Refit>> done) {
 double RefitList::variants_of(const std::string& effect) const {
   const auto same = [&](const Candidate& c) { return c.effect == effect; };
   return static_cast<double>(std::count_if(screening_.candidates.begin(), screening_.candidates.end(), same));
-}
-
-double RefitList::log_bayes_factor(const Refit& refit) const {
-  return refit.assessment.log_evidence - given_.log_evidence - std::log(variants_of(refit.effect));
 }
 
 // Beforehand the given model is as probable as all effects together. All effects are alike, however many variants each has.
@@ -156,10 +150,13 @@ bool RefitList::move_to_better_base() {
 void RefitList::assess() {
   compared_.reset();
   given_ = comparison_.assess(*base_);
-  tbb::parallel_for(std::size_t{0}, refits_.size(),
-                    [&](std::size_t i) { refits_[i].assessment = comparison_.assess(*refits_[i].explained); });
+  tbb::parallel_for(std::size_t{0}, refits_.size(), [&](std::size_t i) {
+    Refit& refit = refits_[i];
+    refit.assessment = comparison_.assess(*refit.explained);
+    refit.log_bayes_factor = refit.assessment.log_evidence - given_.log_evidence - std::log(variants_of(refit.effect));
+  });
   std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t i = 0; i < refits_.size(); ++i) order.emplace_back(-log_bayes_factor(refits_[i]), i);
+  for (std::size_t i = 0; i < refits_.size(); ++i) order.emplace_back(-refits_[i].log_bayes_factor, i);
   std::stable_sort(order.begin(), order.end());
   std::vector<Refit> sorted;
   for (const auto& [evidence, i] : order) sorted.push_back(std::move(refits_[i]));

@@ -49,15 +49,13 @@ class RefitList {
   /// Compares the given model, each refit, and something unknown beside the given model and beside the best refit.
   const Comparison& compare();
   const Assessment& given() const { return given_; }  ///< of the given model
-  /// Returns the log evidence of a refit beyond the given model's, over all variants of its effect, of which one was
-  /// fitted.
-  double log_bayes_factor(const Refit& refit) const;
   const ModelComparison& comparison() const { return comparison_; }
+  const std::string& failure() const { return failure_; }  ///< why the last model that could not be run failed
   std::vector<Refit> take() { return std::move(refits_); }
 
   /// Does each piece of work on a core of its own, and tells its name. A model that cannot be run is left out.
   void try_each(std::size_t count, const std::function<std::string(std::size_t)>& name,
-                const std::function<void(std::size_t)>& work) const;
+                const std::function<void(std::size_t)>& work);
 
  private:
   /// Returns how many variants of an effect the library proposes.
@@ -76,6 +74,7 @@ class RefitList {
   std::vector<Refit> refits_;
   std::optional<Comparison> compared_;  ///< empty after a new refit or another base
   bool base_moved_ = false;
+  std::string failure_;
 };
 
 }  // namespace tissue_stiffness

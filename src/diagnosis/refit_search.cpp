@@ -14,9 +14,9 @@ constexpr std::size_t kWarmStartsOf = 2;  // those of one effect
 constexpr std::size_t kLeaders = 3;       // refits whose other variants and kinds are tried
 
 /// The search goes stage by stage, and only while nothing explains the recording.
-class Search {
+class RefitSearch {
  public:
-  Search(const Screening& screening, RefitList& refits) : screening_(screening), refits_(refits) {}
+  RefitSearch(const Screening& screening, RefitList& refits) : screening_(screening), refits_(refits) {}
 
   /// See search_refits.
   bool operator()() {
@@ -56,7 +56,7 @@ class Search {
 
 // Refits every effect where something is to be explained. Elsewhere a tangent has to speak for some effect; then all that
 // tangents hardly tell from it are refitted. The first one goes alone: what falls behind it need not be fitted to the end.
-void Search::refit_from_tangents() {
+void RefitSearch::refit_from_tangents() {
   std::vector<RefitTask> first, others;
   const double most = screening_.ranked.empty() ? 0.0 : screening_.ranked.front().evidence;
   const double least = most > kComparison.worthwhile ? most - 2.0 * kComparison.worthwhile : most + 1.0;
@@ -69,7 +69,7 @@ void Search::refit_from_tangents() {
 }
 
 // Returns up to kLeaders refits, best first. They are copies, because the list changes while they are used.
-std::vector<Refit> Search::leaders() const {
+std::vector<Refit> RefitSearch::leaders() const {
   std::vector<Refit> out;
   for (const Refit& refit : refits_.all()) {
     if (out.size() < kLeaders) out.push_back(refit);
@@ -78,7 +78,7 @@ std::vector<Refit> Search::leaders() const {
 }
 
 // Refits the best variant of each leader that differs from the refitted one, because tangents choose badly between them.
-void Search::refit_other_variants() {
+void RefitSearch::refit_other_variants() {
   std::vector<RefitTask> list;
   for (const Refit& leader : leaders()) {
     const Score known = screening_.scorer->score(leader.candidate->tangent);
@@ -98,7 +98,7 @@ void Search::refit_other_variants() {
 }
 
 // Refits the leaders in other directions, or on other regions, from the rhythm (or what else is scanned) that they found.
-void Search::refit_other_kinds() {
+void RefitSearch::refit_other_kinds() {
   std::vector<RefitTask> list;
   for (const Refit& leader : leaders()) {
     if (leader.candidate->proposal.kind_keys.empty()) continue;
@@ -111,7 +111,7 @@ void Search::refit_other_kinds() {
 }
 
 // A tangent says little of an effect that changes the frequencies, and "unexplained" is said of what was tried.
-void Search::refit_faint_nonlinear_effects() {
+void RefitSearch::refit_faint_nonlinear_effects() {
   std::vector<RefitTask> list;
   for (const Ranked& r : screening_.ranked) {
     if (faint(r) && r.evidence > kComparison.worthwhile) list.push_back({r.best, r.score.amplitude});
@@ -121,7 +121,7 @@ void Search::refit_faint_nonlinear_effects() {
 
 // Where phases have drifted apart a tangent says little: what is unexplained may be any effect's, of any direction and
 // strength. The best fits of the initial segment tell where to start.
-void Search::refit_from_initial_segment() {
+void RefitSearch::refit_from_initial_segment() {
   const std::vector<const Candidate*> variants = most_evident_initially();
   std::vector<std::optional<InitialSegmentFit>> fits(variants.size());
   refits_.try_each(
@@ -143,7 +143,7 @@ void Search::refit_from_initial_segment() {
 }
 
 // Returns for each effect and kind the candidate with most evidence in the initial segment.
-std::vector<const Candidate*> Search::most_evident_initially() const {
+std::vector<const Candidate*> RefitSearch::most_evident_initially() const {
   const std::vector<Eigen::Index>& offsets = screening_.base.rows.offsets;
   const Eigen::Index rows = offsets[static_cast<std::size_t>(kInitialSegment * static_cast<double>(offsets.size() - 1))];
   const Scorer scorer(screening_.error.head(rows), screening_.nuisance_tangents.topRows(rows),
@@ -164,7 +164,7 @@ std::vector<const Candidate*> Search::most_evident_initially() const {
 }  // namespace
 
 bool search_refits(const Screening& screening, RefitList& refits) {
-  return Search(screening, refits)();
+  return RefitSearch(screening, refits)();
 }
 
 void refit_effects(const Screening& screening, const std::vector<std::string>& effects, RefitList& refits) {

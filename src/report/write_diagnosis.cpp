@@ -91,7 +91,8 @@ std::string verdict_sentence(const Diagnosis& d) {
 }  // namespace
 
 std::string diagnosis_sentence(const Diagnosis& d) {
-  return verdict_sentence(d) + traces(d);
+  const std::string failure = d.failure.empty() ? "" : " But " + d.failure + ".";
+  return verdict_sentence(d) + traces(d) + failure;
 }
 
 void write_diagnosis(const Diagnosis& d, const DiagnosisTexts& texts, const Showing& showing,

@@ -5,9 +5,11 @@
 #include <atomic>
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include "../box_model.hpp"
 #include "tissue_stiffness/diagnosis/diagnose.hpp"
+#include "tissue_stiffness/types/error.hpp"
 #include "types/stop_request.hpp"
 #include "verification/experiment.hpp"
 
@@ -107,6 +109,45 @@ TEST_F(InterruptedDiagnosis, EndsAtAnyFrame) {
     EXPECT_FALSE(d.interrupted.empty()) << trial;
     EXPECT_TRUE(d.verdict == Verdict::unfinished || d.verdict == whole.verdict) << to_string(d.verdict);
   }
+}
+
+/// Runs with models of which one cannot be run once `begun` is set.
+class FailingDiagnosis : public InterruptedDiagnosis {
+ protected:
+  FailingDiagnosis() {
+    recording_.checkpoint = [this] {
+      if (begun_.exchange(false)) throw NumericalError("a model that cannot be run");
+    };
+  }
+
+  std::atomic<bool> begun_{false};
+};
+
+TEST_F(FailingDiagnosis, KeepsTheModelThatCannotBeExtended) {
+  options_.progress = [&](const std::string& what, std::size_t, std::size_t) {
+    if (what.rfind("add ", 0) == 0) begun_ = true;
+  };
+  const Diagnosis d = run();
+  EXPECT_TRUE(d.interrupted.empty());
+  EXPECT_EQ(d.failure, "viscous_damping cannot be added: a model that cannot be run");
+  EXPECT_EQ(d.verdict, Verdict::missing);
+  EXPECT_EQ(d.final_verdict, Verdict::missing);
+  EXPECT_TRUE(d.final_effects.empty());
+  EXPECT_TRUE(d.entries.empty());
+  EXPECT_EQ(d.steps.size(), 1U);
+}
+
+TEST_F(FailingDiagnosis, BelievesNoModelWhoseRestCannotBeJudged) {
+  options_.so_far = [&, added = false](const Diagnosis& known) mutable {
+    if (known.steps.size() > 1 && !std::exchange(added, true)) begun_ = true;
+  };
+  const Diagnosis d = run();
+  EXPECT_TRUE(d.interrupted.empty());
+  EXPECT_EQ(d.failure, "what is left beside viscous_damping cannot be judged: a model that cannot be run");
+  EXPECT_EQ(d.final_verdict, Verdict::unexplained);
+  EXPECT_EQ(d.final_effects, std::vector<std::string>{"viscous_damping"});
+  EXPECT_EQ(d.entries.size(), 1U);
+  EXPECT_EQ(d.steps.size(), 2U);
 }
 
 }  // namespace

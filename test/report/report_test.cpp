@@ -279,6 +279,9 @@ TEST(DiagnosisSentence, NamesWhatIsMissingAndWhatFitsAsWell) {
   EXPECT_EQ(diagnosis_sentence(d),
             "Missing: rigid drift and viscous damping together. They would remove 95.0 % of the squared error (held-out "
             "error 0.310 mm to 0.200 mm). These data fit as well: mass damping. To tell them apart: excite two modes.");
+  d.failure = "rigid_drift cannot be added: tetrahedron 3 turned inside out";
+  EXPECT_NE(diagnosis_sentence(d).find("two modes. But rigid_drift cannot be added: tetrahedron 3 turned inside out."),
+            std::string::npos);
 }
 
 TEST(DiagnosisHtml, TellsTheStoryInOrder) {
