@@ -1,8 +1,7 @@
 #include "check/check_mesh.hpp"
 
-#include <cmath>
-
 #include "check/words.hpp"
+#include "meshing/mesh_limits.hpp"
 #include "meshing/surface.hpp"
 #include "meshing/triangle_surface.hpp"
 #include "tissue_stiffness/meshing/mesh_io.hpp"
@@ -11,7 +10,6 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr double kLargest = 2.5, kSmallest = 1e-4;  // [m] taller than a person; what a camera hardly sees
-constexpr double kMostTets = 1e7;
 
 std::string shown_extent(const Eigen::Vector3d& extent) {
   return plain_number(extent.x()) + " x " + plain_number(extent.y()) + " x " + plain_number(extent.z()) + " m";
@@ -36,8 +34,8 @@ SetupFindings check_extent(const MeshSettings& settings, const Eigen::Vector3d& 
                                bodies + "; if the file is in m already, write `scale: 1`."}};
   }
   const double edge = settings.max_edge_length;
-  const double tets = edge > 0.0 ? std::abs(volume) * 6.0 * std::sqrt(2.0) / (edge * edge * edge) : 0.0;
-  if (tets > kMostTets) {
+  const double tets = edge > 0.0 ? tetrahedra_of(volume, edge) : 0.0;
+  if (tets > kMostTetrahedra) {
     return {{"mesh.max_edge_length",
              "mesh.max_edge_length: edges of " + plain_number(edge) + " m divide the mesh of " + settings.file + " (" +
                  shown_extent(extent) + ") into about " + plain_number(tets, 1) +

@@ -10,6 +10,7 @@
 #include "forward/extra_force.hpp"
 #include "forward/for_each_index.hpp"
 #include "settings/extend_model.hpp"
+#include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -38,6 +39,17 @@ ProposalContext context_of(const RecordingFit& base, const Eigen::VectorXd& w) {
           density,
           duration / static_cast<double>(frames.size()),
           duration};
+}
+
+// Returns whether a model file may hold the proposal. Its scale follows from the model's own numbers, which may be absurd.
+bool can_be_written(const Proposal& proposal) {
+  try {
+    read_parameters(to_settings(proposal.entry));
+    read_parameters(to_settings(proposal.refine));
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
 }
 
 Eigen::VectorXd difference(const Eigen::VectorXd& changed, const RecordingFit::Rows& base, double amplitude) {
@@ -139,6 +151,7 @@ std::vector<Candidate> find_candidates(const RecordingFit& base, const Eigen::Ve
   for (const EffectSpec& spec : effect_specs()) {
     if (!spec.proposals || std::find(ignore.begin(), ignore.end(), spec.name) != ignore.end()) continue;
     for (Proposal& proposal : spec.proposals(context)) {
+      if (!can_be_written(proposal)) continue;
       all.push_back({spec.name, std::move(proposal), {}});
       for (const ParameterSpec& parameter : spec.parameters) {
         if (parameter.name != all.back().proposal.amplitude) continue;

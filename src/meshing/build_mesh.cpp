@@ -1,7 +1,10 @@
 #include "tissue_stiffness/meshing/build_mesh.hpp"
 
+#include <cmath>
+
 #include "meshing/bodies.hpp"
 #include "meshing/file_ending.hpp"
+#include "meshing/mesh_limits.hpp"
 #include "meshing/tet_file_check.hpp"
 #include "meshing/tetgen_mesher.hpp"
 #include "meshing/triangle_surface.hpp"
@@ -12,8 +15,13 @@
 namespace tissue_stiffness {
 namespace {
 
+double longest_side(const TriangleSurface& surface) {
+  return (surface.vertices.rowwise().maxCoeff() - surface.vertices.rowwise().minCoeff()).maxCoeff();
+}
+
 TetMesh fill(const TriangleSurface& surface, const MeshSettings& settings, bool keep_triangles, const std::string& where,
              const std::function<void()>& checkpoint) {
+  check_edge_length(settings.max_edge_length, longest_side(surface), enclosed_volume(surface), where);
   return check_tet_file(fill_surface(surface, settings.max_edge_length, keep_triangles, where, checkpoint), 1.0,
                         settings.order, where);
 }
@@ -46,6 +54,8 @@ TetMesh build_mesh(const MeshSettings& settings, const Contour& contour, const C
     return fill(surface, settings, false, "mesh.extrude", checkpoint);
   }
   const ProfileFit fit = fit_profile(viewing_rays(contour, camera), camera, settings.axis);
+  // The surface itself is made of such edges.
+  check_edge_length(settings.max_edge_length, fit.profile.radius(0.0) + fit.profile.radius(M_PI), 0.0, "mesh.revolve");
   TetMesh mesh =
       fill(revolution_surface(fit.profile, settings.max_edge_length), settings, true, "mesh.revolve", checkpoint);
   curve_boundary(mesh, fit.profile);

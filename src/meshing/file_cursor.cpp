@@ -89,6 +89,12 @@ long long FileCursor::integer(const std::string& what, long long lower, long lon
   return value;
 }
 
+void FileCursor::require(long long count, std::size_t bytes, const std::string& what) const {
+  const std::size_t left = bytes_.size() - position_;
+  if (static_cast<unsigned long long>(count) <= left / bytes + 1) return;  // the last one needs no separator behind it
+  fail("only " + std::to_string(left) + " more bytes", std::to_string(count) + " entries (" + what + ")");
+}
+
 const char* FileCursor::binary(std::size_t count, const std::string& what) {
   if (count > bytes_.size() - position_) fail("the end of the file", std::to_string(count) + " bytes of " + what);
   const char* data = bytes_.data() + position_;

@@ -31,6 +31,10 @@ class FileCursor {
   double number(const std::string& what);
   long long integer(const std::string& what, long long lower, long long upper);
 
+  /// Fails unless the rest of the file may hold `count` entries of so many bytes at least. A count is checked by it before
+  /// memory is taken, so that a wrong count costs none.
+  void require(long long count, std::size_t bytes, const std::string& what) const;
+
   /// Returns `count` bytes of binary data at the present position.
   const char* binary(std::size_t count, const std::string& what);
 

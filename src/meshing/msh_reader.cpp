@@ -104,7 +104,9 @@ class MshReader {
       in_.integer("dimension", 0, 3);
       in_.integer("entity", -kMaxTag, kMaxTag);
       if (in_.integer("parametric", 0, 1) == 1) in_.fail("parametric coordinates", "a file saved without them");
-      std::vector<long long> tags(static_cast<std::size_t>(in_.integer("node count", 0, kMaxCount)));
+      const long long count = in_.integer("node count", 0, kMaxCount);
+      in_.require(count, 8, "nodes");  // a number, three coordinates, and their separators
+      std::vector<long long> tags(static_cast<std::size_t>(count));
       for (long long& tag : tags) tag = in_.integer("node number", 0, kMaxTag);
       for (const long long tag : tags) read_point(tag);
     }

@@ -20,7 +20,9 @@ Nodes read_nodes(const std::string& file) {
   FileCursor in(file);
   in.skip_comments('#');
   Nodes nodes;
-  nodes.points.resize(3, in.integer("vertex count", 1, kMaxCount));
+  const long long count = in.integer("vertex count", 1, kMaxCount);
+  in.require(count, 8, "vertices");  // four numbers and their separators
+  nodes.points.resize(3, count);
   in.integer("dimension", 3, 3);
   in.line();
   for (Eigen::Index i = 0; i < nodes.points.cols(); ++i) {
@@ -45,6 +47,7 @@ TetFile read_node_ele(const std::string& file) {
   const long long size = in.integer("nodes a tetrahedron", 4, 10);
   if (size != 4 && size != 10) in.fail(std::to_string(size) + " nodes a tetrahedron", "4 or 10");
   in.line();
+  in.require(count, 2 * (static_cast<std::size_t>(size) + 1), "tetrahedra");
   TetFile result{std::move(nodes.points), Eigen::MatrixXi(size, count)};
   for (Eigen::Index tet = 0; tet < count; ++tet) {
     in.skip_comments('#');

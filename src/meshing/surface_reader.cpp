@@ -9,6 +9,7 @@
 
 #include "meshing/file_cursor.hpp"
 #include "meshing/file_ending.hpp"
+#include "meshing/mesh_limits.hpp"
 #include "meshing/triangle_surface.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
@@ -161,6 +162,7 @@ TriangleSurface load_surface(const std::string& file, double scale) {
   if (surface.triangle_count() == 0) throw InputError(where, "no triangles", "a closed surface");
   if (!surface.vertices.allFinite()) check_watertight(surface, where);
   surface.vertices *= scale;
+  check_body_size(surface.vertices, where);
   const Eigen::Vector3d extent = surface.vertices.rowwise().maxCoeff() - surface.vertices.rowwise().minCoeff();
   surface = weld(surface, kWeldShare * extent.norm());
   check_watertight(surface, where);

@@ -10,6 +10,7 @@
 
 #include "meshing/elevate.hpp"
 #include "meshing/file_cursor.hpp"
+#include "meshing/mesh_limits.hpp"
 #include "meshing/surface.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
@@ -18,15 +19,6 @@ namespace {
 
 // A tetrahedron whose volume is below this share of its longest edge's cube counts as flat.
 constexpr double kFlatShare = 1e-9;
-
-void check_coordinates(const TetFile& input, const std::string& where) {
-  if (input.tets.cols() == 0) throw InputError(where, "no tetrahedra", "at least one");
-  for (Eigen::Index i = 0; i < input.nodes.cols(); ++i) {
-    if (!input.nodes.col(i).allFinite()) {
-      throw InputError(where, "vertex " + std::to_string(i) + " with a coordinate that is not finite", "finite numbers");
-    }
-  }
-}
 
 // Numbers the corners first and then the mid-edge nodes, each in the file's order.
 TetMesh number_corners_first(const TetFile& input, double scale, const std::string& where) {
@@ -106,7 +98,8 @@ void swap_handedness(TetMesh& mesh) {
   mesh.tets.row(7).swap(mesh.tets.row(8));  // edges 03 and 13
 }
 
-void orient(TetMesh& mesh, const std::string& where) {
+// Returns the tetrahedra's signed volumes, none of which is zero.
+Eigen::VectorXd signed_volumes(const TetMesh& mesh, const std::string& where) {
   Eigen::VectorXd volumes(mesh.tet_count());
   for (int tet = 0; tet < mesh.tet_count(); ++tet) {
     volumes[tet] = tet_volume(mesh, tet);
@@ -114,21 +107,56 @@ void orient(TetMesh& mesh, const std::string& where) {
     if (std::abs(volumes[tet]) > kFlatShare * length * length * length) continue;
     throw InputError(where, describe_tet(mesh, tet) + " without volume", "tetrahedra with a positive volume");
   }
+  return volumes;
+}
+
+void refuse_inverted(const TetMesh& mesh, const Eigen::VectorXd& volumes, const std::string& where) {
+  for (int tet = 0; tet < mesh.tet_count(); ++tet) {
+    if (volumes[tet] > 0.0) continue;
+    throw InputError(where, describe_tet(mesh, tet) + ", which is inverted",
+                     "corners 0-3 with (x1-x0) x (x2-x0) . (x3-x0) > 0");
+  }
+}
+
+void orient(TetMesh& mesh, const std::string& where) {
+  const Eigen::VectorXd volumes = signed_volumes(mesh, where);
   if ((volumes.array() < 0.0).all()) {
     swap_handedness(mesh);
-    return;
+  } else {
+    refuse_inverted(mesh, volumes, where);
   }
-  Eigen::Index worst;
-  if (volumes.minCoeff(&worst) > 0.0) return;
-  for (worst = 0; volumes[worst] > 0.0; ++worst) continue;
-  throw InputError(where, describe_tet(mesh, static_cast<int>(worst)) + ", which is inverted",
-                   "corners 0-3 with (x1-x0) x (x2-x0) . (x3-x0) > 0");
+}
+
+// Throws for a facet that is no face of its tetrahedron, with its corners first.
+void check_facets(const TetMesh& mesh, const std::string& where) {
+  for (Eigen::Index f = 0; f < mesh.facets.cols(); ++f) {
+    const auto tet = mesh.tets.col(mesh.facet_tet[f]);
+    for (Eigen::Index i = 0; i < mesh.facets.rows(); ++i) {
+      const auto nodes = i < 3 ? tet.head(4) : tet.tail(tet.size() - 4);
+      if ((nodes.array() == mesh.facets(i, f)).any()) continue;
+      throw InputError(where, "facet " + std::to_string(f) + " with node " + std::to_string(mesh.facets(i, f)),
+                       "nodes of its tetrahedron " + std::to_string(mesh.facet_tet[f]));
+    }
+  }
 }
 
 }  // namespace
 
+void check_tet_mesh(const TetMesh& mesh, const std::string& where) {
+  check_body_size(mesh.nodes, where);
+  if (mesh.tet_count() == 0 || mesh.facet_count() == 0) {
+    throw InputError(where, "no tetrahedra or no facets", "a body and its boundary");
+  }
+  if (mesh.corner_count < 4 || mesh.tets.topRows(4).maxCoeff() >= mesh.corner_count) {
+    throw InputError(where, "corner_count " + std::to_string(mesh.corner_count), "nodes that hold every corner, first");
+  }
+  refuse_inverted(mesh, signed_volumes(mesh, where), where);
+  check_facets(mesh, where);
+}
+
 TetMesh check_tet_file(const TetFile& input, double scale, int order, const std::string& where) {
-  check_coordinates(input, where);
+  if (input.tets.cols() == 0) throw InputError(where, "no tetrahedra", "at least one");
+  check_body_size(scale * input.nodes, where);
   TetMesh mesh = number_corners_first(input, scale, where);
   check_coincident(mesh, where);
   orient(mesh, where);

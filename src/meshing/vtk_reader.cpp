@@ -56,8 +56,8 @@ class VtkReader {
     const std::string key = in_.word();
     if (key == "POINTS") {
       const long long count = in_.integer("point count", 0, kMaxCount);
-      grid.points.resize(3, count);
       const std::vector<double> values = read_array<double>(in_.word(), 3 * count, "points");
+      grid.points.resize(3, count);
       std::copy(values.begin(), values.end(), grid.points.data());
     } else if (key == "CELLS") {
       read_cells(grid);
@@ -82,6 +82,10 @@ class VtkReader {
       grid.offsets = read_array<long long>(in_.word(), first, "cell offsets");
       if (in_.word() != "CONNECTIVITY") in_.fail("another section", "CONNECTIVITY behind OFFSETS");
       grid.nodes = read_array<long long>(in_.word(), second, "cell nodes");
+      if (!std::is_sorted(grid.offsets.begin(), grid.offsets.end()) || grid.offsets.empty() || grid.offsets.front() != 0 ||
+          grid.offsets.back() != second) {
+        in_.fail("cell offsets that do not run from 0 to the " + std::to_string(second) + " cell nodes", "growing offsets");
+      }
     } else {
       const std::vector<long long> list = read_array<long long>("int", second, "cells");
       grid.offsets.push_back(0);
@@ -100,6 +104,7 @@ class VtkReader {
 
   template <typename To>
   std::vector<To> read_array(const std::string& type, long long count, const std::string& what) {
+    in_.require(count, 2, what);  // a digit and a separator, or more in binary
     std::vector<To> values(static_cast<std::size_t>(count));
     if (!binary_) {
       for (To& value : values) {

@@ -4,6 +4,7 @@
 #include <ros/ros.h>
 
 #include <cstdio>
+#include <utility>
 
 namespace tissue_stiffness {
 namespace {
@@ -55,6 +56,31 @@ void Diagnostics::state(std::uint8_t level, const std::string& message) {
   status_.message = message;
 }
 
+void Diagnostics::expect(const std::string& topic, double longest) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  inputs_[topic] = {longest, ros::WallTime::now(), false};
+}
+
+void Diagnostics::heard(const std::string& topic) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  Input& input = inputs_.at(topic);
+  input.last = ros::WallTime::now();
+  input.heard = true;
+}
+
+void Diagnostics::add_inputs(diagnostic_msgs::DiagnosticStatus& status) const {
+  for (const auto& [topic, input] : inputs_) {
+    const double age = (ros::WallTime::now() - input.last).toSec();
+    char text[64];
+    std::snprintf(text, sizeof text, input.heard ? "%.1f" : "nothing for %.1f", age);
+    status.values.push_back(entry("age of " + topic + " [s]", text));
+    if (!(age > input.longest) || status.level > diagnostic_msgs::DiagnosticStatus::WARN) continue;
+    std::snprintf(text, sizeof text, " for %.0f s", age);
+    status.level = diagnostic_msgs::DiagnosticStatus::WARN;
+    status.message += "; no message on " + topic + text;
+  }
+}
+
 void Diagnostics::bad_message(const std::string& what) {
   ROS_WARN_STREAM_THROTTLE(1.0, "left out: " << what);
   count("bad messages");
@@ -63,17 +89,18 @@ void Diagnostics::bad_message(const std::string& what) {
 
 void Diagnostics::publish() {
   const std::lock_guard<std::mutex> lock(mutex_);
-  status_.values.clear();
-  for (const auto& [key, count] : counts_) status_.values.push_back(entry(key, std::to_string(count)));
-  for (const auto& [key, text] : texts_) status_.values.push_back(entry(key, text));
+  diagnostic_msgs::DiagnosticStatus status = status_;
+  add_inputs(status);
+  for (const auto& [key, count] : counts_) status.values.push_back(entry(key, std::to_string(count)));
+  for (const auto& [key, text] : texts_) status.values.push_back(entry(key, text));
   for (const auto& [name, stage] : stages_) {
     char text[64];
     std::snprintf(text, sizeof text, "%.3f mean, %.3f longest", 1e3 * stage.sum / stage.runs, 1e3 * stage.longest);
-    status_.values.push_back(entry(name + " [ms]", text));
+    status.values.push_back(entry(name + " [ms]", text));
   }
   diagnostic_msgs::DiagnosticArray array;
   array.header.stamp = ros::Time::now();
-  array.status.push_back(status_);
+  array.status.push_back(std::move(status));
   publisher_.publish(array);
 }
 

@@ -22,6 +22,12 @@ class Diagnostics {
   void time(const std::string& stage, double seconds);
   void state(std::uint8_t level, const std::string& message);
 
+  /// Watches an input by its topic. Its age is published. If nothing has come for more than `longest` [s, wall time], a
+  /// level of OK becomes WARN, and the message names the topic.
+  void expect(const std::string& topic, double longest);
+  /// Notes that a message has come on a topic, usable or not.
+  void heard(const std::string& topic);
+
   /// Counts a message that was left out, and logs it at most once a second.
   void bad_message(const std::string& what);
 
@@ -30,13 +36,20 @@ class Diagnostics {
     double sum = 0.0, longest = 0.0;
     int runs = 0;
   };
+  struct Input {
+    double longest;
+    ros::WallTime last;
+    bool heard = false;
+  };
   void publish();
+  void add_inputs(diagnostic_msgs::DiagnosticStatus& status) const;
 
   std::mutex mutex_;
   diagnostic_msgs::DiagnosticStatus status_;
   std::map<std::string, int> counts_;
   std::map<std::string, std::string> texts_;
   std::map<std::string, Stage> stages_;
+  std::map<std::string, Input> inputs_;
   ros::Publisher publisher_;
   ros::WallTimer timer_;
 };

@@ -45,12 +45,14 @@ void EstimatorInputs::listen(std::uint32_t queue_size) {
 template <typename Message, typename Add>
 void EstimatorInputs::subscribe(const std::string& topic, std::uint32_t queue_size, Add add) {
   queue_.expect(topic);
+  diagnostics_.expect(topic, settings_.stale_after);
   const boost::function<void(const boost::shared_ptr<const Message>&)> callback =
       [this, topic, add](const boost::shared_ptr<const Message>& message) {
+        diagnostics_.heard(topic);
         try {
           require_stamp(message->header, topic);
           add(message);
-        } catch (const InputError& error) {
+        } catch (const std::exception& error) {
           diagnostics_.bad_message(error.what());
         }
       };

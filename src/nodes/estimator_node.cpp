@@ -51,13 +51,8 @@ EstimatorNode::EstimatorNode(ros::NodeHandle node, const NodeSettings& settings)
       running_(settings_) {
   const ModelCheck::Options check{read_number(settings.own, key("diagnosis_period")),
                                   read_number(settings.own, key("diagnosis_window"))};
-  services_ = std::make_unique<ModelServices>(node, poses_.model_frame(), check, [this](const ModelSettings& changed) {
-    {
-      const std::lock_guard<std::mutex> lock(changes_mutex_);
-      model_ = changed;
-    }
-    queue_.wake();
-  });
+  services_ = std::make_unique<ModelServices>(node, settings_.directory, poses_.model_frame(), check,
+                                              [this](const ModelSettings& changed) { change_model(changed); });
   if (settings_.mesh.source != MeshSettings::Source::file) inputs_.listen(queue_size_);
   reset_service_ = node.advertiseService("reset", &EstimatorNode::on_reset, this);
   mesh_subscriber_ = node.subscribe("mesh", 1, &EstimatorNode::on_mesh, this);
@@ -71,6 +66,7 @@ EstimatorNode::~EstimatorNode() {
     stopped_ = true;
   }
   mesh_arrived_.notify_all();
+  answered_.notify_all();
   queue_.stop();
   worker_.join();
 }
@@ -81,7 +77,7 @@ void EstimatorNode::on_mesh(const TetMeshConstPtr& message) {
     const std::lock_guard<std::mutex> lock(changes_mutex_);
     mesh_ = std::move(mesh);
     mesh_arrived_.notify_all();
-  } catch (const InputError& error) {
+  } catch (const std::exception& error) {
     diagnostics_.bad_message(error.what());
   }
 }
@@ -106,27 +102,34 @@ void EstimatorNode::run() {
     exit_code_ = 1;
     ros::shutdown();
   }
+  const std::lock_guard<std::mutex> lock(changes_mutex_);
+  stopped_ = true;  // a service may wait for an answer
+  answered_.notify_all();
 }
 
 void EstimatorNode::work() {
   const std::optional<TetMesh> first = wait_for_mesh();
   if (!first) return;
   watch_.mesh_came(*first);
-  if (settings_.map) require_map(Model(settings_, *first));
-  build(*first);
+  build(running_, *first);
   inputs_.listen(queue_size_);
   while (const auto work = queue_.take()) {
-    if (take_changes()) {
-      diagnostics_.set("frames waiting", std::to_string(queue_.waiting() + 1));  // this one included
-      process(*work);
-      if (work->observations.empty()) {
-        catch_up();
-        mark_stale();
-      }
-      diagnostics_.set("frames waiting", std::to_string(queue_.waiting()));
-      diagnostics_.set("reprocessing", estimator_->reprocesses() ? "yes" : "no");
+    try {
+      if (take_changes()) take(*work);
+    } catch (const std::exception& error) {  // no message ends the node
+      diagnostics_.bad_message(error.what());
     }
   }
+}
+
+void EstimatorNode::take(const FrameQueue::Work& work) {
+  diagnostics_.set("frames waiting", std::to_string(queue_.waiting() + 1));  // this one included
+  if (!process(work)) {
+    catch_up();
+    mark_stale();
+  }
+  diagnostics_.set("frames waiting", std::to_string(queue_.waiting()));
+  diagnostics_.set("reprocessing", estimator_->reprocesses() ? "yes" : "no");
 }
 
 std::optional<TetMesh> EstimatorNode::wait_for_mesh() {
@@ -143,26 +146,48 @@ bool EstimatorNode::take_changes() {
     mesh = std::exchange(mesh_, std::nullopt);
     model = std::exchange(model_, std::nullopt);
   }
-  if (model) running_ = *model;
+  if (!mesh && !model) return true;
+  std::string refusal;
+  try {
+    build(model ? *model : running_, mesh ? *mesh : TetMesh(estimator_->mesh()));
+  } catch (const std::exception& error) {
+    refusal = error.what();
+    if (mesh) diagnostics_.bad_message("mesh: the one before is kept: " + refusal);
+  }
+  if (model) {
+    const std::lock_guard<std::mutex> lock(changes_mutex_);
+    answer_ = refusal;
+    answered_.notify_all();
+  }
+  if (!refusal.empty()) return true;
   if (mesh) {
-    build(*mesh);
     queue_.restart();
     return false;
   }
-  if (model) {
-    build(TetMesh(estimator_->mesh()));
-    run_again();
-  }
+  run_again();
   return true;
 }
 
-void EstimatorNode::build(const TetMesh& mesh) {
-  estimator_ = std::make_unique<Estimator>(running_, mesh);
+void EstimatorNode::change_model(const ModelSettings& changed) {
+  std::unique_lock<std::mutex> lock(changes_mutex_);
+  model_ = changed;
+  answer_.reset();
+  queue_.wake();
+  answered_.wait(lock, [this] { return stopped_ || answer_; });
+  if (!answer_) throw InputError("the node ends; nothing was changed");
+  if (!answer_->empty()) throw InputError(*answer_);
+}
+
+void EstimatorNode::build(const ModelSettings& settings, const TetMesh& mesh) {
+  if (settings.map) require_map(Model(settings, mesh));
+  auto estimator = std::make_unique<Estimator>(settings, mesh);
+  outputs_.prepare(settings, mesh);
+  running_ = settings;
+  estimator_ = std::move(estimator);
   last_.reset();
   estimator_->work_in_background();
   services_->start(running_, mesh);
   inputs_.set_vertex_count(mesh.corner_count);
-  outputs_.prepare(running_, mesh);
   map_.start(running_, mesh);
   for (const std::string& line : estimator_->description()) ROS_INFO("%s", line.c_str());
   diagnostics_.state(DiagnosticStatus::OK, to_string(EstimateState::no_data));
@@ -184,25 +209,26 @@ void EstimatorNode::run_again() {
 }
 
 void EstimatorNode::start_epoch(const ros::Time& first_stamp) {
-  const Estimate& previous = estimator_->estimate();
+  const Estimate previous = estimator_->estimate();
+  estimator_->reset();
   if (previous.state != EstimateState::no_data) {
     ROS_INFO("starting again from the prior; the run before found %s", shown(previous).c_str());
     diagnostics_.set("previous_estimate", shown(previous));
     diagnostics_.count("restarts");
+    outputs_.publish(estimator_->estimate(), first_stamp);  // the last one is latched, and no longer holds
   }
-  estimator_->reset();
   last_.reset();
   estimator_->set_first_stamp(first_stamp.toSec());
   services_->check().start_epoch(first_stamp.toSec());
   map_.start_epoch();
 }
 
-void EstimatorNode::process(const FrameQueue::Work& work) {
+bool EstimatorNode::process(const FrameQueue::Work& work) {
   if (work.new_epoch) start_epoch(work.first_stamp);
   const auto left_out = [this](const auto& convert) {
     try {
       convert();
-    } catch (const InputError& error) {
+    } catch (const std::exception& error) {
       diagnostics_.bad_message(error.what());
     }
   };
@@ -215,10 +241,10 @@ void EstimatorNode::process(const FrameQueue::Work& work) {
   Frame frame;
   frame.time = work.stamp.toSec();
   for (const auto& make : work.observations) left_out([&] { frame.observations.push_back(make()); });
-  if (frame.observations.empty()) return;
+  if (frame.observations.empty()) return false;
   const StepResult result = estimator_->step(frame);
   report(result);
-  if (!result.used) return;
+  if (!result.used) return false;
   watch_.frame_used(frame, estimator_->mesh(), work.first_stamp.toSec() + running_.time.start);
   services_->check().add(frame);
   if (services_->check().complete()) {
@@ -229,6 +255,7 @@ void EstimatorNode::process(const FrameQueue::Work& work) {
   last_stamp_ = work.stamp;
   arrival_ = std::chrono::steady_clock::now();
   stale_ = false;
+  return true;
 }
 
 // When a recording has ended, its last reprocessing may still be running.
@@ -241,7 +268,7 @@ void EstimatorNode::catch_up() {
   show_state(result->estimate);
 }
 
-// Publishes the last estimate as stale when no frame has come for longer than the model allows. It uses the wall clock,
+// Publishes the last estimate as stale when no frame was used for longer than the model allows. It uses the wall clock,
 // because a recording that has ended also stops a simulated clock.
 void EstimatorNode::mark_stale() {
   if (!last_ || stale_) return;
@@ -250,7 +277,7 @@ void EstimatorNode::mark_stale() {
   stale_ = true;
   Estimate estimate = estimator_->estimate();
   std::ostringstream why;
-  why << "no measurement has come for " << running_.stale_after << " s; the state was " << to_string(estimate.state);
+  why << "no measurement could be used for " << running_.stale_after << " s; the state was " << to_string(estimate.state);
   if (!estimate.state_reason.empty()) why << " (" << estimate.state_reason << ")";
   estimate.state = EstimateState::stale;
   estimate.state_reason = why.str();
@@ -263,7 +290,8 @@ void EstimatorNode::show_state(const Estimate& estimate) {
   const bool good =
       estimate.state == State::no_data || estimate.state == State::converging || estimate.state == State::converged;
   const std::string why = estimate.state_reason.empty() ? "" : ": " + estimate.state_reason;
-  diagnostics_.state(good ? DiagnosticStatus::OK : DiagnosticStatus::WARN, to_string(estimate.state) + why);
+  const auto level = estimate.state == State::stale ? DiagnosticStatus::STALE : DiagnosticStatus::WARN;
+  diagnostics_.state(good ? DiagnosticStatus::OK : level, to_string(estimate.state) + why);
 }
 
 void EstimatorNode::report(const StepResult& result) {

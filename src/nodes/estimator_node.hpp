@@ -9,6 +9,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <thread>
 
 #include "nodes/estimator_inputs.hpp"
@@ -51,12 +52,19 @@ class EstimatorNode {
   void run();
   void work();
   std::optional<TetMesh> wait_for_mesh();
-  /// Applies changes before the next frame: a mesh that arrived, a model that was changed.
+  /// Has the worker run a changed model. Throws InputError with the reason if that cannot be built.
+  void change_model(const ModelSettings& changed);
+  /// Applies changes before the next frame: a mesh that arrived, a model that was changed. What cannot be built is refused,
+  /// and the worker goes on with what it has. Returns false if waiting frames are of another mesh.
   bool take_changes();
-  void build(const TetMesh& mesh);
+  /// Builds an estimator beside the running one, and replaces that. Throws InputError for a model that does not fit the
+  /// mesh, or what the construction throws; nothing has changed then.
+  void build(const ModelSettings& settings, const TetMesh& mesh);
   void run_again();
   void start_epoch(const ros::Time& first_stamp);
-  void process(const FrameQueue::Work& work);
+  void take(const FrameQueue::Work& work);
+  /// Returns whether a frame was used.
+  bool process(const FrameQueue::Work& work);
   void catch_up();
   void mark_stale();
   void show_state(const Estimate& estimate);
@@ -79,9 +87,10 @@ class EstimatorNode {
   bool stale_ = false;                             ///< it was published since then
 
   std::mutex changes_mutex_;
-  std::condition_variable mesh_arrived_;
+  std::condition_variable mesh_arrived_, answered_;
   std::optional<TetMesh> mesh_;
   std::optional<ModelSettings> model_;
+  std::optional<std::string> answer_;  ///< why the changed model was refused; "": it runs; none: not known yet
   bool stopped_ = false;
 
   std::atomic<int> exit_code_{0};

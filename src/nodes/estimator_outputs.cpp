@@ -1,5 +1,6 @@
 #include "nodes/estimator_outputs.hpp"
 
+#include <map>
 #include <utility>
 
 #include "nodes/message_conversions.hpp"
@@ -17,15 +18,16 @@ EstimatorOutputs::EstimatorOutputs(ros::NodeHandle node, std::string model_frame
       measured_(node.advertise<sensor_msgs::PointCloud2>("measured_points", 10)) {}
 
 void EstimatorOutputs::prepare(const ModelSettings& settings, const TetMesh& mesh) {
-  outlines_.clear();
+  std::map<int, ModelOutline> outlines;
   int contours = 0;
   for (std::size_t i = 0; i < settings.observations.size(); ++i) {
     if (!traits_of(settings.observations[i].kind).image) continue;
     const int source = static_cast<int>(i);
-    outlines_.emplace(source, ModelOutline(settings, settings.observations[i], mesh));
+    outlines.emplace(source, ModelOutline(settings, settings.observations[i], mesh));
     const std::string topic = ++contours == 1 ? "predicted_contour" : "predicted_contour_" + std::to_string(contours);
     if (outline_topics_.count(source) == 0) outline_topics_[source] = node_.advertise<ContourMessage>(topic, 10);
   }
+  outlines_ = std::move(outlines);
 }
 
 void EstimatorOutputs::publish(const Estimator& estimator, const StepResult& result, const Frame& frame,

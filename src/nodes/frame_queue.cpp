@@ -1,18 +1,11 @@
 #include "nodes/frame_queue.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <sstream>
 
 namespace tissue_stiffness {
 namespace {
 
-const ros::Duration kJumpBack(0.5);
 const ros::Duration kJumpAhead(60.0);
-const ros::Duration kPause(1.0);      // a longer one, in stamps, may be a broken stamp
-constexpr double kPauses = 5.0;       // the same, in intervals between a topic's messages
-constexpr double kSmooth = 0.8;       // of the interval so far, in its running mean
-constexpr std::size_t kAgreeing = 3;  // messages whose stamps agree that the clock has jumped
 constexpr std::chrono::seconds kIdle{1};
 constexpr std::size_t kMostLoads = 100000;  // a load at 1 kHz without a frame for 100 s
 
@@ -56,12 +49,12 @@ void FrameQueue::add_load(const std::string& topic, const ros::Time& stamp, Make
 
 void FrameQueue::accept(const std::string& name, const ros::Time& stamp, Put put) {
   Topic& topic = topics_[name];
-  if (!topic.seen) {
-    topic = {true, newest_epoch_, stamp, stamp, {}, {}};
+  if (!topic.stamps.seen) {
+    topic.epoch = newest_epoch_;
   } else if (jumps(topic, stamp)) {
-    if (!topic.held.empty() && stamp + kJumpBack < topic.held.back().stamp) leave_out(name, topic);
+    if (!topic.held.empty() && goes_back(topic.held.back().stamp, stamp)) leave_out(name, topic);
     topic.held.push_back({stamp, Clock::now(), std::move(put)});
-    if (topic.held.size() >= kAgreeing) release(topic);
+    if (topic.held.size() >= kAgreeingStamps) release(topic);
     return;
   }
   leave_out(name, topic);
@@ -71,20 +64,15 @@ void FrameQueue::accept(const std::string& name, const ros::Time& stamp, Put put
 // Returns whether the topic's stamps begin anew with this one.
 bool FrameQueue::starts_over(const Topic& topic, const ros::Time& stamp) const {
   const ros::Time newest = epochs_.at(topic.epoch).last;
-  return stamp + kJumpBack < topic.last || (stamp <= topic.first && newest > stamp) || stamp > newest + kJumpAhead;
+  return topic.stamps.back(stamp) || (stamp <= topic.stamps.first && newest > stamp) || stamp > newest + kJumpAhead;
 }
 
 bool FrameQueue::jumps(const Topic& topic, const ros::Time& stamp) const {
-  const ros::Duration pause = std::max(kPause, topic.interval * kPauses);
-  return starts_over(topic, stamp) || (!topic.interval.isZero() && stamp > topic.last + pause);
+  return starts_over(topic, stamp) || topic.stamps.ahead(stamp);
 }
 
 FrameQueue::Place FrameQueue::place(Topic& topic, const ros::Time& stamp) {
-  if (stamp > topic.last) {
-    const ros::Duration since = stamp - topic.last;
-    topic.interval = topic.interval.isZero() ? since : topic.interval * kSmooth + since * (1.0 - kSmooth);
-    topic.last = stamp;
-  }
+  topic.stamps.advance(stamp);
   const auto [span, is_new] = epochs_.try_emplace(topic.epoch, Span{stamp, stamp});
   span->second.first = std::min(span->second.first, stamp);
   span->second.last = std::max(span->second.last, stamp);
@@ -95,17 +83,14 @@ void FrameQueue::release(Topic& topic) {
   const std::vector<Held> held = std::exchange(topic.held, {});
   if (starts_over(topic, held.front().stamp)) {
     if (topic.epoch == newest_epoch_) ++newest_epoch_;
-    topic = {true, newest_epoch_, held.front().stamp, held.front().stamp, topic.interval, {}};
+    topic = {newest_epoch_, {false, {}, {}, topic.stamps.interval}, {}};
   }
   for (const Held& message : held) message.put(place(topic, message.stamp));
 }
 
 void FrameQueue::leave_out(const std::string& name, Topic& topic) {
   for (const Held& message : topic.held) {
-    const double jump = (message.stamp - topic.last).toSec();
-    std::ostringstream text;
-    text << name << ": " << std::abs(jump) << (jump < 0.0 ? " s back" : " s ahead");
-    last_broken_ = text.str();
+    last_broken_ = topic.stamps.jump_to(message.stamp, name);
     ++broken_;
   }
   topic.held.clear();
@@ -128,7 +113,7 @@ FrameQueue::Clock::time_point FrameQueue::release_overdue() {
 bool FrameQueue::complete(const Place& frame) const {
   return std::all_of(topics_.begin(), topics_.end(), [&](const auto& entry) {
     const Topic& topic = entry.second;
-    return topic.seen && Place(topic.epoch, topic.last) >= frame;
+    return topic.stamps.seen && Place(topic.epoch, topic.stamps.last) >= frame;
   });
 }
 
@@ -174,7 +159,7 @@ FrameQueue::Work FrameQueue::take_front() {
 int FrameQueue::oldest_epoch() const {
   int oldest = newest_epoch_;
   for (const auto& [name, topic] : topics_) {
-    if (topic.seen) oldest = std::min(oldest, topic.epoch);
+    if (topic.stamps.seen) oldest = std::min(oldest, topic.epoch);
   }
   return oldest;
 }

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "nodes/topic_stamps.hpp"
 #include "tissue_stiffness/types/load_sample.hpp"
 #include "tissue_stiffness/types/observation.hpp"
 
@@ -27,9 +28,8 @@ namespace tissue_stiffness {
 /// topic's first stamp (a bag that loops), or ahead by more than a minute. Topics may notice this at different times, so
 /// each message is kept in the epoch of its topic.
 ///
-/// A clock that jumps stamps many messages, and a broken message is alone. So a message whose stamp jumps, or is ahead of
-/// its topic by more than a pause would be, is held back until two more of its topic agree, or until `patience` has passed
-/// without any. A message that goes on where the topic was before shows that the held ones are broken: they are left out.
+/// A message whose stamp jumps is held back until two more of its topic agree, or until `patience` has passed without any
+/// (see TopicStamps). Broken ones are left out.
 class FrameQueue {
  public:
   /// Conversions run in the worker, because they may wait for a transform. They may throw InputError.
@@ -80,10 +80,8 @@ class FrameQueue {
     Put put;
   };
   struct Topic {
-    bool seen = false;
     int epoch = 0;
-    ros::Time first, last;
-    ros::Duration interval;  ///< between its messages; 0: not known yet
+    TopicStamps stamps;
     std::vector<Held> held;  ///< messages whose stamps have jumped
   };
   struct Span {

@@ -2,11 +2,14 @@
 
 #include <ros/ros.h>
 
+#include <cmath>
+
 #include "check/check_mesh.hpp"
 #include "nodes/message_conversions.hpp"
 #include "nodes/node_keys.hpp"
 #include "nodes/sensor_conversions.hpp"
 #include "nodes/setup_watch.hpp"
+#include "settings/inside_folder.hpp"
 #include "tissue_stiffness/meshing/build_mesh.hpp"
 #include "tissue_stiffness/meshing/mesh_io.hpp"
 #include "tissue_stiffness/types/error.hpp"
@@ -30,7 +33,8 @@ MeshNode::MeshNode(ros::NodeHandle node, const ros::NodeHandle& private_node)
 MeshNode::MeshNode(ros::NodeHandle node, const NodeSettings& settings)
     : node_(std::move(node)),
       settings_(read_model(settings.model, settings.directory)),
-      poses_(read_text(settings.own, key("model_frame")), read_number(settings.own, key("transform_timeout"))) {
+      poses_(read_text(settings.own, key("model_frame")), read_number(settings.own, key("transform_timeout"))),
+      folder_(read_text(settings.own, key("mesh_folder"))) {
   camera_info_topic_ = node_.resolveName("camera_info");
   for (const ObservationSettings& observation : settings_.observations) {
     if (!traits_of(observation.kind).image) continue;
@@ -88,7 +92,7 @@ void MeshNode::build_from_contour() {
     publish(build_mesh(settings_.mesh, to_contour(*contour_, "contour"), camera));
     contour_subscriber_.shutdown();
     camera_info_subscriber_.shutdown();
-  } catch (const InputError& error) {
+  } catch (const std::exception& error) {
     ROS_WARN("no mesh from this contour: %s", error.what());
   }
   contour_.reset();
@@ -97,14 +101,16 @@ void MeshNode::build_from_contour() {
 bool MeshNode::on_build(BuildMesh::Request& request, BuildMesh::Response& response) {
   MeshSettings settings = settings_.mesh;
   try {
-    if (request.scale < 0.0 || request.max_edge_length < 0.0) {
-      throw InputError("build_mesh", "a negative scale or max_edge_length", ">= 0; 0: as in the model");
+    for (const double value : {request.scale, request.max_edge_length}) {
+      if (std::isfinite(value) && value >= 0.0) continue;
+      throw InputError("build_mesh", "a scale or max_edge_length of " + std::to_string(value),
+                       "finite numbers from 0; 0: as in the model");
     }
     if (request.scale > 0.0) settings.scale = request.scale;
     if (request.max_edge_length > 0.0) settings.max_edge_length = request.max_edge_length;
     if (!request.file.empty()) {
       settings.source = MeshSettings::Source::file;
-      settings.file = request.file;
+      settings.file = require_inside(request.file, folder_.empty() ? settings_.directory : folder_, "build_mesh: file");
     }
     if (settings.source != MeshSettings::Source::file) {
       settings_.mesh = settings;
@@ -117,7 +123,7 @@ bool MeshNode::on_build(BuildMesh::Request& request, BuildMesh::Response& respon
       response.message = counted(mesh_);
     }
     response.success = 1;
-  } catch (const InputError& error) {
+  } catch (const std::exception& error) {
     response.message = error.what();
   }
   return true;
@@ -126,10 +132,12 @@ bool MeshNode::on_build(BuildMesh::Request& request, BuildMesh::Response& respon
 bool MeshNode::on_save(SaveMesh::Request& request, SaveMesh::Response& response) {
   try {
     if (mesh_.empty()) throw InputError("save_mesh", "no mesh yet", "a call after `mesh` was published");
-    save_mesh(mesh_, request.file);
+    if (folder_.empty()) throw InputError("save_mesh", "no folder to save to", "a mesh node with ~mesh_folder");
+    const std::string file = require_inside(request.file, folder_, "save_mesh: file");
+    save_mesh(mesh_, file);
     response.success = 1;
-    response.message = request.file + ": " + counted(mesh_);
-  } catch (const InputError& error) {
+    response.message = file + ": " + counted(mesh_);
+  } catch (const std::exception& error) {
     response.message = error.what();
   }
   return true;

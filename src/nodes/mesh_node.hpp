@@ -5,6 +5,8 @@
 #include <tissue_stiffness/BuildMesh.h>
 #include <tissue_stiffness/SaveMesh.h>
 
+#include <string>
+
 #include "nodes/messages.hpp"
 #include "nodes/ros_settings.hpp"
 #include "nodes/sensor_poses.hpp"
@@ -16,8 +18,9 @@ namespace tissue_stiffness {
 /// first `contour` with its `camera_info` and tf2 is built once there is a subscriber to `mesh`. The services are
 /// `build_mesh` and `save_mesh`.
 ///
-/// Private parameters: `model` (a file) or the model's keys; `model_frame` ("model"), `transform_timeout` (1 s). Unless
-/// `camera_info` is remapped, the topic is the model's.
+/// Private parameters: `model` (a file) or the model's keys; `model_frame` ("model"), `transform_timeout` (1 s),
+/// `mesh_folder` ("": the services save nothing, and read from the model file's folder). Unless `camera_info` is remapped,
+/// the topic is the model's.
 class MeshNode {
  public:
   MeshNode(ros::NodeHandle node, const ros::NodeHandle& private_node);
@@ -37,6 +40,7 @@ class MeshNode {
   ros::NodeHandle node_;
   ModelSettings settings_;
   SensorPoses poses_;
+  const std::string folder_;  ///< of the services' files; empty: none
   ObservationSettings::Projection projection_ = ObservationSettings::Projection::silhouette;
   std::string camera_info_topic_;
   TetMesh mesh_;

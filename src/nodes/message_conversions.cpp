@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "meshing/tet_file_check.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
@@ -122,6 +123,7 @@ TetMesh to_mesh(const TetMeshMessage& message, const std::string& topic) {
   out.facets = to_indices(message.facets, message.nodes_per_tet == 10 ? 6 : 3, nodes, topic + ": facets");
   require_size(message.facet_tet.size(), static_cast<std::size_t>(out.facet_count()), topic + ": facet_tet");
   out.facet_tet = to_indices(message.facet_tet, 1, out.tet_count(), topic + ": facet_tet").transpose();
+  check_tet_mesh(out, topic);
   return out;
 }
 

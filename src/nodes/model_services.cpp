@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include "effects/registry.hpp"
-#include "forward/model.hpp"
 #include "nodes/diagnosis_conversions.hpp"
 #include "nodes/estimator_inputs.hpp"
 #include "nodes/force_view.hpp"
+#include "settings/inside_folder.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
@@ -21,11 +21,22 @@ void require_known_topics(const ModelSettings& before, const ModelSettings& afte
   }
 }
 
+// An error in a file is shown with the line, so a caller could read any file.
+void require_files_inside(const Value& value, const std::string& folder) {
+  if (value.type() != Value::Type::map) return;
+  for (const std::string& key : value.keys()) {
+    const Value& entry = value.at(key);
+    if (key == "file") require_inside(entry.as_text(), folder, entry.path());
+    require_files_inside(entry, folder);
+  }
+}
+
 }  // namespace
 
-ModelServices::ModelServices(const ros::NodeHandle& node, std::string model_frame, const ModelCheck::Options& options,
-                             Change change)
-    : model_frame_(std::move(model_frame)),
+ModelServices::ModelServices(const ros::NodeHandle& node, std::string directory, std::string model_frame,
+                             const ModelCheck::Options& options, Change change)
+    : directory_(std::move(directory)),
+      model_frame_(std::move(model_frame)),
       change_(std::move(change)),
       node_(node),
       publisher_(node_.advertise<DiagnosisMessage>("diagnosis", 1, true)),
@@ -49,7 +60,6 @@ void ModelServices::start(const ModelSettings& settings, const TetMesh& mesh) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     settings_ = settings;
-    mesh_ = mesh;
   }
   check_.start(settings, mesh);
 }
@@ -81,17 +91,14 @@ bool ModelServices::on_diagnose(Diagnose::Request&, Diagnose::Response& response
 
 std::string ModelServices::change_model(const std::function<std::string(ModelSettings&)>& edit) {
   ModelSettings changed;
-  TetMesh mesh;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (!settings_) throw InputError("effect", "no mesh yet", "a running model");
     changed = *settings_;
-    mesh = mesh_;
   }
   const ModelSettings before = changed;
   const std::string message = edit(changed);
   require_known_topics(before, changed);
-  Model(changed, mesh);  // throws what is wrong with it before anything changes
   change_(changed);
   return message;
 }
@@ -116,6 +123,7 @@ bool ModelServices::on_add(AddEffect::Request& request, AddEffect::Response& res
     response.message = change_model([&](ModelSettings& model) {
       const std::string entry = entry_of(request.effect);
       add_effect(model, entry);
+      require_files_inside(model.effects.back().arguments, directory_);
       name = model.effects.back().name;
       return "added " + entry;
     });

@@ -22,10 +22,12 @@ namespace tissue_stiffness {
 /// `remove_effect`, `list_effects`. A separate thread serves them, so that a long answer delays no frame.
 class ModelServices {
  public:
-  /// Receives a changed model that fits the mesh and must run from now on.
+  /// Runs a changed model from now on. Throws InputError with the reason if that cannot be done.
   using Change = std::function<void(const ModelSettings&)>;
 
-  ModelServices(const ros::NodeHandle& node, std::string model_frame, const ModelCheck::Options& options, Change change);
+  /// An entry to add may only name files in `directory`, the model's folder: a caller is not its owner.
+  ModelServices(const ros::NodeHandle& node, std::string directory, std::string model_frame,
+                const ModelCheck::Options& options, Change change);
   ~ModelServices();
 
   ModelCheck& check() { return check_; }
@@ -38,16 +40,15 @@ class ModelServices {
   bool on_add(AddEffect::Request& request, AddEffect::Response& response);
   bool on_remove(RemoveEffect::Request& request, RemoveEffect::Response& response);
   bool on_list(ListEffects::Request&, ListEffects::Response& response);
-  /// Applies `edit` to the running model, checks the result against the mesh, and passes it on. Returns the message.
+  /// Applies `edit` to the running model and has it run. Returns the message.
   std::string change_model(const std::function<std::string(ModelSettings&)>& edit);
   std::string entry_of(const std::string& effect) const;
   void publish(const Diagnosis& diagnosis, double stamp);
 
-  const std::string model_frame_;
+  const std::string directory_, model_frame_;
   const Change change_;
   std::mutex mutex_;
   std::optional<ModelSettings> settings_;
-  TetMesh mesh_;
   std::vector<std::string> added_;
 
   ros::CallbackQueue queue_;

@@ -21,7 +21,11 @@ const std::vector<std::pair<std::string, std::vector<KeySpec>>>& all_keys() {
                   "`{kind, seed}` as in a model file's contour, for a node without a model"),
         number_key("contour_number", "", 1, 100, 1, "which of the model's contours"),
         number_key("queue_size", "images", 1, 1e4, 100, "that may wait before the oldest is dropped")}},
-      {"mesh_node", {frame(), patience(1.0)}},
+      {"mesh_node",
+       {frame(), patience(1.0),
+        text_key("mesh_folder", "",
+                 "folder that the services read meshes from and save them to; empty: none may be saved, and those of the "
+                 "model file's folder may be read")}},
       {"estimator_node",
        {frame(), patience(0.1),
         number_key("load_timeout", "s", 0, 60, 0.1, "how long a frame waits for the loads up to its stamp, in wall time"),

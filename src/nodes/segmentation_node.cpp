@@ -107,7 +107,7 @@ void SegmentationNode::on_image(const sensor_msgs::ImageConstPtr& message) {
     const bool awaited = predicted_subscriber_.getNumPublishers() > 0 && found.found();
     const std::size_t most = awaited ? kMostWaiting : 0;
     while (waiting_.size() > most) publish_overlay(nullptr);
-  } catch (const InputError& error) {
+  } catch (const std::exception& error) {
     diagnostics_.bad_message(error.what());
   }
 }

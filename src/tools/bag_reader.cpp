@@ -121,7 +121,10 @@ void BagReader::add_poses(const rosbag::MessageInstance& message, bool is_static
 }
 
 bool BagReader::read_message() {
-  if (next_message_ == view_.end()) return false;
+  if (next_message_ == view_.end()) {
+    for (auto& [name, topic] : topics_) leave_out(name, topic);
+    return false;
+  }
   const rosbag::MessageInstance message = *next_message_++;
   const std::string& topic = message.getTopic();
   if (topic == "/tf") add_poses(message, false);
@@ -131,11 +134,11 @@ bool BagReader::read_message() {
     if (topic == observation.topic && traits_of(observation.kind).image) {
       const auto image = read_as<sensor_msgs::Image>(message, file_);
       require_stamp(image->header, topic);
-      add_measurement(image->header.stamp, {source, nullptr, image});
+      add_measurement(topic, image->header.stamp, {source, nullptr, image});
     } else if (topic == observation.topic) {
       const auto cloud = read_as<sensor_msgs::PointCloud2>(message, file_);
       require_stamp(cloud->header, topic);
-      add_measurement(cloud->header.stamp, {source, cloud, nullptr});
+      add_measurement(topic, cloud->header.stamp, {source, cloud, nullptr});
     } else if (topic == observation.camera_info) {
       const auto info = read_as<sensor_msgs::CameraInfo>(message, file_);
       cameras_[topic][info->header.stamp] = info;
@@ -147,21 +150,45 @@ bool BagReader::read_message() {
   return true;
 }
 
-void BagReader::add_measurement(const ros::Time& stamp, Measurement measurement) {
-  note_stamp(stamp);
-  if (stamp <= last_returned_) {
-    ++late_;
-  } else {
-    pending_[stamp].push_back(std::move(measurement));
+void BagReader::accept(const std::string& name, const ros::Time& stamp, std::function<void()> put) {
+  Topic& topic = topics_[name];
+  if (topic.stamps.seen && (topic.stamps.back(stamp) || topic.stamps.ahead(stamp))) {
+    if (!topic.held.empty() && goes_back(topic.held.back().stamp, stamp)) leave_out(name, topic);
+    topic.held.push_back({stamp, std::move(put)});
+    if (topic.held.size() < kAgreeingStamps) return;
+    for (const Held& message : std::exchange(topic.held, {})) {
+      topic.stamps.advance(message.stamp);
+      message.put();
+    }
+    return;
   }
+  leave_out(name, topic);
+  topic.stamps.advance(stamp);
+  put();
+}
+
+void BagReader::leave_out(const std::string& name, Topic& topic) {
+  for (const Held& message : topic.held) last_broken_ = topic.stamps.jump_to(message.stamp, name);
+  broken_ += static_cast<int>(topic.held.size());
+  topic.held.clear();
+}
+
+void BagReader::add_measurement(const std::string& topic, const ros::Time& stamp, Measurement measurement) {
+  accept(topic, stamp, [this, stamp, measurement = std::move(measurement)] {
+    note_stamp(stamp);
+    if (stamp <= last_returned_) {
+      ++late_;
+    } else {
+      pending_[stamp].push_back(measurement);
+    }
+  });
 }
 
 void BagReader::add_load(const rosbag::MessageInstance& message, const LoadInput& input) {
   if (input.kind == LoadInput::Kind::pressure) {
     const auto pressure = read_as<sensor_msgs::FluidPressure>(message, file_);
     require_stamp(pressure->header, input.topic);
-    note_stamp(pressure->header.stamp);
-    loads_.push_back(to_load(*pressure, input.topic));
+    add_load(input.topic, pressure->header.stamp, to_load(*pressure, input.topic));
     return;
   }
   const auto wrench = read_as<geometry_msgs::WrenchStamped>(message, file_);
@@ -169,8 +196,14 @@ void BagReader::add_load(const rosbag::MessageInstance& message, const LoadInput
   std::string reason;
   const auto model_from_sensor = pose(wrench->header, reason);
   if (!model_from_sensor) throw InputError(file_ + ": " + input.topic, reason, "a frame with a pose in " + model_frame_);
-  note_stamp(wrench->header.stamp);
-  loads_.push_back(to_load(*wrench, *model_from_sensor, input.topic));
+  add_load(input.topic, wrench->header.stamp, to_load(*wrench, *model_from_sensor, input.topic));
+}
+
+void BagReader::add_load(const std::string& topic, const ros::Time& stamp, const LoadSample& sample) {
+  accept(topic, stamp, [this, stamp, sample] {
+    note_stamp(stamp);
+    loads_.push_back(sample);
+  });
 }
 
 void BagReader::note_stamp(const ros::Time& stamp) {

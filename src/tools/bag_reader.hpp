@@ -9,6 +9,7 @@
 #include <sensor_msgs/PointCloud2.h>
 #include <tf2/buffer_core.h>
 
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -16,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "nodes/topic_stamps.hpp"
 #include "tissue_stiffness/segmentation/segmenter.hpp"
 #include "tissue_stiffness/settings/model_settings.hpp"
 #include "tissue_stiffness/types/load_sample.hpp"
@@ -37,8 +39,8 @@ struct Instant {
 ///
 /// Throws InputError for a file that is missing or not a bag, a topic that is absent or of another type, and a message
 /// whose content is wrong. An image without an outline, or a sensor without a pose at the stamp, costs only this
-/// observation. A message is late when its stamp has already passed (0.5 s or 256 frames behind the newest). Late messages
-/// are counted and left out.
+/// observation. A message is late when its stamp has already passed (0.5 s or 256 frames behind the newest). Late messages,
+/// and those whose stamps are broken (see TopicStamps), are counted and left out.
 class BagReader {
  public:
   BagReader(const std::string& file, const ModelSettings& settings, std::string model_frame = "model");
@@ -57,6 +59,9 @@ class BagReader {
   std::optional<Instant> next();
 
   int late() const { return late_; }
+  int broken_stamps() const { return broken_; }
+  /// Names topic and jump of the last one of them; empty: none.
+  const std::string& last_broken_stamp() const { return last_broken_; }
 
   /// Returns reduced images of the frames read so far, at most 40 for each sensor, for reports.
   const std::vector<Picture>& pictures() const { return pictures_; }
@@ -75,9 +80,22 @@ class BagReader {
   std::vector<std::string> topics() const;
   void read_static_poses();
 
+  struct Held {
+    ros::Time stamp;
+    std::function<void()> put;
+  };
+  struct Topic {
+    TopicStamps stamps;
+    std::vector<Held> held;  ///< messages whose stamps have jumped
+  };
+
   bool read_message();
-  void add_measurement(const ros::Time& stamp, Measurement measurement);
+  /// Calls `put` once the stamp is believed.
+  void accept(const std::string& topic, const ros::Time& stamp, std::function<void()> put);
+  void leave_out(const std::string& name, Topic& topic);
+  void add_measurement(const std::string& topic, const ros::Time& stamp, Measurement measurement);
   void add_load(const rosbag::MessageInstance& message, const LoadInput& input);
+  void add_load(const std::string& topic, const ros::Time& stamp, const LoadSample& sample);
   void add_poses(const rosbag::MessageInstance& message, bool is_static);
   void note_stamp(const ros::Time& stamp);
   bool front_is_complete() const;
@@ -97,7 +115,9 @@ class BagReader {
   rosbag::View::iterator next_message_;
   std::size_t frame_count_ = 0, image_stride_ = 1;
   int vertex_count_ = std::numeric_limits<int>::max();
-  int late_ = 0;
+  int late_ = 0, broken_ = 0;
+  std::string last_broken_;
+  std::map<std::string, Topic> topics_;
 
   tf2::BufferCore poses_;
   std::map<int, std::unique_ptr<Segmenter>> segmenters_;  ///< by index of the observation

@@ -126,6 +126,8 @@ class Run {
       results.interrupted = "the runs at the last estimate";
     }
     run_.late = recording_.reader().late();
+    run_.broken_stamps = recording_.reader().broken_stamps();
+    run_.last_broken_stamp = recording_.reader().last_broken_stamp();
     return std::move(run_);
   }
 

@@ -22,6 +22,8 @@ struct EstimationRun {
   double seconds = 0.0;                                      ///< wall time over all frames, including reading
   std::string map_vtk;                                       ///< empty if there is no map
   int late = 0;                                              ///< number of messages that came too late for their frame
+  int broken_stamps = 0;                                     ///< number of messages left out for their stamps
+  std::string last_broken_stamp;                             ///< topic and jump of the last one; empty: none
 };
 
 /// Called after each frame with the number of frames done and the largest possible total.

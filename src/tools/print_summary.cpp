@@ -99,6 +99,10 @@ void print_summary(const EstimationRun& run, const Paint& paint, std::ostream& o
   out << "state         " << painted(results.state, paint) << ": " << results.state_reason << "\n";
   print_line(out, "frames        %d used, %d skipped, %d late messages; %.3g frames/s", results.used(), results.skipped(),
              run.late, static_cast<double>(results.frames.size()) / run.seconds);
+  if (run.broken_stamps > 0) {
+    out << paint.warning("left out") << "      " << run.broken_stamps << " messages with broken stamps; the last one is on "
+        << run.last_broken_stamp << "\n";
+  }
   print_line(out, "rms error     %s mm, %.3g of the noise; %.3g %% of the motion",
              short_number(1e3 * results.rms_error, 4).c_str(), results.rms_error / results.noise_rms,
              100.0 * results.relative_error);

@@ -10,15 +10,17 @@ int main(int argc, char** argv) {
   using namespace tissue_stiffness;
   CLI::App app("Makes a recording of a body whose properties are known: a model file with `simulation`.", "simulate");
   std::string file, output, truth;
-  bool quiet = false, json = false;
+  bool quiet = false, json = false, force = false;
   app.add_option("SCENE", file, "scene file (YAML)")->required();
   app.add_option("--output", output, "rosbag to write")->required();
   app.add_option("--truth", truth, "file for the scene's numbers (YAML)");
+  app.add_flag("--force", force, "simulate it however long that takes");
   app.add_flag("--quiet", quiet, "no progress and no summary");
   app.add_flag("--json", json, "print the summary as JSON");
   app.footer("Example: simulate scene.yaml --output recording.bag --truth truth.yaml");
   return run_tool(app, argc, argv, [&] {
     const Scene scene = load_scene(file);
+    if (!force) require_moderate(scene);
     Progress progress(std::cerr, Progress::style_of_stderr(quiet || json), "simulate");
     const SimulationSummary summary =
         simulate_scene(scene, output, [&](std::size_t done, std::size_t total) { progress.show(done, total); });

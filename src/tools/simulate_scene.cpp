@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numeric>
 #include <random>
 #include <set>
+#include <sstream>
 
 #include "forward/full_model.hpp"
 #include "meshing/refine.hpp"
@@ -22,6 +24,11 @@ namespace {
 using Kind = ObservationSettings::Kind;
 
 const ros::Time kFirstStamp(1700000000, 0);
+constexpr double kMostFrames = 1e5, kMostSteps = 1e7;
+
+double frames_of(const Scene& scene) {
+  return std::floor(scene.duration * scene.rate + 1e-9);
+}
 
 TetMesh refined_mesh(const Scene& scene) {
   if (scene.model.mesh.source != MeshSettings::Source::file) {
@@ -210,6 +217,15 @@ void publish_loads(const Scene& scene, RecordingWriter& writer) {
 
 }  // namespace
 
+void require_moderate(const Scene& scene) {
+  const double frames = frames_of(scene), steps = scene.duration / scene.step;
+  if (frames <= kMostFrames && steps <= kMostSteps) return;
+  std::ostringstream found, most;
+  found << frames << " frames (duration x rate) and " << steps << " time steps (duration / step)";
+  most << kMostFrames << " and " << kMostSteps << ", or --force";
+  throw InputError(scene.model.name + ": simulation", found.str(), most.str());
+}
+
 SimulationSummary simulate_scene(const Scene& scene, const std::string& recording,
                                  const std::function<void(std::size_t, std::size_t)>& progress) {
   Model model(scene.model, refined_mesh(scene));
@@ -229,7 +245,7 @@ SimulationSummary simulate_scene(const Scene& scene, const std::string& recordin
   const auto trajectory = forward.start(theta, start);
   SimulationSummary summary;
   summary.nodes = model.mesh().node_count();
-  const auto total = static_cast<int>(std::floor(scene.duration * scene.rate + 1e-9));
+  const auto total = static_cast<int>(std::min<double>(frames_of(scene), std::numeric_limits<int>::max()));
   double square = 0.0;
   for (int k = 0; k < total; ++k) {
     const ros::Time stamp = kFirstStamp + ros::Duration(k / scene.rate);

@@ -16,6 +16,10 @@ struct SimulationSummary {
   double motion_max = 0;  ///< largest displacement of a node [m]
 };
 
+/// Throws InputError for a scene of more than 100 000 frames or 10 million time steps, which takes hours and gigabytes. It
+/// is probably a wrong unit.
+void require_moderate(const Scene& scene);
+
 /// Runs a scene on its refined mesh and writes its loads and what its sensors observe to a bag. The first stamp is 1 700
 /// 000 000 s. Throws InputError for a number that is not known, a mesh that does not come from a file, and settings that do
 /// not fit it.

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
@@ -46,6 +47,22 @@ TEST_F(BarWithADamping, CountsAmplitudesFromWhereAnEffectIsAbsent) {
   for (const Candidate& candidate : screening.candidates) absent[candidate.effect] = candidate.absent;
   EXPECT_EQ(absent.at("image_scale"), 1.0);
   EXPECT_EQ(absent.at("viscous_damping"), 0.0);
+}
+
+// A proposal's scale follows from the modulus. What no model file may hold is not proposed, and ends nothing.
+TEST_F(BarWithADamping, LeavesOutProposalsBeyondWhatAModelFileMayHold) {
+  ModelSettings absurd =
+      box_settings({"inertia: {density: 1000}",
+                    "elasticity: {law: linear, poisson_ratio: 0.45, young_modulus: {prior: 1e12, factor: 3}}",
+                    "fixed: {region: clamp}", "gravity: {acceleration: [0.5, 1, -3]}"});
+  base_.recording_fit = std::make_unique<RecordingFit>(absurd, bar_mesh(), recording_);
+  base_.fit.w = base_.recording_fit->model().parameters().prior_mean();
+  Library library;
+  const auto candidates = find_candidates(
+      *base_.recording_fit, base_.fit.w, {}, [](std::size_t, std::size_t) {}, library);
+  const auto is = [](const char* name) { return [name](const Candidate& c) { return c.effect == name; }; };
+  EXPECT_TRUE(std::any_of(candidates.begin(), candidates.end(), is("viscous_damping")));
+  EXPECT_TRUE(std::none_of(candidates.begin(), candidates.end(), is("active_contraction")));
 }
 
 // What an earlier round's models hold, they also hold once one of its effects has been added.

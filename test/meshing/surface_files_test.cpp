@@ -131,6 +131,18 @@ INSTANTIATE_TEST_SUITE_P(
                     Refused{"no_such_file.stl", "no readable file"}, Refused{"no_such_file.ply", "no readable file"},
                     Refused{"box.node.txt", "ending '.txt'"}));
 
+TEST(FillSurface, RefusesLengthsThatNeverEnd) {
+  MeshSettings settings;
+  settings.source = MeshSettings::Source::file;
+  settings.file = mesh_file("cube.obj");
+  for (const double length : {1e-12, 1e-4, 2e-3}) {
+    settings.max_edge_length = length;
+    const std::string message = refusal([&] { build_mesh(settings); });
+    expect_contains(message, "max_edge_length");
+    expect_contains(message, "at least 0.0");
+  }
+}
+
 TEST(FillSurface, RefusesSurfacesThatCross) {
   const std::string message = refusal([] { build_mesh(settings_for("cubes_crossing.obj", 0.05)); });
   expect_contains(message, has_tetgen() ? "crosses itself near (" : "TISSUE_STIFFNESS_TETGEN");

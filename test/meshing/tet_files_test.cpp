@@ -1,5 +1,7 @@
 #include <cstdio>
 #include <fstream>
+#include <utility>
+#include <vector>
 
 #include "mesh_checks.hpp"
 #include "meshing/box_mesh.hpp"
@@ -55,8 +57,53 @@ INSTANTIATE_TEST_SUITE_P(
                     Refused{"box_unused_vertex.vtk", "vertex 12 at (0.05, 0.05, 0.05) m in no tetrahedron"},
                     Refused{"box_nan.vtk", "vertex 0 with a coordinate that is not finite"},
                     Refused{"box_coincident.vtk", "both at (0.01, "}, Refused{"box_hexahedron.vtk", "type 12 with 8 nodes"},
-                    Refused{"box_node_out_of_range.vtk", "node 99"}, Refused{"box_truncated.vtk", "bytes of cells"},
+                    Refused{"box_node_out_of_range.vtk", "node 99"}, Refused{"box_truncated.vtk", "entries (cells)"},
                     Refused{"no_such_file.vtk", "no readable file"}, Refused{"cube.obj", "ending '.obj'"}));
+
+/// A file that the test writes and removes.
+class WrittenFile {
+ public:
+  WrittenFile(const std::string& ending, const std::string& text) : name(testing::TempDir() + "written" + ending) {
+    std::ofstream(name) << text;
+  }
+  ~WrittenFile() { std::remove(name.c_str()); }
+  WrittenFile(const WrittenFile&) = delete;
+  WrittenFile& operator=(const WrittenFile&) = delete;
+
+  const std::string name;
+};
+
+std::string vtk_tetrahedron(const std::string& points, const std::string& offsets) {
+  return "# vtk DataFile Version 5.1\ntest\nASCII\nDATASET UNSTRUCTURED_GRID\n" + points + "\nCELLS 2 4\nOFFSETS int\n" +
+         offsets + "\nCONNECTIVITY int\n0 1 2 3\nCELL_TYPES 1\n10\n";
+}
+
+TEST(TetFileChecks, CellOffsetsStayInTheirList) {
+  const std::string points = "POINTS 4 double\n0 0 0 1 0 0 0 1 0 0 0 1";
+  EXPECT_EQ(load_tet_mesh(WrittenFile(".vtk", vtk_tetrahedron(points, "0 4")).name, 1.0, 1).tet_count(), 1);
+  for (const std::string offsets : {"0 400", "1 5", "4 0", "0 3"}) {
+    const WrittenFile file(".vtk", vtk_tetrahedron(points, offsets));
+    expect_contains(refusal([&] { load_tet_mesh(file.name, 1.0, 1); }), "cell offsets");
+  }
+}
+
+TEST(TetFileChecks, CountsThatTheFileCannotHoldCostNoMemory) {
+  const std::vector<std::pair<std::string, std::string>> files{
+      {".vtk", vtk_tetrahedron("POINTS 60000000 double\n0 0 0", "0 4")},
+      {".msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 90000000 1 90000000\n3 1 0 90000000\n1 2\n"},
+      {".node", "90000000 3 0 0\n1 0 0 0\n"}};
+  for (const auto& [ending, text] : files) {
+    const WrittenFile file(ending, text);
+    expect_contains(refusal([&] { load_tet_mesh(file.name, 1.0, 1); }), "0000000 entries");
+  }
+}
+
+TEST(TetFileChecks, ABodyIsNeitherTooSmallNorTooLarge) {
+  expect_contains(refusal([] { load_tet_mesh(mesh_file("box.vtk"), 1e30, 2); }), "is the scale right?");
+  expect_contains(refusal([] { load_tet_mesh(mesh_file("box.vtk"), 1e-30, 2); }), "longest side is 2e-30 m");
+  const WrittenFile file(".vtk", vtk_tetrahedron("POINTS 4 double\n0 0 0 1e308 0 0 0 1 0 0 0 1", "0 4"));
+  expect_contains(refusal([&] { load_tet_mesh(file.name, 1.0, 1); }), "vertex 1 with a coordinate of 1e+308 m");
+}
 
 TEST(SaveMesh, ReadsBackBitForBit) {
   for (const int order : {1, 2}) {

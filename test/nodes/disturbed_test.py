@@ -9,7 +9,7 @@ import unittest
 import rosbag
 import rospy
 import rostest
-from diagnostic_msgs.msg import DiagnosticArray
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from sensor_msgs.msg import PointCloud2
 from std_srvs.srv import Trigger
 
@@ -26,6 +26,7 @@ class DisturbedTest(unittest.TestCase):
             cls.frames = [message for _, message, _ in bag.read_messages(TOPIC, raw=False)]
         cls.frames = [cls.plain(frame) for frame in cls.frames]
         cls.changed, cls.estimates, cls.values = threading.Condition(), [], {}
+        cls.level, cls.message, cls.heard = DiagnosticStatus.OK, '', 0
         cls.subscribers = [rospy.Subscriber('stiffness', StiffnessEstimate, cls.on_estimate, queue_size=1000),
                            rospy.Subscriber('/diagnostics', DiagnosticArray, cls.on_diagnostics)]
         cls.publisher = rospy.Publisher(TOPIC, PointCloud2, queue_size=1000)
@@ -49,18 +50,30 @@ class DisturbedTest(unittest.TestCase):
         with cls.changed:
             for status in message.status:
                 if status.name.endswith('estimator'):
+                    cls.level, cls.message = status.level, status.message
                     cls.values = {entry.key: entry.value for entry in status.values}
+                    cls.heard += 1
             cls.changed.notify_all()
 
     def play(self, frames):
         """Publishes in pieces that fit into the node's queue; gives the last estimate."""
+        before, stamp = len(self.estimates), frames[-1].header.stamp
         for frame in frames:
             self.publisher.publish(frame)
             threading.Event().wait(0.02)
-        stamp = frames[-1].header.stamp
+
+        def ended():  # an earlier run may have ended with the same stamp
+            new = self.estimates[before:]
+            return (new and new[-1].header.stamp == stamp and
+                    (len(frames) == 1 or any(estimate.header.stamp < stamp for estimate in new)))
         with self.changed:
-            self.assertTrue(self.changed.wait_for(lambda: self.estimates and self.estimates[-1].header.stamp == stamp, 60),
-                            'no estimate for the frame at %s' % stamp)
+            self.assertTrue(self.changed.wait_for(ended, 60), 'no estimate for the frame at %s' % stamp)
+            heard = self.heard
+
+            def settled():  # the second message is certainly of the end
+                return (self.heard >= heard + 2 and self.values.get('reprocessing') == 'no' and
+                        self.values.get('frames waiting') == '0')
+            self.assertTrue(self.changed.wait_for(settled, 60), 'the reprocessing does not end')
             return self.estimates[-1]
 
     def count(self, key):
@@ -123,15 +136,61 @@ class DisturbedTest(unittest.TestCase):
         after = self.play(shifted)
         self.assertAlmostEqual(after.young_modulus / before.young_modulus, 1.0, delta=1e-4)
 
-    def test_4_a_wrong_mesh_does_not_kill_the_node(self):
-        bad = self.count('bad messages')
-        meshes = rospy.Publisher('mesh', TetMesh, queue_size=1)
+    def test_4_a_wrong_mesh_is_refused_and_the_one_before_kept(self):
+        good = rospy.wait_for_message('mesh', TetMesh, 30)
+        meshes = rospy.Publisher('mesh', TetMesh, queue_size=10)
         while not meshes.get_num_connections():
             threading.Event().wait(0.05)
-        meshes.publish(TetMesh(nodes_per_tet=4, tets=[0, 1, 2, 3]))
-        self.wait_for(lambda: self.count('bad messages') == bad + 1, 'expected one more bad message')
-        last = self.play(self.frames)
-        self.assertAlmostEqual(last.young_modulus / TRUTH, 1.0, delta=0.015)
+
+        def moved(change):
+            mesh = copy.deepcopy(good)
+            for node in mesh.nodes:
+                change(node)
+            return mesh
+
+        def flatten(node):
+            node.z = 0.0
+
+        def shift(node):
+            node.x += 10.0
+
+        def in_millimetres(node):
+            node.x, node.y, node.z = 1e3 * node.x, 1e3 * node.y, 1e3 * node.z
+
+        inverted = copy.deepcopy(good)
+        tets = list(inverted.tets)
+        tets[0], tets[1] = tets[1], tets[0]
+        inverted.tets = tets
+        wrong = ((TetMesh(nodes_per_tet=4, tets=[0, 1, 2, 3]), 'nodes'), (inverted, 'inverted'),
+                 (moved(flatten), 'without volume'), (moved(shift), 'region'), (moved(in_millimetres), 'not positive definite'))
+        first = self.play(self.frames)
+        for mesh, reason in wrong:
+            bad = self.count('bad messages')
+            meshes.publish(mesh)
+            self.wait_for(lambda: self.count('bad messages') == bad + 1, 'expected one more bad message')
+            self.assertIn(reason, self.values['last bad message'])
+        later = copy.deepcopy(self.frames[-1])
+        later.header.stamp += rospy.Duration(0.02)
+        last = self.play([later])
+        self.assertAlmostEqual(last.young_modulus / first.young_modulus, 1.0, delta=0.01)
+        self.assertLess(last.young_modulus_std, 1.2 * first.young_modulus_std)
+
+    def test_5_frames_that_are_all_refused_leave_the_estimate_stale(self):
+        self.play(self.frames)
+        bad = copy.deepcopy(self.frames[-1])
+        bad.fields = []
+
+        def stale():
+            bad.header.stamp += rospy.Duration(0.1)
+            self.publisher.publish(bad)
+            return self.estimates[-1].state == 'stale'
+
+        end = rospy.get_time() + 60
+        while not stale() and rospy.get_time() < end:
+            threading.Event().wait(0.1)
+        self.assertIn('no measurement could be used', self.estimates[-1].state_reason)
+        self.wait_for(lambda: self.level == DiagnosticStatus.STALE, 'expected the level STALE')
+        self.assertIn('stale', self.message)
 
 
 if __name__ == '__main__':

@@ -3,7 +3,7 @@
 import math
 import os
 import sys
-import tempfile
+import shutil
 import threading
 import unittest
 
@@ -22,7 +22,20 @@ def service(name, kind):
     return rospy.ServiceProxy(name, kind)
 
 
+FOLDER = ''  # the node's
+
+
 class MeshTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        global FOLDER
+        FOLDER = rospy.get_param('mesh_node/mesh_folder')
+        os.makedirs(FOLDER)
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(FOLDER)
+
     def test_the_mesh_is_latched(self):
         mesh = rospy.wait_for_message('mesh', TetMesh, 30)
         self.assertEqual(mesh.header.frame_id, 'model')
@@ -33,12 +46,11 @@ class MeshTest(unittest.TestCase):
 
     def test_build_and_save(self):
         build, save = service('build_mesh', BuildMesh), service('save_mesh', SaveMesh)
-        with tempfile.TemporaryDirectory() as folder:
-            file = os.path.join(folder, 'saved.vtk')
-            saved = save(file=file)
-            self.assertTrue(saved.success, saved.message)
-            larger = build(file=file, scale=2.0)
-            self.assertTrue(larger.success, larger.message)
+        saved = save(file='saved.vtk')
+        self.assertTrue(saved.success, saved.message)
+        self.assertEqual(os.listdir(FOLDER), ['saved.vtk'])
+        larger = build(file='saved.vtk', scale=2.0)
+        self.assertTrue(larger.success, larger.message)
         mesh = rospy.wait_for_message('mesh', TetMesh, 30)
         self.assertEqual(larger.nodes, len(mesh.nodes))
         again = build()
@@ -49,10 +61,17 @@ class MeshTest(unittest.TestCase):
 
     def test_wrong_requests_are_answered(self):
         build, save = service('build_mesh', BuildMesh), service('save_mesh', SaveMesh)
-        for answer, part in ((build(file='/nowhere/mesh.vtk'), '/nowhere/mesh.vtk'), (build(scale=-1), 'scale'),
-                             (save(file='/nowhere/mesh.vtk'), '/nowhere/mesh.vtk'), (save(file='/tmp/mesh.txt'), '.vtk')):
+        for answer, part in ((build(file='none.vtk'), 'none.vtk'), (build(file='/etc/passwd'), 'in the folder ' + FOLDER),
+                             (build(file='../passwd.vtk'), 'in the folder'), (build(scale=-1), 'scale'),
+                             (build(scale=math.nan), 'nan'), (build(scale=math.inf), 'inf'),
+                             (build(scale=1e30), 'is the scale right?'), (build(scale=1e-30), 'is the scale right?'),
+                             (save(file='/tmp/mesh.vtk'), 'in the folder'), (save(file='../mesh.vtk'), 'in the folder'),
+                             (save(file='mesh.txt'), '.vtk')):
             self.assertFalse(answer.success)
             self.assertIn(part, answer.message)
+        self.assertFalse(os.path.exists('/tmp/mesh.vtk'))
+        save_nowhere = service('revolved/save_mesh', SaveMesh)
+        self.assertIn('~mesh_folder', save_nowhere(file='mesh.vtk').message)
         self.assertTrue(build().success)
 
     def test_a_body_of_revolution_from_the_first_contour(self):

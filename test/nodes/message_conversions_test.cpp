@@ -85,6 +85,15 @@ TEST(TetMeshMessage, IsChecked) {
   refused([](TetMeshMessage& m) { m.nodes[1].y = std::nan(""); }, {"mesh: nodes[1]", "finite"});
   refused([](TetMeshMessage& m) { m.corner_count = 5; }, {"mesh: corner_count", "5", "4"});
   refused([](TetMeshMessage& m) { m.tets.clear(); }, {"mesh: tets", "0 entries"});
+  refused([](TetMeshMessage& m) { std::swap(m.tets[0], m.tets[1]); }, {"mesh", "inverted"});
+  refused([](TetMeshMessage& m) { m.nodes[3].z = 0.0; }, {"mesh", "tetrahedron 0", "without volume"});
+  refused([](TetMeshMessage& m) { m.nodes[3].z = 1e308; }, {"mesh", "coordinate of 1e+308 m", "scale"});
+  refused(
+      [](TetMeshMessage& m) {
+        for (auto& node : m.nodes) node.x *= 1e-9, node.y *= 1e-9, node.z *= 1e-9;
+      },
+      {"mesh", "longest side is 1e-09 m", "1e-06 m to 1000 m"});
+  refused([](TetMeshMessage& m) { m.corner_count = 3; }, {"mesh", "corner_count 3"});
 }
 
 TEST(StiffnessMessage, RepeatsTheFirstYoungModulus) {

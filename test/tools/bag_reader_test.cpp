@@ -4,6 +4,9 @@
 #include <std_msgs/String.h>
 #include <tf2_msgs/TFMessage.h>
 
+#include <map>
+#include <vector>
+
 #include "tissue_stiffness/types/error.hpp"
 #include "tools/recording_writer.hpp"
 #include "workbench.hpp"
@@ -65,7 +68,7 @@ TEST_F(BagReaderTest, GivesFramesInTheOrderOfTheirStamps) {
   EXPECT_FALSE(reader.next());
 }
 
-TEST_F(BagReaderTest, MergesObservationsOfOneStampAndCountsLateOnes) {
+TEST_F(BagReaderTest, MergesObservationsOfOneStampAndLeavesOutWhatIsFarBack) {
   settings_ = load_model(
       write_model("two.yaml", "{prior: 4e5, factor: 3}", vertices() + "- vertices: {topic: /other, noise: 1e-3}\n"));
   {
@@ -92,7 +95,42 @@ TEST_F(BagReaderTest, MergesObservationsOfOneStampAndCountsLateOnes) {
   int frames = 1;
   while (reader.next()) ++frames;
   EXPECT_EQ(frames, 10);
-  EXPECT_EQ(reader.late(), 1);
+  EXPECT_EQ(reader.late(), 0);
+  EXPECT_EQ(reader.broken_stamps(), 1);  // the only one that far back
+}
+
+TEST_F(BagReaderTest, LeavesOutBrokenStampsAndFollowsAPause) {
+  std::vector<double> stamps, good;
+  for (int k = 0; k < 20; ++k) stamps.push_back(0.1 * k);
+  for (int k = 0; k < 5; ++k) stamps.push_back(100.0 + 0.1 * k);  // a pause: several messages agree
+  good = stamps;
+  stamps.insert(stamps.begin() + 15, -1.0);
+  stamps.insert(stamps.begin() + 10, 3600.0);
+  stamps.push_back(7200.0);
+  {
+    RecordingWriter writer(path("recording.bag"));
+    for (const double stamp : stamps) write_vertex(writer, stamp, 1.0);
+    writer.close();
+  }
+  {  // the writer's order of records is that of the stamps
+    rosbag::Bag sorted(path("recording.bag")), bag(path("as_it_came.bag"), rosbag::bagmode::Write);
+    rosbag::View view(sorted);
+    std::map<ros::Time, sensor_msgs::PointCloud2ConstPtr> clouds;
+    for (const rosbag::MessageInstance& message : view) {
+      const auto cloud = message.instantiate<sensor_msgs::PointCloud2>();
+      clouds[cloud->header.stamp] = cloud;
+    }
+    double record_time = 0.0;
+    for (const double stamp : stamps) bag.write("/tissue/vertices", at(record_time += 0.01), *clouds.at(at(stamp)));
+  }
+  BagReader reader(path("as_it_came.bag"), settings_);
+  EXPECT_DOUBLE_EQ(reader.first_stamp(), 1000.0);
+  std::vector<double> read;
+  while (const auto instant = reader.next()) read.push_back(instant->frame.time - 1000.0);
+  ASSERT_EQ(read.size(), good.size());
+  for (std::size_t k = 0; k < good.size(); ++k) EXPECT_NEAR(read[k], good[k], 1e-6);
+  EXPECT_EQ(reader.broken_stamps(), 3);
+  EXPECT_EQ(reader.last_broken_stamp(), "/tissue/vertices: 7099.6 s ahead");
 }
 
 TEST_F(BagReaderTest, TurnsAWrenchIntoTheModelFrame) {

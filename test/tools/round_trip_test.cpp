@@ -73,6 +73,16 @@ TEST_F(RoundTrip, StopsAfterTheFramesAskedFor) {
   EXPECT_EQ(estimate_recording(model_, path("recording.bag"), 5, nothing, {}).results.frames.size(), 5U);
 }
 
+TEST_F(RoundTrip, ASceneThatNeverEndsIsForWhoAsksForIt) {
+  const auto scene_of = [&](const std::string& simulation) {
+    return load_scene(write_model("scene.yaml", "4e5", vertices(), "simulation: {" + simulation + "}\n"));
+  };
+  EXPECT_NO_THROW(require_moderate(scene_of("duration: 100, rate: 1000, step: 0.001")));
+  for (const std::string simulation : {"duration: 1, rate: 1e6, step: 0.001", "duration: 10, rate: 30, step: 1e-9"})
+    EXPECT_TRUE(
+        says(input_error([&] { require_moderate(scene_of(simulation)); }), {"simulation", "time steps", "--force"}));
+}
+
 TEST_F(RoundTrip, ASceneIsTheTruth) {
   const std::string estimated = write_model("scene.yaml", "{prior: 4e5, factor: 3}", vertices(),
                                             "simulation: {duration: 0.2, rate: 60, step: 0.001}\n");

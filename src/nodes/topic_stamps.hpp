@@ -1,0 +1,32 @@
+#pragma once
+
+#include <ros/time.h>
+
+#include <cstddef>
+#include <string>
+
+namespace tissue_stiffness {
+
+/// Returns whether a stamp is earlier than the one before by more than messages are that overtake each other: 0.5 s.
+bool goes_back(const ros::Time& before, const ros::Time& stamp);
+
+/// The stamps of one topic. A clock that jumps stamps many messages, and a broken message is alone. So a message whose
+/// stamp jumps is held back until more of its topic agree. A message that goes on where the topic was before shows that the
+/// held ones are broken.
+struct TopicStamps {
+  bool seen = false;
+  ros::Time first, last;
+  ros::Duration interval;  ///< between its messages, a running mean; 0: not known yet
+
+  bool back(const ros::Time& stamp) const { return goes_back(last, stamp); }
+  /// Returns whether the stamp is ahead by more than a pause would be: a second, or five of the topic's intervals.
+  bool ahead(const ros::Time& stamp) const;
+  /// Goes on with a stamp that is believed.
+  void advance(const ros::Time& stamp);
+  /// Returns "TOPIC: 3 s ahead".
+  std::string jump_to(const ros::Time& stamp, const std::string& topic) const;
+};
+
+constexpr std::size_t kAgreeingStamps = 3;  ///< messages whose stamps agree that the clock has jumped
+
+}  // namespace tissue_stiffness
