@@ -102,6 +102,15 @@ class FiniteStrainForm {
   /// Only for elasticity: returns whether its law requires finite strain.
   virtual bool always_finite() const { return false; }
 
+  /// A law whose stiffness at rest is that of moduli has a stress linear in a strain, which turns with the body. Damping
+  /// and relaxing branches act through it, because a linear stiffness would resist a body that turns. These add `scale`
+  /// times its force [N] at the displacement u, for strains given at all quadrature points (see green_strains), and its
+  /// tangent for strains sym(F^T grad w).
+  virtual bool has_strain_form() const { return false; }
+  virtual void add_strain_force(const Eigen::VectorXd& /*u*/, const Eigen::Ref<const Eigen::VectorXd>& /*strains*/,
+                                const Parameters&, double /*scale*/, Eigen::VectorXd&) const {}
+  virtual void add_strain_tangent(const Eigen::VectorXd& /*u*/, const Parameters&, double /*scale*/, SparseMatrix&) const {}
+
  protected:
   ~FiniteStrainForm() = default;
 };

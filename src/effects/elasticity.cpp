@@ -8,6 +8,10 @@
 namespace tissue_stiffness::effects {
 namespace {
 
+double everywhere(int, int) {
+  return 1.0;
+}
+
 class Elasticity : public Effect, public FiniteStrainForm {
  public:
   Elasticity(const Value& arguments, const EffectContext& context)
@@ -47,6 +51,15 @@ class Elasticity : public Effect, public FiniteStrainForm {
   }
   void add_finite_stiffness(const Motion& motion, const Parameters& p, SparseMatrix& stiffness) const override {
     solid_.add_stiffness(lame(p[0], p[1]), motion.displacement, stiffness);
+  }
+  bool has_strain_form() const override { return true; }
+  void add_strain_force(const Eigen::VectorXd& u, const Eigen::Ref<const Eigen::VectorXd>& strains, const Parameters& p,
+                        double scale, Eigen::VectorXd& force) const override {
+    solid_.add_strain_force(lame(scale * p[0], p[1]), u, strains, everywhere, force);
+  }
+  void add_strain_tangent(const Eigen::VectorXd& u, const Parameters& p, double scale,
+                          SparseMatrix& stiffness) const override {
+    solid_.add_strain_tangent(lame(scale * p[0], p[1]), u, everywhere, stiffness);
   }
   double energy(const Motion& motion, const Parameters& p) const override {
     const Eigen::VectorXd& u = motion.displacement;

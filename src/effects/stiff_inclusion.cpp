@@ -51,6 +51,21 @@ class StiffInclusion : public Effect, public FiniteStrainForm {
       solids_.finite(s).add_stiffness(c, motion.displacement, scale(p), stiffness);
     }
   }
+  bool has_strain_form() const override { return true; }
+  void add_strain_force(const Eigen::VectorXd& u, const Eigen::Ref<const Eigen::VectorXd>& strains, const Parameters& p,
+                        double scale, Eigen::VectorXd& force) const override {
+    for (std::size_t s = 0; p[kExcess] != 0.0 && s < solids_.count(); ++s) {
+      const Lame c = lame(scale * solids_.modulus(s, p), solids_.ratio(s, p));
+      solids_.finite(s).add_strain_force(c, u, strains, share(p), force);
+    }
+  }
+  void add_strain_tangent(const Eigen::VectorXd& u, const Parameters& p, double scale,
+                          SparseMatrix& stiffness) const override {
+    for (std::size_t s = 0; p[kExcess] != 0.0 && s < solids_.count(); ++s) {
+      const Lame c = lame(scale * solids_.modulus(s, p), solids_.ratio(s, p));
+      solids_.finite(s).add_strain_tangent(c, u, share(p), stiffness);
+    }
+  }
 
  private:
   // Returns 1 inside, 0 outside, and a smooth step in between.
@@ -62,6 +77,10 @@ class StiffInclusion : public Effect, public FiniteStrainForm {
   // The result refers to p, because a copy would allocate memory at every force.
   PointLaw scale(const Parameters& p) const {
     return [this, &p](int e, int q, double) { return StressScale{p[kExcess] * inside(e, q, p), 0.0}; };
+  }
+
+  PointShare share(const Parameters& p) const {
+    return [this, &p](int e, int q) { return p[kExcess] * inside(e, q, p); };
   }
 
   const Discretisation& fem_;

@@ -33,7 +33,7 @@ EffectSpec viscoelasticity_spec() {
   EffectSpec spec;
   spec.name = "viscoelasticity";
   spec.summary = "a branch of the whole stiffness at rest that relaxes: stiffer when fast, soft when slow, lossy between";
-  spec.formula = "-gamma K (u - z), tau z' = u - z";
+  spec.formula = "-gamma K (u - z), tau z' = u - z; under finite strain Green's strain takes the place of u";
   spec.source = "standard linear solid, Simo & Hughes 1998, sec. 10.2";
   spec.parameters = {{"gamma", "gamma", "-", 0.0, 1e3, ParameterSpec::Default::required, 0.0, 0.0, 1},
                      {"tau", "tau", "s", 1e-6, 1e6, ParameterSpec::Default::required, 0.0, NAN, 1}};

@@ -24,8 +24,8 @@ EffectSpec viscous_damping_spec() {
   EffectSpec spec;
   spec.name = "viscous_damping";
   spec.summary = "damping proportional to the elastic stiffness at rest; damping ratio rises with frequency";
-  spec.formula = "-beta K v";
-  spec.source = "Kelvin-Voigt solid; Rayleigh damping, stiffness part";
+  spec.formula = "-beta K v; under finite strain the stress beta C : E' of Green's strain rate";
+  spec.source = "Kelvin-Voigt solid; Rayleigh damping, stiffness part; Holzapfel 2000, sec. 6.9";
   spec.parameters = {{"beta", "beta", "s", 0.0, 1e2, ParameterSpec::Default::required, 0.0, 0.0, 1}};
   spec.proposals = propose;
   return spec;

@@ -36,6 +36,8 @@ CentralDifference::CentralDifference(const DynamicSystem& system, double start) 
   const double omega = std::sqrt(square);
   double damping_ratio = 0.0;  // of the highest mode
   if (system.damped()) damping_ratio = 0.5 * x.dot(inverse_mass_.cwiseProduct(system.damping() * x)) / omega;
+  if (system.has_velocity_tangent())
+    damping_ratio += 0.5 * x.dot(inverse_mass_.cwiseProduct(system.friction(start, zero, zero) * x)) / omega;
   largest_step_ = kSafety * 2.0 / omega * (std::sqrt(1.0 + damping_ratio * damping_ratio) - damping_ratio);
 }
 
@@ -45,14 +47,15 @@ void CentralDifference::find_acceleration(DynamicState& state) {
   system_.add_force(state.time, state.displacement, state.velocity, f);
   if (system_.damped()) subtract_product(system_.damping(), state.velocity, f);
   if (const auto& branches = system_.relaxations(); !branches.empty()) {
-    overstretch(branches, state.displacement, state.relaxed, stretch_);
-    subtract_product(system_.relaxing_stiffness(), stretch_, f);
+    overstretch(branches, strain_, state.relaxed, stretch_);
+    system_.subtract_relaxing_force(state.displacement, stretch_, f);
   }
   f.array() *= inverse_mass_.array();
 }
 
 void CentralDifference::initialise(DynamicState& state) {
-  state.relaxed.resize(system_.relaxations().size(), state.displacement);
+  start_relaxed(system_, state);
+  if (!system_.relaxations().empty()) system_.find_relaxing_strain(state.displacement, strain_);
   find_acceleration(state);
 }
 
@@ -62,7 +65,11 @@ void CentralDifference::advance(DynamicState& state, double span) {
   for (int k = 1; k <= steps; ++k) {
     state.velocity += 0.5 * h * state.acceleration;
     next_ = state.displacement + h * state.velocity;
-    relax(system_.relaxations(), h, state.displacement, next_, state.relaxed);
+    if (const auto& branches = system_.relaxations(); !branches.empty()) {
+      system_.find_relaxing_strain(next_, next_strain_);
+      relax(branches, h, strain_, next_strain_, state.relaxed);
+      strain_.swap(next_strain_);
+    }
     state.displacement.swap(next_);
     state.time = start + h * k;
     find_acceleration(state);

@@ -26,7 +26,8 @@ class CentralDifference {
   const DynamicSystem& system_;
   Eigen::VectorXd inverse_mass_;  ///< 0 for fixed degrees of freedom
   double largest_step_ = 0.0;
-  Eigen::VectorXd next_, stretch_;  ///< displacement after a step; sum modulus (u - z) of the relaxing branches
+  Eigen::VectorXd next_;                            ///< displacement after a step
+  Eigen::VectorXd strain_, next_strain_, stretch_;  ///< of the relaxing branches; sum modulus (strain - z)
 };
 
 }  // namespace tissue_stiffness

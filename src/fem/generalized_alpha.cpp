@@ -44,7 +44,7 @@ void turn_nodes(const Eigen::Matrix3Xd& turn, bool back, Eigen::Ref<Eigen::Vecto
 }
 
 void initialise_one(const DynamicSystem& system, DynamicState& state) {
-  state.relaxed.resize(system.relaxations().size(), state.displacement);
+  start_relaxed(system, state);
   Eigen::VectorXd f = system.force(state.time, state.displacement, state.velocity);
   if (system.damped()) f -= system.damping() * state.velocity;
   zero_fixed(f, system.fixed());
@@ -62,6 +62,18 @@ Eigen::VectorXd DynamicSystem::force(double time, const Eigen::VectorXd& u, cons
   Eigen::VectorXd f = Eigen::VectorXd::Zero(u.size());
   add_force(time, u, v, f);
   return f;
+}
+
+void DynamicSystem::subtract_relaxing_force(const Eigen::VectorXd&, const Eigen::VectorXd& stretch,
+                                            Eigen::VectorXd& f) const {
+  subtract_product(relaxing_stiffness(), stretch, f);
+}
+
+void start_relaxed(const DynamicSystem& system, DynamicState& state) {
+  if (state.relaxed.size() >= system.relaxations().size()) return state.relaxed.resize(system.relaxations().size());
+  Eigen::VectorXd strain;
+  system.find_relaxing_strain(state.displacement, strain);
+  state.relaxed.resize(system.relaxations().size(), strain);
 }
 
 const std::vector<Relaxation>& DynamicSystem::relaxations() const {
@@ -138,9 +150,10 @@ void GeneralizedAlpha::find_residual(Column& c, const Eigen::VectorXd& x, Eigen:
   if (system.damped()) subtract_product(system.damping(), middle.velocity, r);
   if (const auto& branches = system.relaxations(); !branches.empty()) {
     middle.relaxed = s.relaxed;
-    relax(branches, (1.0 - alpha_f_) * h, s.displacement, middle.displacement, middle.relaxed);
-    overstretch(branches, middle.displacement, middle.relaxed, c.stretch);
-    subtract_product(system.relaxing_stiffness(), c.stretch, r);
+    system.find_relaxing_strain(middle.displacement, c.strain);
+    relax(branches, (1.0 - alpha_f_) * h, c.strain_before, c.strain, middle.relaxed);
+    overstretch(branches, c.strain, middle.relaxed, c.stretch);
+    system.subtract_relaxing_force(middle.displacement, c.stretch, r);
   }
   zero_fixed(r, system.fixed());
 }
@@ -198,6 +211,7 @@ bool GeneralizedAlpha::start() {
     c.rate = 1.0;
     c.done = false;
     c.updates.clear();
+    if (!c.system->relaxations().empty()) c.system->find_relaxing_strain(s.displacement, c.strain_before);
     try {
       find_residual(c, c.increment, c.residual);
     } catch (const NumericalError&) {
@@ -329,7 +343,10 @@ void GeneralizedAlpha::accept(Column& c, DynamicState& state) const {
   find_acceleration(c, c.increment, a);
   u = state.displacement + c.increment;
   state.velocity += c.step * ((1.0 - gamma_) * state.acceleration + gamma_ * a);
-  relax(c.system->relaxations(), c.step, state.displacement, u, state.relaxed);
+  if (const auto& branches = c.system->relaxations(); !branches.empty()) {
+    c.system->find_relaxing_strain(u, c.strain);
+    relax(branches, c.step, c.strain_before, c.strain, state.relaxed);
+  }
   state.displacement.swap(u);
   c.earlier_acceleration.swap(state.acceleration);
   state.acceleration.swap(a);

@@ -26,10 +26,15 @@ class DynamicSystem {
   /// Returns the part of -df/dv that changes with the motion [N s/m]. It is read only when has_velocity_tangent().
   virtual bool has_velocity_tangent() const { return false; }
   virtual SparseMatrix friction(double, const Eigen::VectorXd&, const Eigen::VectorXd&) const { return {}; }
-  /// Branches whose force depends on the state's history, and the stiffness that they share. The stiffness is read only
-  /// when there are any.
+  /// Branches whose force depends on the history of a strain, and the stiffness that they share at rest. The latter, and
+  /// the next two functions, are used only when there are any.
   virtual const std::vector<Relaxation>& relaxations() const;
   virtual const SparseMatrix& relaxing_stiffness() const { return mass(); }
+  /// Computes that strain, which is the displacement itself in a linear system.
+  virtual void find_relaxing_strain(const Eigen::VectorXd& u, Eigen::VectorXd& strain) const { strain = u; }
+  /// Subtracts the branches' force at displacement u, where `stretch` is sum modulus (strain - z).
+  virtual void subtract_relaxing_force(const Eigen::VectorXd& u, const Eigen::VectorXd& stretch,
+                                       Eigen::VectorXd& force) const;
   /// Finds the rotation of the material at each node, 3 x 3n, if the stiffness rotates with it. Otherwise `rotations` is
   /// empty.
   virtual void find_rotations(const Eigen::VectorXd&, Eigen::Matrix3Xd& rotations) const { rotations.resize(3, 0); }
@@ -39,8 +44,11 @@ class DynamicSystem {
 struct DynamicState {
   double time = 0.0;
   Eigen::VectorXd displacement, velocity, acceleration;
-  std::vector<Eigen::VectorXd> relaxed;  ///< z of each relaxing branch [m]; initialise fills it in, fully relaxed
+  std::vector<Eigen::VectorXd> relaxed;  ///< z of each relaxing branch; initialise fills it in, fully relaxed
 };
+
+/// Gives a state without a history that of rest at its displacement.
+void start_relaxed(const DynamicSystem& system, DynamicState& state);
 
 /// Implicit time steps of the generalised-alpha family (Chung & Hulbert 1993, eq. 7-19), which is of second order and
 /// unconditionally stable. Spectral radius 1 here means Newmark's average acceleration (beta = 1/4, gamma = 1/2), which
@@ -80,7 +88,8 @@ class GeneralizedAlpha {
     DynamicState middle;  ///< at the weighted instants
     Eigen::VectorXd increment, residual, direction;
     Eigen::VectorXd next_increment, next_residual;  ///< of the correction that is being tried
-    Eigen::VectorXd stretch;                        ///< sum modulus (u - z) of the relaxing branches
+    Eigen::VectorXd strain_before, strain;          ///< of the relaxing branches: before the step, and at `middle`
+    Eigen::VectorXd stretch;                        ///< sum modulus (strain - z) of the relaxing branches
     BfgsUpdates updates;
     double last = 0.0;  ///< size of the last correction
     double rate = 1.0;  ///< ratio of the last two corrections

@@ -1,28 +1,15 @@
 #include "fem/neo_hookean.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <Eigen/LU>
 #include <cmath>
 #include <string>
 
+#include "fem/element_forces.hpp"
+#include "fem/strain.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
 namespace {
-
-constexpr int kElements = 64, kNodes = 512;  // worth a task
-
-template <int N>
-using Nodal = Eigen::Matrix<double, 3, N>;
-
-template <int N>
-Nodal<N> gather(const Eigen::MatrixXi& elements, int e, const Eigen::VectorXd& u) {
-  Nodal<N> local;
-  for (int a = 0; a < N; ++a) local.col(a) = u.segment<3>(3 * elements(a, e));
-  return local;
-}
 
 // F, its inverse and ln J at one quadrature point.
 struct Deformation {
@@ -86,6 +73,33 @@ void stiffness(const Discretisation& fem, const std::vector<int>& list, const La
   }
 }
 
+// Adds w F S(dE) g with dE = sym(F^T dw g^T), h = F g.
+template <int N>
+void strain_tangent(const Discretisation& fem, const std::vector<int>& list, const Lame& c, const Eigen::VectorXd& u,
+                    const PointShare& share, SparseMatrix& k) {
+  for (const int e : list) {
+    const Nodal<N> local = gather<N>(fem.elements(), e, u);
+    Eigen::Matrix<double, 3 * N, 3 * N> block = Eigen::Matrix<double, 3 * N, 3 * N>::Zero();
+    for (int q = 0; q < fem.points_per_element(); ++q) {
+      const double w = share(e, q) * fem.weight(e, q);
+      if (w == 0.0) continue;
+      const Eigen::Map<const Nodal<N>> g(fem.gradient(e, q).data());
+      const Eigen::Matrix3d f = Eigen::Matrix3d::Identity() + local * g.transpose(), ff = f * f.transpose();
+      const Nodal<N> h = f * g;
+      for (int b = 0; b < N; ++b) {
+        for (int a = 0; a < N; ++a) {
+          auto part = block.template block<3, 3>(3 * a, 3 * b);
+          part.noalias() += (w * c.lambda * h.col(a)) * h.col(b).transpose() + (w * c.mu * h.col(b)) * h.col(a).transpose();
+          part.noalias() += (w * c.mu * g.col(a).dot(g.col(b))) * ff;
+        }
+      }
+    }
+    for (int b = 0; b < N; ++b) {
+      for (int a = 0; a < N; ++a) fem.add_block(k, e, a, b, block.template block<3, 3>(3 * a, 3 * b));
+    }
+  }
+}
+
 template <int N>
 double stored(const Discretisation& fem, const std::vector<int>& list, const Lame& c, const Eigen::VectorXd& u) {
   double energy = 0.0;
@@ -107,35 +121,20 @@ NeoHookean::NeoHookean(const Discretisation& fem, std::vector<int> elements)
       corners_(fem.elements(), elements_, fem.node_count()),
       scratch_(std::make_unique<VectorPool>()) {}
 
-// Processes elements in parallel, and then nodes. Each node sums its parts in a fixed order, whatever the threads do.
 template <int N, typename Law>
 void NeoHookean::force(const Lame& c, const Eigen::VectorXd& u, const Law& law, Eigen::VectorXd& f) const {
-  VectorPool::Loan shares(*scratch_, 3 * static_cast<Eigen::Index>(corners_.corners.size()));
-  const auto count = static_cast<int>(elements_.size());
-  tbb::parallel_for(tbb::blocked_range<int>(0, count, kElements), [&](const tbb::blocked_range<int>& part) {
-    for (int i = part.begin(); i < part.end(); ++i) {
-      const int e = elements_[static_cast<std::size_t>(i)];
-      const Nodal<N> local = gather<N>(fem_.elements(), e, u);
-      Nodal<N> internal = Nodal<N>::Zero();
-      for (int q = 0; q < fem_.points_per_element(); ++q) {
-        const Eigen::Map<const Nodal<N>> g(fem_.gradient(e, q).data());
-        const Deformation d = deform<N>(local, g, e);
-        const double scale = law(e, q, energy_density(c, d)).value;
-        if (scale != 0.0) internal.noalias() += (scale * fem_.weight(e, q) * stress(c, d)) * g;
-      }
-      Eigen::Map<Nodal<N>>(shares->data() + static_cast<std::ptrdiff_t>(3 * N) * i) = internal;
+  const auto internal = [&](int e) {
+    const Nodal<N> local = gather<N>(fem_.elements(), e, u);
+    Nodal<N> out = Nodal<N>::Zero();
+    for (int q = 0; q < fem_.points_per_element(); ++q) {
+      const Eigen::Map<const Nodal<N>> g(fem_.gradient(e, q).data());
+      const Deformation d = deform<N>(local, g, e);
+      const double scale = law(e, q, energy_density(c, d)).value;
+      if (scale != 0.0) out.noalias() += (scale * fem_.weight(e, q) * stress(c, d)) * g;
     }
-  });
-  tbb::parallel_for(tbb::blocked_range<int>(0, fem_.node_count(), kNodes), [&](const tbb::blocked_range<int>& part) {
-    for (int node = part.begin(); node < part.end(); ++node) {
-      Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-      const auto at = static_cast<std::size_t>(node);
-      for (int k = corners_.first[at]; k < corners_.first[at + 1]; ++k) {
-        sum += shares->segment<3>(3 * static_cast<Eigen::Index>(corners_.corners[static_cast<std::size_t>(k)]));
-      }
-      f.segment<3>(3 * node) -= sum;
-    }
-  });
+    return out;
+  };
+  subtract_element_forces<N>(elements_, corners_, fem_.node_count(), *scratch_, internal, f);
 }
 
 void NeoHookean::add_force(const Lame& lame, const Eigen::VectorXd& u, Eigen::VectorXd& f) const {
@@ -154,6 +153,40 @@ void NeoHookean::add_force(const Lame& lame, const Eigen::VectorXd& u, const Poi
 void NeoHookean::add_stiffness(const Lame& lame, const Eigen::VectorXd& u, const PointLaw& scale, SparseMatrix& k) const {
   fem_.nodes_per_element() == 10 ? stiffness<10>(fem_, elements_, lame, u, scale, k)
                                  : stiffness<4>(fem_, elements_, lame, u, scale, k);
+}
+
+template <int N>
+void NeoHookean::strain_force(const Lame& c, const Eigen::VectorXd& u, const Eigen::Ref<const Eigen::VectorXd>& strains,
+                              const PointShare& share, Eigen::VectorXd& f) const {
+  const int points = fem_.points_per_element();
+  const auto internal = [&](int e) {
+    const Nodal<N> local = gather<N>(fem_.elements(), e, u);
+    Nodal<N> out = Nodal<N>::Zero();
+    for (int q = 0; q < points; ++q) {
+      const double w = share(e, q) * fem_.weight(e, q);
+      if (w == 0.0) continue;
+      const Eigen::Map<const Nodal<N>> g(fem_.gradient(e, q).data());
+      const Strain strain = strains.template segment<6>(6 * (static_cast<Eigen::Index>(e) * points + q));
+      Eigen::Matrix3d second = 2.0 * c.mu * to_tensor(strain);
+      second.diagonal().array() += c.lambda * strain.head<3>().sum();
+      out.noalias() += (w * (Eigen::Matrix3d::Identity() + local * g.transpose()) * second) * g;
+    }
+    return out;
+  };
+  subtract_element_forces<N>(elements_, corners_, fem_.node_count(), *scratch_, internal, f);
+}
+
+void NeoHookean::add_strain_force(const Lame& lame, const Eigen::VectorXd& u,
+                                  const Eigen::Ref<const Eigen::VectorXd>& strains, const PointShare& share,
+                                  Eigen::VectorXd& f) const {
+  fem_.nodes_per_element() == 10 ? strain_force<10>(lame, u, strains, share, f)
+                                 : strain_force<4>(lame, u, strains, share, f);
+}
+
+void NeoHookean::add_strain_tangent(const Lame& lame, const Eigen::VectorXd& u, const PointShare& share,
+                                    SparseMatrix& k) const {
+  fem_.nodes_per_element() == 10 ? strain_tangent<10>(fem_, elements_, lame, u, share, k)
+                                 : strain_tangent<4>(fem_, elements_, lame, u, share, k);
 }
 
 double NeoHookean::energy(const Lame& lame, const Eigen::VectorXd& u) const {

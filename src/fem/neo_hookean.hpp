@@ -29,6 +29,8 @@ struct StressScale {
   double slope = 0.0;
 };
 using PointLaw = std::function<StressScale(int e, int q, double psi)>;
+/// Factor of the moduli at a quadrature point.
+using PointShare = std::function<double(int e, int q)>;
 
 /// Compressible neo-Hookean solid over the listed elements, psi = mu/2 (tr F^T F - 3 - 2 ln J) + lambda/2 (ln J)^2 (Bonet &
 /// Wood 2008, eq. 6.28). All functions throw NumericalError naming an element that is turned inside out.
@@ -46,9 +48,22 @@ class NeoHookean {
   /// Returns the stored energy [J].
   double energy(const Lame& lame, const Eigen::VectorXd& u) const;
 
+  /// Subtracts the force [N] of a stress that is linear in a strain given at all quadrature points (see green_strains),
+  /// with these moduli and a `share` of them, and adds its tangent for a strain sym(F^T grad w),
+  ///   P = F S,  S = share (lambda tr(E) I + 2 mu E).
+  /// With the rate of Green's strain and viscosities for moduli this is Kelvin-Voigt's stress (Holzapfel 2000, sec. 6.9).
+  /// A turning body turns the force. At u = 0 both are those of the linear stiffness.
+  void add_strain_force(const Lame& lame, const Eigen::VectorXd& u, const Eigen::Ref<const Eigen::VectorXd>& strains,
+                        const PointShare& share, Eigen::VectorXd& force) const;
+  void add_strain_tangent(const Lame& lame, const Eigen::VectorXd& u, const PointShare& share,
+                          SparseMatrix& stiffness) const;
+
  private:
   template <int N, typename Law>
   void force(const Lame& lame, const Eigen::VectorXd& u, const Law& law, Eigen::VectorXd& f) const;
+  template <int N>
+  void strain_force(const Lame& lame, const Eigen::VectorXd& u, const Eigen::Ref<const Eigen::VectorXd>& strains,
+                    const PointShare& share, Eigen::VectorXd& f) const;
 
   const Discretisation& fem_;
   std::vector<int> elements_;

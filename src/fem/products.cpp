@@ -91,7 +91,7 @@ Eigen::MatrixXd symmetric_product(const SparseMatrix& s, const Eigen::MatrixXd& 
   return to.leftCols(x.cols());
 }
 
-void subtract_product(const SparseMatrix& s, const Eigen::VectorXd& x, Eigen::VectorXd& y) {
+void subtract_product(const SparseMatrix& s, const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::VectorXd& y) {
   tbb::parallel_for(tbb::blocked_range<Eigen::Index>(0, s.outerSize(), kGrain), [&](const auto& part) {
     for (Eigen::Index j = part.begin(); j < part.end(); ++j) y[j] -= row_product(s, j, x);
   });

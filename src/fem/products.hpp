@@ -12,7 +12,7 @@ namespace tissue_stiffness {
 Eigen::MatrixXd symmetric_product(const SparseMatrix& s, const Eigen::MatrixXd& x);
 
 /// Computes y -= S x for one vector in place.
-void subtract_product(const SparseMatrix& s, const Eigen::VectorXd& x, Eigen::VectorXd& y);
+void subtract_product(const SparseMatrix& s, const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::VectorXd& y);
 
 /// Returns A^T B of tall A (n x p) and B (n x q), with the widest instructions of the machine. It sums over fixed blocks of
 /// rows, so the result does not depend on the number of cores.

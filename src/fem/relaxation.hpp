@@ -5,7 +5,8 @@
 
 namespace tissue_stiffness {
 
-/// A Maxwell branch of a standard linear solid: force -modulus K (u - z) with time_constant z' = u - z.
+/// A Maxwell branch of a standard linear solid: force -modulus K (u - z) with time_constant z' = u - z. Under finite strain
+/// u is Green's strain.
 struct Relaxation {
   double modulus;        ///< relative to the elastic modulus [-]
   double time_constant;  ///< [s]

@@ -12,14 +12,6 @@ namespace {
 
 const double kRoot = std::sqrt(2.0);
 
-// Returns the tensor whose product with a node's shape gradient is B^T s, the force of the stress s at the node.
-Eigen::Matrix3d tensor(const Strain& s) {
-  const double xy = s[3] / kRoot, yz = s[4] / kRoot, xz = s[5] / kRoot;
-  Eigen::Matrix3d t;
-  t << s[0], xy, xz, xy, s[1], yz, xz, yz, s[2];
-  return t;
-}
-
 // Adds B_a u_a.
 template <typename Row, typename Rows>
 void add_strain(const Eigen::Vector3d& g, const Row& x, const Row& y, const Row& z, Eigen::Index at, Rows& e) {
@@ -31,7 +23,56 @@ void add_strain(const Eigen::Vector3d& g, const Row& x, const Row& y, const Row&
   e.row(at + 5) += (g.z() * x + g.x() * z) / kRoot;
 }
 
+// Calls set(e, q, out) for all quadrature points.
+template <typename Set>
+void for_each_point(const Discretisation& fem, const Set& set, Eigen::Ref<Eigen::VectorXd> out) {
+  const int points = fem.points_per_element();
+  tbb::parallel_for(0, fem.element_count(), [&](int e) {
+    for (int q = 0; q < points; ++q) out.segment<6>(6 * (static_cast<Eigen::Index>(e) * points + q)) = set(e, q);
+  });
+}
+
+Eigen::Matrix3d gradient_of(const Discretisation& fem, const Eigen::VectorXd& u, int e, int q) {
+  const auto g = fem.gradient(e, q);
+  Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
+  for (int a = 0; a < fem.nodes_per_element(); ++a) {
+    h.noalias() += u.segment<3>(3 * fem.elements()(a, e)) * g.col(a).transpose();
+  }
+  return h;
+}
+
 }  // namespace
+
+Strain to_strain(const Eigen::Matrix3d& t) {
+  Strain s;
+  s << t.diagonal(), (t(0, 1) + t(1, 0)) / kRoot, (t(1, 2) + t(2, 1)) / kRoot, (t(0, 2) + t(2, 0)) / kRoot;
+  return s;
+}
+
+Eigen::Matrix3d to_tensor(const Strain& s) {
+  const double xy = s[3] / kRoot, yz = s[4] / kRoot, xz = s[5] / kRoot;
+  Eigen::Matrix3d t;
+  t << s[0], xy, xz, xy, s[1], yz, xz, yz, s[2];
+  return t;
+}
+
+void green_strains(const Discretisation& fem, const Eigen::VectorXd& u, Eigen::Ref<Eigen::VectorXd> strains) {
+  const auto strain = [&](int e, int q) {
+    const Eigen::Matrix3d h = gradient_of(fem, u, e, q);
+    return to_strain(0.5 * (h + h.transpose() + h.transpose() * h));
+  };
+  for_each_point(fem, strain, strains);
+}
+
+void green_strain_rates(const Discretisation& fem, const Eigen::VectorXd& u, const Eigen::VectorXd& v,
+                        Eigen::Ref<Eigen::VectorXd> rates) {
+  const auto rate = [&](int e, int q) {
+    const Eigen::Matrix3d f = Eigen::Matrix3d::Identity() + gradient_of(fem, u, e, q);
+    const Eigen::Matrix3d half = f.transpose() * gradient_of(fem, v, e, q);
+    return to_strain(0.5 * (half + half.transpose()));
+  };
+  for_each_point(fem, rate, rates);
+}
 
 Strain strain_of(const Eigen::Vector3d& d) {
   Strain s;
@@ -65,14 +106,8 @@ StrainRows strains(const Discretisation& fem, const Eigen::MatrixXd& u) {
 }
 
 Strain strain_at(const Discretisation& fem, const Eigen::VectorXd& u, int e, int q) {
-  const auto g = fem.gradient(e, q);
-  Eigen::Matrix3d h = Eigen::Matrix3d::Zero();  // the displacement's gradient
-  for (int a = 0; a < fem.nodes_per_element(); ++a) {
-    h.noalias() += u.segment<3>(3 * fem.elements()(a, e)) * g.col(a).transpose();
-  }
-  Strain s;
-  s << h.diagonal(), (h(0, 1) + h(1, 0)) / kRoot, (h(1, 2) + h(2, 1)) / kRoot, (h(0, 2) + h(2, 0)) / kRoot;
-  return s;
+  const Eigen::Matrix3d h = gradient_of(fem, u, e, q);
+  return to_strain(0.5 * (h + h.transpose()));
 }
 
 void add_strain_stiffness(const Discretisation& fem, const StrainFactorField& factor, double scale, SparseMatrix& k) {
@@ -84,7 +119,7 @@ void add_strain_stiffness(const Discretisation& fem, const StrainFactorField& fa
       const auto g = fem.gradient(e, q);
       const Eigen::Index columns = r.cols();
       for (Eigen::Index c = 0; c < columns; ++c) {
-        const Eigen::Matrix3d stress = tensor(r.col(c));
+        const Eigen::Matrix3d stress = to_tensor(r.col(c));
         for (int a = 0; a < n; ++a) forces.col(6 * a + c) = stress * g.col(a);
       }
       const double w = scale * fem.weight(e, q);
@@ -111,7 +146,7 @@ Eigen::MatrixXd apply_strain_stiffness(const Discretisation& fem, const StrainFa
       const Eigen::MatrixXd stress = fem.weight(e, q) * (r * (r.transpose() * strains.middleRows<6>(at)));
       const auto g = fem.gradient(e, q);
       for (Eigen::Index c = 0; c < stress.cols(); ++c) {
-        const Eigen::Matrix3d of = tensor(stress.col(c));
+        const Eigen::Matrix3d of = to_tensor(stress.col(c));
         for (int a = 0; a < n; ++a) result.block<3, 1>(3 * fem.elements()(a, e), c) += of * g.col(a);
       }
     }
@@ -149,7 +184,7 @@ Eigen::MatrixXd project_strain_stiffness(const Discretisation& fem, const Strain
 void add_stress_force(const Discretisation& fem, const StressField& stress, Eigen::VectorXd& force) {
   for (int e = 0; e < fem.element_count(); ++e) {
     for (int q = 0; q < fem.points_per_element(); ++q) {
-      const Eigen::Matrix3d s = tensor(fem.weight(e, q) * stress(e, q));
+      const Eigen::Matrix3d s = to_tensor(fem.weight(e, q) * stress(e, q));
       const auto g = fem.gradient(e, q);
       for (int a = 0; a < fem.nodes_per_element(); ++a) force.segment<3>(3 * fem.elements()(a, e)) -= s * g.col(a);
     }

@@ -32,6 +32,19 @@ StrainRows strains(const Discretisation& fem, const Eigen::MatrixXd& u);
 /// Returns the strain of one field at one point.
 Strain strain_at(const Discretisation& fem, const Eigen::VectorXd& u, int e, int q);
 
+/// Computes Green's strain E = (F^T F - I) / 2 of a displacement u (3n) at all quadrature points, six numbers for each, and
+/// its rate sym(F^T F') at the velocity v.
+void green_strains(const Discretisation& fem, const Eigen::VectorXd& u, Eigen::Ref<Eigen::VectorXd> strains);
+void green_strain_rates(const Discretisation& fem, const Eigen::VectorXd& u, const Eigen::VectorXd& v,
+                        Eigen::Ref<Eigen::VectorXd> rates);
+/// Returns the number of entries of these.
+inline Eigen::Index strain_count(const Discretisation& fem) {
+  return static_cast<Eigen::Index>(6) * fem.points_per_element() * fem.element_count();
+}
+/// Returns the components of a symmetric tensor, and the tensor of components.
+Strain to_strain(const Eigen::Matrix3d& tensor);
+Eigen::Matrix3d to_tensor(const Strain& strain);
+
 /// Adds int B^T R R^T B dV [N/m], in the pattern of the mesh.
 void add_strain_stiffness(const Discretisation& fem, const StrainFactorField& factor, double scale, SparseMatrix& k);
 

@@ -7,6 +7,7 @@
 
 #include "fem/central_difference.hpp"
 #include "fem/products.hpp"
+#include "fem/strain.hpp"
 #include "forward/for_each_index.hpp"
 
 namespace tissue_stiffness {
@@ -168,15 +169,18 @@ ModelSystem::ModelSystem(const Model& model, const Eigen::VectorXd& theta)
   mass_.prune(0.0);  // of each pair of nodes' 3 x 3 block, a third
   linear_part_ = stiffness_.coeffs().cwiseAbs().maxCoeff() > 0.0;
   damped_ = alpha > 0.0 || beta > 0.0;
-  if (beta > 0.0 || inertia > 0.0 || !relaxations_.empty()) reference_ = model.reference_stiffness(theta);
+  if (inertia > 0.0 || !relaxations_.empty()) reference_ = model.reference_stiffness(theta);
+  if (beta > 0.0 || !relaxations_.empty()) linear_reference_ = model.linear_reference_stiffness(theta);
+  strains_relax_ = !relaxations_.empty() && model.may_be_finite();
   if (damped_) {
     damping_ = alpha * mass_;
-    if (beta > 0.0) damping_ += beta * reference_;
+    if (beta > 0.0) damping_ += beta * linear_reference_;
   }
   gravity_ = mass_ * model.body_acceleration(theta).replicate(mass_.rows() / 3, 1);
   if (inertia > 0.0) mass_ += inertia * reference_;
-  rubs_ = model.has_velocity_tangent(point_);
-  explicit_steps_ = !(inertia > 0.0) && !rubs_;
+  const bool rubs = model.has_friction(point_);
+  velocity_tangent_ = rubs || model.has_finite_damping(point_);
+  explicit_steps_ = !(inertia > 0.0) && !rubs;
   if (!linear_part_) rotations_.emplace(model.fem());
 }
 
@@ -185,6 +189,20 @@ void ModelSystem::add_force(double time, const Eigen::VectorXd& u, const Eigen::
   if (linear_part_) subtract_product(stiffness_, u, force);
   model_.add_loads(point_, time, force);
   model_.add_nonlinear_force(point_, {time, u, v}, force);
+}
+
+void ModelSystem::find_relaxing_strain(const Eigen::VectorXd& u, Eigen::VectorXd& strain) const {
+  if (!strains_relax_) return DynamicSystem::find_relaxing_strain(u, strain);
+  strain.resize(u.size() + strain_count(model_.fem()));
+  strain.head(u.size()) = u;
+  green_strains(model_.fem(), u, strain.tail(strain.size() - u.size()));
+}
+
+void ModelSystem::subtract_relaxing_force(const Eigen::VectorXd& u, const Eigen::VectorXd& stretch,
+                                          Eigen::VectorXd& force) const {
+  if (!strains_relax_) return subtract_product(linear_reference_, stretch, force);
+  subtract_product(linear_reference_, stretch.head(u.size()), force);
+  model_.add_strain_force(point_, u, stretch.tail(stretch.size() - u.size()), force);
 }
 
 SparseMatrix ModelSystem::stiffness(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const {

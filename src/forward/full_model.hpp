@@ -46,9 +46,13 @@ class ModelSystem : public DynamicSystem {
   const std::vector<char>& fixed() const override { return fixed_; }
   const std::vector<Relaxation>& relaxations() const override { return relaxations_; }
   const SparseMatrix& relaxing_stiffness() const override { return reference_; }
+  /// Where a law may have its stress in finite strain, the displacement is followed by Green's strain.
+  void find_relaxing_strain(const Eigen::VectorXd& u, Eigen::VectorXd& strain) const override;
+  void subtract_relaxing_force(const Eigen::VectorXd& u, const Eigen::VectorXd& stretch,
+                               Eigen::VectorXd& force) const override;
   void add_force(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v, Eigen::VectorXd& force) const override;
   SparseMatrix stiffness(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const override;
-  bool has_velocity_tangent() const override { return rubs_; }
+  bool has_velocity_tangent() const override { return velocity_tangent_; }
   SparseMatrix friction(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const override;
   /// Returns whether the mass can be lumped, and no force changes faster with the velocity than explicit steps can follow.
   bool supports_explicit_steps() const { return explicit_steps_; }
@@ -59,12 +63,12 @@ class ModelSystem : public DynamicSystem {
  private:
   const Model& model_;
   Model::Point point_;
-  SparseMatrix mass_, damping_, stiffness_, reference_;
+  SparseMatrix mass_, damping_, stiffness_, reference_, linear_reference_;
   std::vector<char> fixed_;
   std::vector<Relaxation> relaxations_;
   Eigen::VectorXd gravity_;
   std::optional<NodalRotations> rotations_;  ///< if the whole stiffness rotates with the material
-  bool damped_ = false, linear_part_ = false, rubs_ = false, explicit_steps_ = true;
+  bool damped_ = false, linear_part_ = false, velocity_tangent_ = false, explicit_steps_ = true, strains_relax_ = false;
 };
 
 }  // namespace tissue_stiffness

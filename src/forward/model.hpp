@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -59,6 +60,8 @@ class Model {
   SparseMatrix mass(const Eigen::VectorXd& theta) const;
   SparseMatrix stiffness(const Eigen::VectorXd& theta) const;
   SparseMatrix reference_stiffness(const Eigen::VectorXd& theta) const;
+  /// Returns what of the reference stiffness damps and relaxes linearly. It lacks the share that acts through strain.
+  SparseMatrix linear_reference_stiffness(const Eigen::VectorXd& theta) const;
   /// Rayleigh coefficients in C = alpha M + beta K_reference.
   double mass_damping(const Eigen::VectorXd& theta) const;
   double stiffness_damping(const Eigen::VectorXd& theta) const;
@@ -84,15 +87,23 @@ class Model {
     };
     std::vector<Part> parts;
     double load_factor;
+    double stiffness_damping;  ///< beta [s]
   };
   Point point(const Eigen::VectorXd& theta) const;
   /// Adds the load terms (without gravity) at an instant [N].
   void add_loads(const Point& at, double time, Eigen::VectorXd& force) const;
   void add_nonlinear_force(const Point& at, Motion motion, Eigen::VectorXd& force) const;
   void add_nonlinear_stiffness(const Point& at, Motion motion, SparseMatrix& stiffness) const;
-  /// Returns whether a force depends on the velocity beyond the damping. The next function adds its tangent.
-  bool has_velocity_tangent(const Point& at) const;
-  void add_velocity_tangent(const Point& at, const Motion& motion, SparseMatrix& damping) const;
+  /// Returns whether a force depends on the velocity beyond the linear damping: friction, or the viscous stress of finite
+  /// strain. The next function adds their tangents.
+  bool has_friction(const Point& at) const;
+  bool has_finite_damping(const Point& at) const;
+  /// Returns whether some law has its stress in finite strain at some theta.
+  bool may_be_finite() const;
+  /// Adds the force [N] of a stress linear in `strains`, of all laws under finite strain, times their share of it.
+  void add_strain_force(const Point& at, const Eigen::VectorXd& u, const Eigen::Ref<const Eigen::VectorXd>& strains,
+                        Eigen::VectorXd& force) const;
+  void add_velocity_tangent(const Point& at, Motion motion, SparseMatrix& damping) const;
   /// Returns elastic and contact energy [J].
   double stored_energy(const Point& at, Motion motion) const;
 
@@ -113,7 +124,8 @@ class Model {
   void link_elasticities();
   void check_laws() const;
   void settle_terms(Part& part) const;
-  SparseMatrix sum_stiffness(const Eigen::VectorXd& theta, bool reference) const;
+  /// Sums the parts' stiffness at rest, each times its share.
+  SparseMatrix sum_stiffness(const Eigen::VectorXd& theta, const std::function<double(const Part&)>& share) const;
 
   ModelSettings settings_;
   std::shared_ptr<const Body> body_;

@@ -1,6 +1,8 @@
 // This file computes the model's sums at theta.
 #include <algorithm>
+#include <functional>
 
+#include "fem/strain.hpp"
 #include "forward/model.hpp"
 
 namespace tissue_stiffness {
@@ -28,6 +30,16 @@ void add(SparseMatrix& to, double scale, const MatrixTerm& term) {
   if (scale != 0.0) add_scaled(to, scale, *term.matrix);
 }
 
+bool has_strain_form(const Model::Part& part) {
+  const FiniteStrainForm* form = part.effect->finite_strain();
+  return form != nullptr && form->has_strain_form();
+}
+
+// Returns the share of a part's stress that is linear in a finite strain.
+double strain_share(const Model::Part& part, const Model::Point::Part& at) {
+  return has_strain_form(part) ? at.finite_share : 0.0;
+}
+
 }  // namespace
 
 std::vector<char> Model::fixed(const Eigen::VectorXd& theta) const {
@@ -52,11 +64,11 @@ SparseMatrix Model::mass(const Eigen::VectorXd& theta) const {
   return m;
 }
 
-SparseMatrix Model::sum_stiffness(const Eigen::VectorXd& theta, bool reference) const {
+SparseMatrix Model::sum_stiffness(const Eigen::VectorXd& theta, const std::function<double(const Part&)>& share_of) const {
   SparseMatrix k = fem().pattern();
   for (const Part& part : parts_) {
     if (part.terms.stiffness.empty() && part.terms.strain_stiffness.empty()) continue;
-    const double share = reference ? 1.0 : 1.0 - finite_share(part, theta);
+    const double share = share_of(part);
     if (share == 0.0) continue;
     const Eigen::VectorXd p = part.parameters(theta);
     for (const MatrixTerm& term : part.terms.stiffness) add(k, share * term.coefficient(p), term);
@@ -69,11 +81,16 @@ SparseMatrix Model::sum_stiffness(const Eigen::VectorXd& theta, bool reference) 
 }
 
 SparseMatrix Model::stiffness(const Eigen::VectorXd& theta) const {
-  return sum_stiffness(theta, false);
+  return sum_stiffness(theta, [&](const Part& part) { return 1.0 - finite_share(part, theta); });
 }
 
 SparseMatrix Model::reference_stiffness(const Eigen::VectorXd& theta) const {
-  return sum_stiffness(theta, true);
+  return sum_stiffness(theta, [](const Part&) { return 1.0; });
+}
+
+SparseMatrix Model::linear_reference_stiffness(const Eigen::VectorXd& theta) const {
+  return sum_stiffness(theta,
+                       [&](const Part& part) { return has_strain_form(part) ? 1.0 - finite_share(part, theta) : 1.0; });
 }
 
 double Model::mass_damping(const Eigen::VectorXd& theta) const {
@@ -153,6 +170,7 @@ double Model::finite_share(const Part& part, const Eigen::VectorXd& theta) const
 Model::Point Model::point(const Eigen::VectorXd& theta) const {
   Point at;
   at.load_factor = load_factor(theta);
+  at.stiffness_damping = stiffness_damping(theta);
   for (const Part& part : parts_) {
     Point::Part own{part.parameters(theta), finite_share(part, theta), {}};
     for (const LoadTerm& term : part.terms.loads) {
@@ -194,6 +212,19 @@ void Model::add_nonlinear_force(const Point& at, Motion motion, Eigen::VectorXd&
       force += motion.finite_share * *finite;
     }
   }
+  if (!has_finite_damping(at)) return;
+  VectorPool::Loan rates(scratch_, strain_count(fem()));
+  green_strain_rates(fem(), motion.displacement, motion.velocity, *rates);
+  *rates *= at.stiffness_damping;
+  add_strain_force(at, motion.displacement, *rates, force);
+}
+
+void Model::add_strain_force(const Point& at, const Eigen::VectorXd& u, const Eigen::Ref<const Eigen::VectorXd>& strains,
+                             Eigen::VectorXd& force) const {
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    const double share = strain_share(parts_[i], at.parts[i]);
+    if (share > 0.0) parts_[i].effect->finite_strain()->add_strain_force(u, strains, at.parts[i].parameters, share, force);
+  }
 }
 
 void Model::add_nonlinear_stiffness(const Point& at, Motion motion, SparseMatrix& stiffness) const {
@@ -215,7 +246,20 @@ void Model::add_nonlinear_stiffness(const Point& at, Motion motion, SparseMatrix
   }
 }
 
-bool Model::has_velocity_tangent(const Point& at) const {
+bool Model::has_finite_damping(const Point& at) const {
+  if (at.stiffness_damping == 0.0) return false;
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    if (strain_share(parts_[i], at.parts[i]) > 0.0) return true;
+  }
+  return false;
+}
+
+bool Model::may_be_finite() const {
+  return finite_law_ ||
+         std::any_of(parts_.begin(), parts_.end(), [](const Part& p) { return !p.terms.finite_share.empty(); });
+}
+
+bool Model::has_friction(const Point& at) const {
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const NonlinearForce* force = parts_[i].effect->nonlinear_force();
     if (force != nullptr && force->has_velocity_tangent(at.parts[i].parameters)) return true;
@@ -223,11 +267,13 @@ bool Model::has_velocity_tangent(const Point& at) const {
   return false;
 }
 
-void Model::add_velocity_tangent(const Point& at, const Motion& motion, SparseMatrix& damping) const {
+void Model::add_velocity_tangent(const Point& at, Motion motion, SparseMatrix& damping) const {
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const Eigen::VectorXd& p = at.parts[i].parameters;
     const NonlinearForce* force = parts_[i].effect->nonlinear_force();
     if (force != nullptr && force->has_velocity_tangent(p)) force->add_velocity_tangent(motion, p, damping);
+    const double beta = at.stiffness_damping * strain_share(parts_[i], at.parts[i]);
+    if (beta > 0.0) parts_[i].effect->finite_strain()->add_strain_tangent(motion.displacement, p, beta, damping);
   }
 }
 
