@@ -181,36 +181,66 @@ class ModelSearch {
     return out;
   }
 
+  /// A leader is a refit that is taken for one of several missing effects, with what is found beside it.
+  struct Leader {
+    std::string effect;
+    Finding deeper;
+  };
+
   // Several effects may be missing, of which none explains the error alone. Each leader in turn that explains a part of it
   // is taken for one of them. What is found beside it is compared with the rest.
   void grow() {
     const double cost = model_.rows.error.squaredNorm(), structured = structured_squares(model_.rows);
-    for (std::size_t i = 0; i < std::min(kGrown, finding_.refits.size()); ++i) {
-      Refit& leader = finding_.refits[i];
-      if (!(cost - leader.cost > kComparison.promising * structured)) continue;
-      options_.progress("what is missing beside " + leader.effect, 0, 0);
-      std::shared_ptr<FittedModel> next;
-      Finding deeper;
-      const auto examine_rest = [&] {
-        next = std::make_shared<FittedModel>(extended(model_, leader));
-        bool moved = false;
-        deeper = examine(*next, after_adding(library_for(*next)), moved);
-      };
-      if (!try_run(recording_, examine_rest)) continue;
-      leader.model = next;
-      if (deeper.models->noise_variance() < finding_.models->noise_variance()) finding_.models = deeper.models;
-      Comparison all = finding_.comparison;
-      all.merge({leader.effect}, deeper.comparison);
-      all.assess(*finding_.models);
-      finding_.believe(all);
-      if (finding_.verdict != Verdict::missing) continue;
-      finding_.take_over(leader.effect, deeper.effects);
-      finding_.believe(std::move(all));
-      std::rotate(finding_.refits.begin(), finding_.refits.begin() + static_cast<std::ptrdiff_t>(i),
-                  finding_.refits.begin() + static_cast<std::ptrdiff_t>(i) + 1);
-      grown_ = std::move(deeper);
-      return;
+    std::vector<Leader> leaders;
+    for (std::size_t i = 0; i < std::min(kGrown, finding_.refits.size()) && finding_.verdict != Verdict::missing; ++i) {
+      if (cost - finding_.refits[i].cost > kComparison.promising * structured)
+        examine_beside(finding_.refits[i], {}, leaders);
     }
+    if (finding_.verdict != Verdict::missing) return;
+    exchange(leaders);
+    const std::string best = finding_.comparison.best().effects.front();
+    const auto is_best = [&best](const auto& x) { return x.effect == best; };
+    const auto leader = std::find_if(leaders.begin(), leaders.end(), is_best);
+    const auto refit = std::find_if(finding_.refits.begin(), finding_.refits.end(), is_best);
+    std::rotate(finding_.refits.begin(), refit, refit + 1);
+    if (leader == leaders.end()) return;  // one effect suffices with the noise that is known now
+    finding_.take_over(best, leader->deeper.effects);
+    finding_.believe(Comparison(finding_.comparison));
+    grown_ = std::move(leader->deeper);
+  }
+
+  // What the data hardly tell from the best set's leader alone is tried in its place.
+  void exchange(std::vector<Leader>& leaders) {
+    const std::vector<std::string> set = finding_.comparison.best().effects;
+    const auto is = [](const std::string& name) { return [name](const auto& x) { return x.effect == name; }; };
+    const auto known = std::find_if(finding_.effects.begin(), finding_.effects.end(), is(set.front()));
+    for (const MissingEffect::Confusable& other : known->confusable_with) {
+      const auto refit = std::find_if(finding_.refits.begin(), finding_.refits.end(), is(other.effect));
+      const bool tried = std::any_of(leaders.begin(), leaders.end(), is(other.effect));
+      if (refit == finding_.refits.end() || tried || std::count(set.begin(), set.end(), other.effect) > 0) continue;
+      examine_beside(*refit, {set.begin() + 1, set.end()}, leaders);
+    }
+  }
+
+  // Compares what is missing beside a leader, or how the `wanted` effects fit beside it, with all that is known.
+  void examine_beside(Refit& leader, const std::vector<std::string>& wanted, std::vector<Leader>& leaders) {
+    options_.progress("what is missing beside " + leader.effect, 0, 0);
+    std::shared_ptr<FittedModel> next;
+    Finding deeper;
+    const auto examine_rest = [&] {
+      next = std::make_shared<FittedModel>(extended(model_, leader));
+      const PreviousRound previous = after_adding(library_for(*next));
+      bool moved = false;
+      deeper = wanted.empty() ? examine(*next, previous, moved) : diagnose_once(*next, wanted, options_, previous);
+    };
+    if (!try_run(recording_, examine_rest)) return;
+    leader.model = next;
+    if (deeper.models->noise_variance() < finding_.models->noise_variance()) finding_.models = deeper.models;
+    Comparison all = finding_.comparison;
+    all.merge({leader.effect}, deeper.comparison);
+    all.assess(*finding_.models);
+    finding_.believe(std::move(all));
+    leaders.push_back({leader.effect, std::move(deeper)});
   }
 
   Assessment assessment() const { return finding_.models->assess(explained_); }
@@ -223,6 +253,9 @@ class ModelSearch {
     std::optional<Finding> asked;
     if (!wanted.empty()) asked = diagnose_once(model_, {wanted}, options_, finding_.previous);
     const Finding& from = asked ? *asked : finding_;
+    if (from.refits.empty() && from.failure.empty()) {
+      throw InputError("--add", wanted, "an effect that the library proposes for this model");
+    }
     const std::string name = wanted.empty() ? from.refits.front().effect : wanted;
     Library library;
     const auto add_it = [&] { library = add(from.refits.front()); };

@@ -6,21 +6,11 @@
 
 #include "diagnosis/refit_list.hpp"
 #include "diagnosis/refit_search.hpp"
-#include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
 constexpr double kConfusable = 0.9;  // cosine above which two effects are indistinguishable
-
-void require_proposed(const Screening& screening, const std::vector<std::string>& wanted) {
-  for (const std::string& effect : wanted) {
-    if (std::none_of(screening.ranked.begin(), screening.ranked.end(),
-                     [&](const Ranked& r) { return r.effect == effect; })) {
-      throw InputError("--add", effect, "an effect that the library proposes for this model");
-    }
-  }
-}
 
 // Describes a candidate as the tangents have it.
 MissingEffect describe_candidate(const Screening& screening, const Ranked& r) {
@@ -109,7 +99,6 @@ void Finding::take_over(const std::string& leader, const std::vector<MissingEffe
 Finding diagnose_once(FittedModel& base, const std::vector<std::string>& wanted, const DiagnosisOptions& options,
                       const PreviousRound& previous, const CandidatesSoFar& so_far) {
   Screening screening(base, options, previous);
-  require_proposed(screening, wanted);
   Finding out;
   RefitList refits(screening, options, [&](const RefitList& fitted) { so_far(describe_candidate(screening, fitted)); });
   so_far(describe_candidate(screening, refits));

@@ -37,7 +37,7 @@ using CandidatesSoFar = std::function<void(std::vector<MissingEffect>)>;
 
 /// Makes one round of diagnosis: ranks the library by tangents, refits it (or `wanted` effects, if any), and compares what
 /// was fitted. The base is moved to where it fits best. `so_far` hears of the tangents' ranking, and of what refits make of
-/// it. Throws InputError for a wanted effect that nothing proposes.
+/// it. There are no refits of wanted effects that the library does not propose, or that cannot be run.
 Finding diagnose_once(
     FittedModel& base, const std::vector<std::string>& wanted, const DiagnosisOptions& options,
     const PreviousRound& previous = {}, const CandidatesSoFar& so_far = [](std::vector<MissingEffect>) {});
