@@ -1,5 +1,5 @@
-// This is Yang & Lin (2016) as printed: a parameter-only unscented filter (eq. 9-23), with the state of each key frame by
-// finite differences (eq. 24, 25). Algorithm 1 goes once through the frames as they come.
+// This is Yang & Lin (2016): a parameter-only unscented filter (eq. 9-23, in square-root form), with the state of each key
+// frame by finite differences (eq. 24, 25). Algorithm 1 goes once through the frames as they come.
 #include <cmath>
 #include <deque>
 

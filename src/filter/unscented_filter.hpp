@@ -20,53 +20,31 @@ struct FilterUpdate {
   double log_likelihood = 0.0;       ///< of the measurement, given all earlier ones
 };
 
-/// The paper's parameter filter (Yang, Lin 2016, eq. 9-23) with random-constant parameters and a dense covariance. Eq. 23
-/// subtracts, so round-off can make the covariance indefinite when a measurement leaves almost nothing of the prior.
-/// update() then throws NumericalError and changes nothing. The cost is O(m L^2 + L^3) for m independent rows, because the
-/// inverse of eq. 21 is computed by Woodbury's identity. A step is `filter.update(y, g(filter.sigma_points()), noise)`.
+/// Unscented filter that carries S with P = S S^T (van der Merwe, Wan 2001) and never forms P. In exact arithmetic it is
+/// the paper's filter (Yang, Lin 2016, eq. 9-23). Eq. 23 as printed subtracts, so round-off makes its covariance indefinite
+/// when a measurement leaves almost nothing of the prior. Here all factors come from QR of sums of squares (see
+/// UnscentedMoments). So P is positive semi-definite by construction, whatever the centre weight. The cost is O(m L^2) for
+/// m independent measurements. A step is `filter.update(y, g(filter.sigma_points()), noise)`.
 class UnscentedFilter {
  public:
   /// Starts with eq. 9, 10. Throws std::invalid_argument for sizes that do not fit, NumericalError for an indefinite
-  /// covariance.
-  UnscentedFilter(Eigen::VectorXd mean, Eigen::MatrixXd covariance, const UnscentedTuning& tuning = {});
-
-  const Eigen::VectorXd& mean() const { return mean_; }
-  const Eigen::MatrixXd& covariance() const { return covariance_; }
-
-  /// Returns the points of eq. 13, 14: L x (2L + 1).
-  Eigen::MatrixXd sigma_points() const;
-
-  /// Applies eq. 18-23 to the outputs of eq. 17, one column for each sigma point. Rows with a NaN in the measurement or in
-  /// any output, or with infinite noise, are left out. Without a usable row nothing changes. Throws NumericalError when a
-  /// sigma point has no finite output.
-  FilterUpdate update(const Eigen::VectorXd& measurement, const Eigen::MatrixXd& outputs, const Noise& noise);
-
- private:
-  Eigen::VectorXd mean_;
-  Eigen::MatrixXd covariance_;
-  SigmaSet set_;
-};
-
-/// Unscented filter for a general state that carries S with P = S S^T (van der Merwe, Wan 2001) and never forms P. All
-/// factors come from QR of sums of squares (see UnscentedMoments). So P is positive semi-definite by construction, whatever
-/// the centre weight. The cost is O(m L^2) for m independent measurements.
-class SquareRootUnscentedFilter {
- public:
-  /// Throws std::invalid_argument for sizes that do not fit, NumericalError for an indefinite covariance. A semi-definite
-  /// covariance is allowed.
-  SquareRootUnscentedFilter(Eigen::VectorXd mean, const Eigen::MatrixXd& covariance, const UnscentedTuning& tuning = {});
-  SquareRootUnscentedFilter(Eigen::VectorXd mean, const Eigen::MatrixXd& covariance, SigmaSet set);
+  /// covariance. A semi-definite one is allowed.
+  UnscentedFilter(Eigen::VectorXd mean, const Eigen::MatrixXd& covariance, const UnscentedTuning& tuning = {});
+  UnscentedFilter(Eigen::VectorXd mean, const Eigen::MatrixXd& covariance, SigmaSet set);
 
   const Eigen::VectorXd& mean() const { return mean_; }
   const Eigen::MatrixXd& square_root() const { return square_root_; }  ///< lower triangular, diagonal >= 0
   Eigen::MatrixXd covariance() const { return square_root_ * square_root_.transpose(); }
+  /// Returns the points of eq. 13, 14: L x (2L + 1).
   Eigen::MatrixXd sigma_points() const;
 
   /// Applies x <- f(x) + N(0, B B^T) with the process noise's square root B (L x any number). When an output is not finite,
   /// throws NumericalError and changes nothing.
   void predict(const SigmaModel& process, const Eigen::MatrixXd& noise_square_root);
 
-  /// Updates as UnscentedFilter::update does.
+  /// Applies eq. 18-23 to the outputs of eq. 17, one column for each sigma point. Rows with a NaN in the measurement or in
+  /// any output, or with infinite noise, are left out. Without a usable row nothing changes. Throws NumericalError when a
+  /// sigma point has no finite output.
   FilterUpdate update(const Eigen::VectorXd& measurement, const Eigen::MatrixXd& outputs, const Noise& noise);
 
  private:
