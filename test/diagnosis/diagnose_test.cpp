@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "../box_model.hpp"
 #include "diagnosis/finding.hpp"
@@ -245,6 +246,11 @@ TEST(Diagnose, ProposesWhatItAddedAsTheLastFitHasIt) {
 TEST(Diagnose, NamesTwoEffectsThatAreMissingTogether) {
   DiagnosisOptions options;
   options.automatic = true;
+  std::set<std::string> leaders;
+  const std::string beside = "what is missing beside ";
+  options.progress = [&](const std::string& what, std::size_t, std::size_t) {
+    if (what.rfind(beside, 0) == 0) leaders.insert(what.substr(beside.size()));
+  };
   const Diagnosis d =
       diagnose_bar(film({"viscous_damping: {beta: 2.0e-3}", "added_mass: {region: tip, mass: 0.002}"}, 3), options);
   const auto added = [&](const std::string& effect) {
@@ -253,6 +259,16 @@ TEST(Diagnose, NamesTwoEffectsThatAreMissingTogether) {
   EXPECT_TRUE(added("viscous_damping") || added("mass_damping") || added("viscoelasticity"))
       << "alike where one mode rings";
   EXPECT_TRUE(added("added_mass"));
+  // What is confusable with the first one was tried in its place.
+  std::size_t exchanged = 0;
+  for (const MissingEffect& effect : d.candidates) {
+    for (const MissingEffect::Confusable& other : effect.confusable_with) {
+      if (effect.effect != d.final_effects.front() || added(other.effect)) continue;
+      EXPECT_EQ(leaders.count(other.effect), 1U) << other.effect;
+      ++exchanged;
+    }
+  }
+  EXPECT_GE(exchanged, 1U);
   EXPECT_EQ(d.final_verdict, Verdict::adequate);
   EXPECT_NEAR(d.steps.back().parameters.at("elasticity.young_modulus") / kTruth, 1.0, 0.03);
 }
