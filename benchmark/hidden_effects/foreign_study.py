@@ -231,10 +231,15 @@ def figures(rows):
                         [holds(r) for r in ended]),
              share_line('... of them after adding', '', [holds(r) for r in ended if r['final']])]
     said = statements(rows)
-    seconds = np.percentile([row['seconds'] for row in rows] or [np.nan], (50, 95))
     lines += ['| expected calibration error | <= 0.05 | %d statements | %.3f |' % (len(said), reliability(said)[1]),
-              '| seconds a diagnosis: median, p95 | 8, 20 | %d | %.1f, %.1f |' % (len(rows), *seconds)]
+              time_line('seconds a diagnosis, alone on the machine: median, p95', '8, 20', rows, 'quiet_seconds'),
+              time_line('... with others beside it', '', rows, 'seconds')]
     return lines
+
+
+def time_line(what, wanted, rows, key):
+    seconds = [row[key] for row in rows if key in row]
+    return '| %s | %s | %d | %.1f, %.1f |' % (what, wanted, len(seconds), *np.percentile(seconds or [np.nan], (50, 95)))
 
 
 def by_kind(rows):
@@ -348,6 +353,8 @@ def parse():
     parser.add_argument('--simulate-only', action='store_true', help='only the truths that the draws need')
     parser.add_argument('--fresh', action='store_true', help='forget the draws so far; truths are kept')
     parser.add_argument('--page-only', action='store_true', help='write the page from the draws so far')
+    parser.add_argument('--time-every', type=int, metavar='N',
+                        help='diagnose every N-th draw again, one at a time, to time it on a quiet machine')
     parser.add_argument('--keep', action='store_true', help='keep the recordings and reports of all draws')
     arguments = parser.parse_args()
     arguments.output = arguments.output or os.path.join(arguments.root, 'output', 'hidden_effects')
@@ -379,6 +386,15 @@ def main():
             what = row.get('failed') or ' '.join([row['verdict']] + row['set'] + ['!! ' + why for why in wrongs(row)])
             print('%3d/%d %4d %-9s %-46s %-18s -> %s' % (len(rows), len(planned), row['number'], row['class'],
                                                          row['truth'], row['kind'], what), flush=True)
+    for number in sorted(rows)[::arguments.time_every] if arguments.time_every else []:
+        row = rows[number]
+        if 'verdict' not in row or 'quiet_seconds' in row:
+            continue
+        again = draw((arguments, next(drawn for drawn in planned if drawn['number'] == number)))
+        row['quiet_seconds'] = again['seconds']
+        with open(kept, 'a') as file:
+            file.write(json.dumps(row, sort_keys=True) + '\n')
+        print('%4d %-46s %.1f s alone' % (number, row['truth'], row['quiet_seconds']), flush=True)
     page(arguments, list(rows.values()), os.path.join(arguments.root, 'doc'))
 
 
