@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <regex>
 #include <set>
@@ -130,6 +131,30 @@ TEST(Layers, FaultsAreFound) {
   EXPECT_EQ(fault("tools", "tissue_stiffness/types/error.hpp"), "");
   EXPECT_EQ(fault("nodes", "ros/ros.h"), "");
   EXPECT_EQ(fault("fem", "Eigen/Core"), "");
+}
+
+std::string content(const fs::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// The page of hazards names tests, by `Suite.Name` or `test_name`. Each of them exists.
+TEST(Hazards, EachIsShownByATestThatExists) {
+  const fs::path root = TISSUE_STIFFNESS_SOURCE_DIR;
+  std::string tests;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / "test")) {
+    const std::string ending = entry.path().extension().string();
+    if (ending == ".cpp" || ending == ".py") tests += content(entry.path());
+  }
+  const std::string page = content(root / "doc" / "hazards.md");
+  const std::regex named("`(?:([A-Z]\\w+)\\.([A-Z]\\w+)|(test_\\w+))`");
+  int count = 0;
+  for (std::sregex_iterator test(page.begin(), page.end(), named), end; test != end; ++test, ++count) {
+    const std::string text =
+        (*test)[3].matched ? "def " + (*test)[3].str() + "(" : (*test)[1].str() + ", " + (*test)[2].str() + ")";
+    EXPECT_NE(tests.find(text), std::string::npos) << (*test)[0];
+  }
+  EXPECT_GT(count, 40);
 }
 
 }  // namespace
