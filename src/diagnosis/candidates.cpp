@@ -86,8 +86,8 @@ std::vector<Eigen::Index> added_parameters(const RecordingFit& recording_fit, co
 }
 
 // Reads the tangents of the added parameters of one recording fit; each candidate in turn has `components` columns.
-void read_tangents(const RecordingFit& recording_fit, const RecordingFit& base, const Eigen::VectorXd& w,
-                   const std::vector<Candidate*>& candidates, const std::function<void(double)>& over) {
+void read_added_tangents(const RecordingFit& recording_fit, const RecordingFit& base, const Eigen::VectorXd& w,
+                         const std::vector<Candidate*>& candidates, const std::function<void(double)>& over) {
   const Eigen::VectorXd start = recording_fit.extend(base, w);
   const RecordingFit::Rows rest = recording_fit.rows(start);
   const double moves = motion(rest);
@@ -143,9 +143,8 @@ bool Candidate::allows(const Eigen::VectorXd& amplitude) const {
   return amplitude.size() == 0 || (amplitude.minCoeff() >= lower && amplitude.maxCoeff() <= upper);
 }
 
-std::vector<Candidate> find_candidates(const RecordingFit& base, const Eigen::VectorXd& w,
-                                       const std::vector<std::string>& ignore, const CountProgress& progress,
-                                       Library& library) {
+std::vector<Candidate> propose_candidates(const RecordingFit& base, const Eigen::VectorXd& w,
+                                          const std::vector<std::string>& ignore) {
   const ProposalContext context = context_of(base, w);
   std::vector<Candidate> all;
   for (const EffectSpec& spec : effect_specs()) {
@@ -161,6 +160,11 @@ std::vector<Candidate> find_candidates(const RecordingFit& base, const Eigen::Ve
       }
     }
   }
+  return all;
+}
+
+void read_tangents(const RecordingFit& base, const Eigen::VectorXd& w, std::vector<Candidate>& all,
+                   const CountProgress& progress, Library& library) {
   const std::set<std::string> linear = linear_effects(base, all);
   std::vector<std::size_t> linear_ones, others;
   for (std::size_t c = 0; c < all.size(); ++c) {
@@ -188,11 +192,10 @@ std::vector<Candidate> find_candidates(const RecordingFit& base, const Eigen::Ve
     options.nonlinear = nonlinear;
     options.adopt = recording_fit != nullptr;
     recording_fit = std::make_shared<const RecordingFit>(settings, recording_fit ? *recording_fit : base, options);
-    read_tangents(*recording_fit, base, w, candidates, over);
+    read_added_tangents(*recording_fit, base, w, candidates, over);
   };
   run_side_by_side([&] { read(linear_ones, 4, BasisOptions::Nonlinear::left_out, library.linear); },
                    [&] { read(others, 16, BasisOptions::Nonlinear::first_order, library.others); });
-  return all;
 }
 
 std::vector<EffectEntry> entries_of_time_steps(const RecordingFit& recording_fit, const Eigen::VectorXd& w) {

@@ -34,14 +34,17 @@ struct Library {
 
 using CountProgress = std::function<void(std::size_t done, std::size_t total)>;
 
-/// Finds all that the effects propose for the fitted base model, except effects to `ignore`. The tangents of all linear
-/// ones come from one reduced model that holds them all at their absent values. Those of the others come from one at first
-/// order. What is not linear in the base is left out of it. `library` is that of an earlier round, or empty; it is replaced
-/// by that of this round. Its vectors are taken over; since then the base may only have gained effects that leave the
-/// body's own mass and stiffness alone. `progress` hears how many candidates are done, from any thread.
-std::vector<Candidate> find_candidates(const RecordingFit& base, const Eigen::VectorXd& w,
-                                       const std::vector<std::string>& ignore, const CountProgress& progress,
-                                       Library& library);
+/// Returns all that the effects propose for the fitted base model, except effects to `ignore`, without tangents.
+std::vector<Candidate> propose_candidates(const RecordingFit& base, const Eigen::VectorXd& w,
+                                          const std::vector<std::string>& ignore);
+
+/// Reads the candidates' tangents. Those of all linear ones come from one reduced model that holds them all at their absent
+/// values. Those of the others come from one at first order. What is not linear in the base is left out of it. `library` is
+/// that of an earlier round, or empty; it is replaced by that of this round. Its vectors are taken over; since then the
+/// base may only have gained effects that leave the body's own mass and stiffness alone. `progress` hears how many
+/// candidates are done, from any thread.
+void read_tangents(const RecordingFit& base, const Eigen::VectorXd& w, std::vector<Candidate>& candidates,
+                   const CountProgress& progress, Library& library);
 
 /// Returns entries for the time steps of a simulated recording, which the model does not allow for.
 std::vector<EffectEntry> entries_of_time_steps(const RecordingFit& recording_fit, const Eigen::VectorXd& w);

@@ -98,7 +98,7 @@ void Finding::take_over(const std::string& leader, const std::vector<MissingEffe
 
 Finding diagnose_once(FittedModel& base, const std::vector<std::string>& wanted, const DiagnosisOptions& options,
                       const PreviousRound& previous, const CandidatesSoFar& so_far) {
-  Screening screening(base, options, previous);
+  Screening screening(base, options, previous, wanted);
   Finding out;
   RefitList refits(screening, options, [&](const RefitList& fitted) { so_far(describe_candidate(screening, fitted)); });
   so_far(describe_candidate(screening, refits));
@@ -113,7 +113,8 @@ Finding diagnose_once(FittedModel& base, const std::vector<std::string>& wanted,
   out.refits = refits.take();
   out.failure = refits.failure();
   out.discretisation_error = screening.discretisation_error;
-  out.previous = {screening.finer.recording_fit, out.models, screening.library, screening.tangents_only};
+  const Library& library = wanted.empty() ? screening.library : previous.library;  // that of few effects serves nobody
+  out.previous = {screening.finer.recording_fit, out.models, library, screening.tangents_only};
   out.base_moved = refits.base_moved();
   return out;
 }

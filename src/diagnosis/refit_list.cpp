@@ -92,7 +92,7 @@ double RefitList::variants_of(const std::string& effect) const {
 // Something that the library does not have is as probable as one of them, and may act beside the best one, too.
 const Comparison& RefitList::compare() {
   if (compared_) return *compared_;
-  const double prior = -std::log(static_cast<double>(std::max<std::size_t>(1, screening_.ranked.size())));
+  const double prior = -std::log(static_cast<double>(std::max<std::size_t>(1, screening_.effect_count)));
   compared_.emplace();
   std::vector<Hypothesis>& hypotheses = compared_->hypotheses;
   const auto add = [&](Hypothesis h, const Assessment& assessment) {

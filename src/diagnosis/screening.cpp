@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "effects/registry.hpp"
@@ -20,6 +21,18 @@ std::vector<std::string> left_out_effects(const DiagnosisOptions& options) {
   return out;
 }
 
+std::size_t effects_in(const std::vector<Candidate>& candidates) {
+  std::set<std::string> names;
+  for (const Candidate& candidate : candidates) names.insert(candidate.effect);
+  return names.size();
+}
+
+void keep_wanted(std::vector<Candidate>& candidates, const std::vector<std::string>& wanted) {
+  if (wanted.empty()) return;
+  const auto other = [&](const Candidate& c) { return std::count(wanted.begin(), wanted.end(), c.effect) == 0; };
+  candidates.erase(std::remove_if(candidates.begin(), candidates.end(), other), candidates.end());
+}
+
 // Returns what a finer mesh changes; for a mesh that cannot be refined it is a part of the motion.
 Eigen::VectorXd mesh_change(const FittedModel& base, const FinerMesh& finer) {
   const bool unknown = finer.recording_fit == nullptr && base.recording_fit->model().settings().mesh.discretisation_error;
@@ -28,23 +41,27 @@ Eigen::VectorXd mesh_change(const FittedModel& base, const FinerMesh& finer) {
 
 }  // namespace
 
-Screening::Screening(FittedModel& fitted, const DiagnosisOptions& options, PreviousRound previous)
+Screening::Screening(FittedModel& fitted, const DiagnosisOptions& options, PreviousRound previous,
+                     const std::vector<std::string>& wanted)
     : base(fitted),
       cost(fitted.rows.error.squaredNorm()),
       tangents_only(previous.tangents_only),
       settled(previous.settled),
-      library(std::move(previous.library)),
+      library(wanted.empty() ? std::move(previous.library) : Library()),
       explained(compared_residual(base)),
       comparison(base, Eigen::VectorXd::Zero(base.rows.error.size())),
       given(comparison.assess(explained)) {
   if (previous.models) comparison.note(*previous.models);
   if (!given.test.passes()) explained = compared_residual(base, {}, true);
+  candidates = propose_candidates(*base.recording_fit, base.fit.w, left_out_effects(options));
+  effect_count = effects_in(candidates);
+  keep_wanted(candidates, wanted);
   const std::string step = "tangents of the library, and what a finer mesh would change";
   options.progress(step, 0, 0);
   run_side_by_side(
       [&] {
-        candidates = find_candidates(
-            *base.recording_fit, base.fit.w, left_out_effects(options),
+        read_tangents(
+            *base.recording_fit, base.fit.w, candidates,
             [&](std::size_t done, std::size_t total) { options.progress(step, done, total); }, library);
       },
       [&] { finer = finer_mesh(base, previous.finer.get()); });

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "diagnosis/finer_mesh.hpp"
@@ -15,7 +17,7 @@ namespace tissue_stiffness {
 struct PreviousRound {
   std::shared_ptr<const RecordingFit> finer = nullptr;      ///< the model on a finer mesh; null: none yet
   std::shared_ptr<const ModelComparison> models = nullptr;  ///< their noise is known; null: none yet
-  Library library = {};                                     ///< see find_candidates
+  Library library = {};                                     ///< see read_tangents
   bool tangents_only = false;  ///< the model has an effect that was found: refits from tangents are the only search
   bool settled = false;        ///< the model keeps its fit, even where another would be better
 };
@@ -23,7 +25,9 @@ struct PreviousRound {
 /// A screening shows what a fitted model's error tells before anything is refitted: the library, ranked by its tangents,
 /// and the mesh's part.
 struct Screening {
-  Screening(FittedModel& fitted, const DiagnosisOptions& options, PreviousRound previous = {});
+  /// Reads the tangents of the `wanted` effects alone, if any.
+  Screening(FittedModel& fitted, const DiagnosisOptions& options, PreviousRound previous = {},
+            const std::vector<std::string>& wanted = {});
 
   /// Moves the base to another fit. Tangents, and the base's assessment, stay those of the first place.
   void move_base(const BatchFit& fit);
@@ -31,6 +35,7 @@ struct Screening {
   FittedModel& base;
   double cost;                        ///< sum of squared errors [sigma^2]
   const bool tangents_only, settled;  ///< see PreviousRound
+  std::size_t effect_count = 0;       ///< number of effects that the library proposes, wanted or not
   std::vector<Candidate> candidates;  ///< their tangents are whitened
   Library library;                    ///< of models that the tangents were read from
   Eigen::VectorXd error;              ///< of the base, whitened

@@ -57,12 +57,22 @@ TEST_F(BarWithADamping, LeavesOutProposalsBeyondWhatAModelFileMayHold) {
                     "fixed: {region: clamp}", "gravity: {acceleration: [0.5, 1, -3]}"});
   base_.recording_fit = std::make_unique<RecordingFit>(absurd, bar_mesh(), recording_);
   base_.fit.w = base_.recording_fit->model().parameters().prior_mean();
-  Library library;
-  const auto candidates = find_candidates(
-      *base_.recording_fit, base_.fit.w, {}, [](std::size_t, std::size_t) {}, library);
+  const auto candidates = propose_candidates(*base_.recording_fit, base_.fit.w, {});
   const auto is = [](const char* name) { return [name](const Candidate& c) { return c.effect == name; }; };
   EXPECT_TRUE(std::any_of(candidates.begin(), candidates.end(), is("viscous_damping")));
   EXPECT_TRUE(std::none_of(candidates.begin(), candidates.end(), is("active_contraction")));
+}
+
+// Where some effects are wanted the others' tangents are not read, but still count among the alternatives.
+TEST_F(BarWithADamping, ReadsTheTangentsOfWantedEffectsAlone) {
+  const Screening all(base_, {}), wanted(base_, {}, {}, {"viscous_damping"});
+  EXPECT_EQ(all.ranked.size(), all.effect_count);
+  EXPECT_EQ(wanted.effect_count, all.effect_count);
+  ASSERT_EQ(wanted.ranked.size(), 1U);
+  const auto same = [](const Ranked& r) { return r.effect == "viscous_damping"; };
+  const auto known = std::find_if(all.ranked.begin(), all.ranked.end(), same);
+  // The bases differ a little.
+  EXPECT_NEAR(wanted.ranked.front().evidence, known->evidence, 0.02 * std::abs(known->evidence));
 }
 
 // What an earlier round's models hold, they also hold once one of its effects has been added.
