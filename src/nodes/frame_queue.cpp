@@ -5,7 +5,7 @@
 namespace tissue_stiffness {
 namespace {
 
-const ros::Duration kJumpAhead(60.0);
+constexpr double kJumpAhead = 60.0;  // [s]
 constexpr std::chrono::seconds kIdle{1};
 constexpr std::size_t kMostLoads = 100000;  // a load at 1 kHz without a frame for 100 s
 
@@ -64,7 +64,8 @@ void FrameQueue::accept(const std::string& name, const ros::Time& stamp, Put put
 // Returns whether the topic's stamps begin anew with this one.
 bool FrameQueue::starts_over(const Topic& topic, const ros::Time& stamp) const {
   const ros::Time newest = epochs_.at(topic.epoch).last;
-  return topic.stamps.back(stamp) || (stamp <= topic.stamps.first && newest > stamp) || stamp > newest + kJumpAhead;
+  return topic.stamps.back(stamp) || (stamp <= topic.stamps.first && newest > stamp) ||
+         seconds_between(newest, stamp) > kJumpAhead;
 }
 
 bool FrameQueue::jumps(const Topic& topic, const ros::Time& stamp) const {

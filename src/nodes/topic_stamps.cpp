@@ -7,19 +7,18 @@
 namespace tissue_stiffness {
 namespace {
 
-const ros::Duration kJumpBack(0.5);
-const ros::Duration kPause(1.0);
-constexpr double kPauses = 5.0;  // intervals
-constexpr double kSmooth = 0.8;  // of the interval so far, in its running mean
+constexpr double kJumpBack = 0.5, kPause = 1.0;  // [s]
+constexpr double kPauses = 5.0;                  // intervals
+constexpr double kSmooth = 0.8;                  // of the interval so far, in its running mean
 
 }  // namespace
 
 bool goes_back(const ros::Time& before, const ros::Time& stamp) {
-  return stamp + kJumpBack < before;
+  return seconds_between(stamp, before) > kJumpBack;
 }
 
 bool TopicStamps::ahead(const ros::Time& stamp) const {
-  return !interval.isZero() && stamp > last + std::max(kPause, interval * kPauses);
+  return interval > 0.0 && seconds_between(last, stamp) > std::max(kPause, kPauses * interval);
 }
 
 void TopicStamps::advance(const ros::Time& stamp) {
@@ -28,13 +27,13 @@ void TopicStamps::advance(const ros::Time& stamp) {
     return;
   }
   if (stamp <= last) return;
-  const ros::Duration since = stamp - last;
-  interval = interval.isZero() ? since : interval * kSmooth + since * (1.0 - kSmooth);
+  const double since = seconds_between(last, stamp);
+  interval = interval > 0.0 ? kSmooth * interval + (1.0 - kSmooth) * since : since;
   last = stamp;
 }
 
 std::string TopicStamps::jump_to(const ros::Time& stamp, const std::string& topic) const {
-  const double jump = (stamp - last).toSec();
+  const double jump = seconds_between(last, stamp);
   std::ostringstream text;
   text << topic << ": " << std::abs(jump) << (jump < 0.0 ? " s back" : " s ahead");
   return text.str();

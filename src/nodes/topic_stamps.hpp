@@ -10,13 +10,18 @@ namespace tissue_stiffness {
 /// Returns whether a stamp is earlier than the one before by more than messages are that overtake each other: 0.5 s.
 bool goes_back(const ros::Time& before, const ros::Time& stamp);
 
+/// Returns the seconds from one stamp to another. ros::Duration holds 68 years only, and a broken stamp may be farther off.
+inline double seconds_between(const ros::Time& from, const ros::Time& to) {
+  return to.toSec() - from.toSec();
+}
+
 /// The stamps of one topic. A clock that jumps stamps many messages, and a broken message is alone. So a message whose
 /// stamp jumps is held back until more of its topic agree. A message that goes on where the topic was before shows that the
 /// held ones are broken.
 struct TopicStamps {
   bool seen = false;
   ros::Time first, last;
-  ros::Duration interval;  ///< between its messages, a running mean; 0: not known yet
+  double interval = 0.0;  ///< between its messages [s], a running mean; 0: not known yet
 
   bool back(const ros::Time& stamp) const { return goes_back(last, stamp); }
   /// Returns whether the stamp is ahead by more than a pause would be: a second, or five of the topic's intervals.

@@ -28,7 +28,15 @@ std::string plain(const std::string& frame) {
 
 template <typename Message>
 boost::shared_ptr<const Message> read_as(const rosbag::MessageInstance& message, const std::string& file) {
-  const boost::shared_ptr<const Message> read = message.instantiate<Message>();
+  boost::shared_ptr<const Message> read;
+  try {
+    read = message.instantiate<Message>();
+  } catch (const rosbag::BagException&) {
+    throw;
+  } catch (const std::exception& error) {  // its content does not fit its type
+    throw InputError(file + ": topic " + message.getTopic(), std::string("a broken message (") + error.what() + ")",
+                     std::string("a whole ") + ros::message_traits::datatype<Message>());
+  }
   if (read) return read;
   throw InputError(file + ": topic " + message.getTopic(), message.getDataType() + " of another version",
                    std::string(ros::message_traits::datatype<Message>()) + " " + ros::message_traits::md5sum<Message>());
@@ -213,7 +221,7 @@ void BagReader::note_stamp(const ros::Time& stamp) {
 
 bool BagReader::front_is_complete() const {
   if (pending_.empty()) return false;
-  return pending_.size() > kReorderFrames || (newest_ - pending_.begin()->first).toSec() > kReorderSpan;
+  return pending_.size() > kReorderFrames || seconds_between(pending_.begin()->first, newest_) > kReorderSpan;
 }
 
 std::optional<Instant> BagReader::next() {

@@ -153,7 +153,7 @@ TEST_F(PatientFrameQueueTest, ABrokenStampIsLeftOut) {
     now += 0.1;
   };
   for (int k = 0; k < 3; ++k) go_on();
-  for (const double jump : {5.0, 3600.0, -1.0, -900.0}) {
+  for (const double jump : {5.0, 4.2e9, 3600.0, -1.0, -900.0}) {
     frame(now + jump);
     go_on();
     load(now + jump);

@@ -4,12 +4,49 @@
 #include <std_msgs/String.h>
 #include <tf2_msgs/TFMessage.h>
 
+#include <cstdint>
 #include <map>
 #include <vector>
 
 #include "tissue_stiffness/types/error.hpp"
 #include "tools/recording_writer.hpp"
 #include "workbench.hpp"
+
+namespace {
+
+/// Calls itself a cloud, and ends after four bytes.
+struct BrokenCloud {};
+
+}  // namespace
+
+namespace ros {
+namespace message_traits {
+template <>
+struct IsMessage<BrokenCloud> : TrueType {};
+template <>
+struct DataType<BrokenCloud> : DataType<sensor_msgs::PointCloud2> {
+  static const char* value(const BrokenCloud&) { return DataType<sensor_msgs::PointCloud2>::value(); }
+};
+template <>
+struct MD5Sum<BrokenCloud> : MD5Sum<sensor_msgs::PointCloud2> {
+  static const char* value(const BrokenCloud&) { return MD5Sum<sensor_msgs::PointCloud2>::value(); }
+};
+template <>
+struct Definition<BrokenCloud> : Definition<sensor_msgs::PointCloud2> {
+  static const char* value(const BrokenCloud&) { return Definition<sensor_msgs::PointCloud2>::value(); }
+};
+}  // namespace message_traits
+namespace serialization {
+template <>
+struct Serializer<BrokenCloud> {
+  template <typename Stream>
+  static void write(Stream& stream, const BrokenCloud&) {
+    stream.next(std::uint32_t{7});
+  }
+  static std::uint32_t serializedLength(const BrokenCloud&) { return 4; }
+};
+}  // namespace serialization
+}  // namespace ros
 
 namespace tissue_stiffness {
 namespace {
@@ -246,6 +283,14 @@ TEST_F(BagReaderTest, RefusesATopicOfAnotherType) {
   bag.write("/tissue/vertices", at(0.0), std_msgs::String());
   bag.close();
   EXPECT_TRUE(says(input_error([&] { open(); }), {"/tissue/vertices", "std_msgs/String", "sensor_msgs/PointCloud2"}));
+}
+
+TEST_F(BagReaderTest, NamesTheTopicOfABrokenMessage) {
+  rosbag::Bag bag(path("recording.bag"), rosbag::bagmode::Write);
+  bag.write("/tissue/vertices", at(0.0), BrokenCloud());
+  bag.close();
+  EXPECT_TRUE(
+      says(input_error([&] { open(); }), {"recording.bag: topic /tissue/vertices", "a broken message", "PointCloud2"}));
 }
 
 TEST_F(BagReaderTest, RefusesVerticesThatTheMeshDoesNotHave) {
