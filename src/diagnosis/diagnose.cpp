@@ -209,16 +209,22 @@ class ModelSearch {
     grown_ = std::move(leader->deeper);
   }
 
-  // What the data hardly tell from the best set's leader alone is tried in its place.
+  // What is confusable with the best set's leader is tried in its place: by its tangent, or because each alone explains the
+  // same. What else is missing hides the difference between them.
   void exchange(std::vector<Leader>& leaders) {
     const std::vector<std::string> set = finding_.comparison.best().effects;
     const auto is = [](const std::string& name) { return [name](const auto& x) { return x.effect == name; }; };
-    const auto known = std::find_if(finding_.effects.begin(), finding_.effects.end(), is(set.front()));
-    for (const MissingEffect::Confusable& other : known->confusable_with) {
-      const auto refit = std::find_if(finding_.refits.begin(), finding_.refits.end(), is(other.effect));
-      const bool tried = std::any_of(leaders.begin(), leaders.end(), is(other.effect));
-      if (refit == finding_.refits.end() || tried || std::count(set.begin(), set.end(), other.effect) > 0) continue;
-      examine_beside(*refit, {set.begin() + 1, set.end()}, leaders);
+    const auto best = std::find_if(finding_.refits.begin(), finding_.refits.end(), is(set.front()));
+    const std::vector<MissingEffect::Confusable> alike =
+        std::find_if(finding_.effects.begin(), finding_.effects.end(), is(set.front()))->confusable_with;
+    const Eigen::VectorXd explained = explained_.error - best->explained->error;
+    for (Refit& refit : finding_.refits) {
+      const bool tried = std::any_of(leaders.begin(), leaders.end(), is(refit.effect));
+      if (tried || std::count(set.begin(), set.end(), refit.effect) > 0) continue;
+      const Eigen::VectorXd other = explained_.error - refit.explained->error;
+      const bool same = other.dot(explained) > kConfusable * other.norm() * explained.norm();
+      if (same || std::any_of(alike.begin(), alike.end(), is(refit.effect)))
+        examine_beside(refit, {set.begin() + 1, set.end()}, leaders);
     }
   }
 

@@ -10,8 +10,6 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kConfusable = 0.9;  // cosine above which two effects are indistinguishable
-
 // Describes a candidate as the tangents have it.
 MissingEffect describe_candidate(const Screening& screening, const Ranked& r) {
   MissingEffect out;

@@ -259,16 +259,9 @@ TEST(Diagnose, NamesTwoEffectsThatAreMissingTogether) {
   EXPECT_TRUE(added("viscous_damping") || added("mass_damping") || added("viscoelasticity"))
       << "alike where one mode rings";
   EXPECT_TRUE(added("added_mass"));
-  // What is confusable with the first one was tried in its place.
-  std::size_t exchanged = 0;
-  for (const MissingEffect& effect : d.candidates) {
-    for (const MissingEffect::Confusable& other : effect.confusable_with) {
-      if (effect.effect != d.final_effects.front() || added(other.effect)) continue;
-      EXPECT_EQ(leaders.count(other.effect), 1U) << other.effect;
-      ++exchanged;
-    }
-  }
-  EXPECT_GE(exchanged, 1U);
+  // What explains the same as the first one was tried in its place.
+  for (const char* damping : {"viscous_damping", "mass_damping", "viscoelasticity"})
+    EXPECT_EQ(leaders.count(damping), 1U) << damping;
   EXPECT_EQ(d.final_verdict, Verdict::adequate);
   EXPECT_NEAR(d.steps.back().parameters.at("elasticity.young_modulus") / kTruth, 1.0, 0.03);
 }
