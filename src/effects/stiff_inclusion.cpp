@@ -74,13 +74,14 @@ class StiffInclusion : public Effect, public FiniteStrainForm {
     const double x = std::clamp(0.5 + 0.5 * (p[kRadius] - distance) / half_width_, 0.0, 1.0);
     return x * x * x * (10.0 - 15.0 * x + 6.0 * x * x);
   }
-  // The result refers to p, because a copy would allocate memory at every force.
-  PointLaw scale(const Parameters& p) const {
-    return [this, &p](int e, int q, double) { return StressScale{p[kExcess] * inside(e, q, p), 0.0}; };
-  }
+  double excess_at(int e, int q, const Parameters& p) const { return p[kExcess] * inside(e, q, p); }
 
+  // The results refer to p, because a copy would allocate memory at every force.
+  PointLaw scale(const Parameters& p) const {
+    return [this, &p](int e, int q, double) { return StressScale{excess_at(e, q, p), 0.0}; };
+  }
   PointShare share(const Parameters& p) const {
-    return [this, &p](int e, int q) { return p[kExcess] * inside(e, q, p); };
+    return [this, &p](int e, int q) { return excess_at(e, q, p); };
   }
 
   const Discretisation& fem_;

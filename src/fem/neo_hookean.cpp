@@ -39,6 +39,13 @@ Eigen::Matrix3d stress(const Lame& c, const Deformation& d) {
   return c.mu * d.gradient + (c.lambda * d.log_volume - c.mu) * d.inverse.transpose();
 }
 
+template <int N>
+void add_blocks(const Discretisation& fem, int e, const Eigen::Matrix<double, 3 * N, 3 * N>& block, SparseMatrix& k) {
+  for (int b = 0; b < N; ++b) {
+    for (int a = 0; a < N; ++a) fem.add_block(k, e, a, b, block.template block<3, 3>(3 * a, 3 * b));
+  }
+}
+
 struct Plain {
   StressScale operator()(int, int, double) const { return {}; }
 };
@@ -67,9 +74,7 @@ void stiffness(const Discretisation& fem, const std::vector<int>& list, const La
         }
       }
     }
-    for (int b = 0; b < N; ++b) {
-      for (int a = 0; a < N; ++a) fem.add_block(k, e, a, b, block.template block<3, 3>(3 * a, 3 * b));
-    }
+    add_blocks<N>(fem, e, block, k);
   }
 }
 
@@ -94,9 +99,7 @@ void strain_tangent(const Discretisation& fem, const std::vector<int>& list, con
         }
       }
     }
-    for (int b = 0; b < N; ++b) {
-      for (int a = 0; a < N; ++a) fem.add_block(k, e, a, b, block.template block<3, 3>(3 * a, 3 * b));
-    }
+    add_blocks<N>(fem, e, block, k);
   }
 }
 
