@@ -160,7 +160,6 @@ TriangleSurface load_surface(const std::string& file, double scale) {
   if (!is_surface_file(file)) throw InputError(where, "ending '" + file_ending(file) + "'", ".stl, .ply or .obj");
   TriangleSurface surface = file_ending(file) == ".stl" ? read_stl(file) : read_with_pcl(file, where);
   if (surface.triangle_count() == 0) throw InputError(where, "no triangles", "a closed surface");
-  if (!surface.vertices.allFinite()) check_watertight(surface, where);
   surface.vertices *= scale;
   check_body_size(surface.vertices, where);
   const Eigen::Vector3d extent = surface.vertices.rowwise().maxCoeff() - surface.vertices.rowwise().minCoeff();
