@@ -144,7 +144,7 @@ SetupFindings check_place(const Cloud& cloud, const MeshSettings& mesh, double m
 SetupFindings check_first_frame(const ModelSettings& settings, const TetMesh& mesh, const FirstFrames& frames) {
   SetupFindings findings;
   for (const Observation& seen : frames.first.observations) {
-    if (seen.contour || seen.points.cols() == 0) continue;
+    if (seen.contour || traits_of(seen.kind).force || seen.points.cols() == 0) continue;
     const Cloud cloud = make_cloud(settings.observations[static_cast<std::size_t>(seen.source)], mesh, seen);
     const SetupFindings unit = check_unit(cloud);
     append(findings, unit.empty() ? check_place(cloud, settings.mesh, motion_since_rest(frames, seen)) : unit);

@@ -1,6 +1,7 @@
 #include "check/check_topics.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "effects/registry.hpp"
 #include "settings/suggestion.hpp"
@@ -47,17 +48,17 @@ std::vector<NeededTopic> needed_topics(const ModelSettings& settings) {
     const ObservationSettings& observation = settings.observations[i];
     const std::string key = "observations[" + std::to_string(i) + "]";
     if (traits_of(observation.kind).image) {
-      add(key + ".contour.image", observation.topic, "sensor_msgs/Image");
+      add(key + ".contour.image", observation.topic, traits_of(observation.kind).message);
       add(key + ".contour.camera_info", observation.camera_info, "sensor_msgs/CameraInfo");
     } else {
-      add(key + "." + traits_of(observation.kind).name + ".topic", observation.topic, "sensor_msgs/PointCloud2");
+      add(key + "." + traits_of(observation.kind).name + ".topic", observation.topic, traits_of(observation.kind).message);
     }
   }
   for (EffectSettings effect : settings.effects) {  // a copy: asking marks keys as known
-    if (!effect.arguments.has("topic")) continue;
+    const std::optional<LoadInput::Kind> kind = effect_spec(effect).load;
+    if (!effect.arguments.has("topic") || !kind) continue;
     const Value& topic = effect.arguments.at("topic");
-    add(topic.path(), topic.as_text(),
-        effect_spec(effect).load == LoadInput::Kind::wrench ? "geometry_msgs/WrenchStamped" : "sensor_msgs/FluidPressure");
+    add(topic.path(), topic.as_text(), message_type(*kind));
   }
   return needed;
 }

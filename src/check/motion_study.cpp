@@ -15,6 +15,21 @@ constexpr double kWidest = 3.0;          // standard deviations of the prior
 constexpr double kGridStep = 0.5;
 constexpr int kSections = 10;
 
+bool is_force(const Observation& seen) {
+  return traits_of(seen.kind).force;
+}
+
+// Forces are no motion.
+std::vector<Frame> without_forces(std::vector<Frame> frames) {
+  for (Frame& frame : frames) {
+    auto& seen = frame.observations;
+    seen.erase(std::remove_if(seen.begin(), seen.end(), is_force), seen.end());
+  }
+  frames.erase(std::remove_if(frames.begin(), frames.end(), [](const Frame& f) { return f.observations.empty(); }),
+               frames.end());
+  return frames;
+}
+
 std::vector<Frame> thinned(const std::vector<Frame>& frames) {
   const auto named = [](const Observation& seen) { return seen.ids.size() > 0; };
   const bool quick = std::all_of(frames.begin(), frames.end(), [&](const Frame& frame) {
@@ -41,12 +56,16 @@ BasisOptions linear_form() {
 
 bool MotionStudy::applies(const ModelSettings& settings) {
   return settings.initial.kind != InitialSettings::Kind::from_frames &&
+         std::any_of(settings.observations.begin(), settings.observations.end(),
+                     [](const ObservationSettings& sensor) { return !traits_of(sensor.kind).force; }) &&
          std::none_of(settings.effects.begin(), settings.effects.end(),
                       [](const EffectSettings& effect) { return effect.name == "contact_plane"; });
 }
 
 MotionStudy::MotionStudy(const ModelSettings& settings, const TetMesh& mesh, const Recorded& recorded)
-    : model_(settings, mesh), operators_(make_observation_operators(model_)), shown_(thinned(recorded.frames)) {
+    : model_(settings, mesh),
+      operators_(make_observation_operators(model_)),
+      shown_(thinned(without_forces(recorded.frames))) {
   model_.loads().drive(recorded.first_stamp, recorded.loads);
   forward_ = make_forward_model(model_, linear_form());
   start_ = recorded.first_stamp + settings.time.start;
@@ -70,7 +89,7 @@ MotionStudy::MotionStudy(const ModelSettings& settings, const TetMesh& mesh, con
   measured_ = Eigen::Map<const Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
   for (std::size_t i = 0; i < model_.parts().size(); ++i) {
     const auto& terms = model_.parts()[i].terms.loads;
-    if (std::any_of(terms.begin(), terms.end(), [](const LoadTerm& term) { return term.course != nullptr; })) {
+    if (std::any_of(terms.begin(), terms.end(), [](const LoadTerm& term) { return term.course && !term.prescribed; })) {
       loads_.push_back(i);
     }
   }
@@ -89,7 +108,7 @@ Eigen::VectorXd MotionStudy::predicted(double z, std::ptrdiff_t without) const {
   Eigen::Index at = 0;
   for (std::size_t k = 0; k < shown_.size(); ++k) {
     run->advance(shown_[k].time - model_.sensors().delay(theta));
-    const Prediction there = predict_frame(model_, operators_, shown_[k], theta, run->displacement());
+    const Prediction there = predict_frame(model_, operators_, shown_[k], theta, run->output());
     const Eigen::VectorXd moved = there.predicted - at_rest_[k];
     for (Eigen::Index i = 0; i < moved.size(); ++i, ++at) out[at] = std::isfinite(moved[i]) ? moved[i] : 0.0;
   }

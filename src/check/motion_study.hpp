@@ -31,8 +31,8 @@ class MotionStudy {
   /// factor.
   MotionStudy(const ModelSettings& settings, const TetMesh& mesh, const Recorded& recorded);
 
-  /// Returns whether a linear run from rest can represent this model: it has no contact and no initial velocity from
-  /// frames.
+  /// Returns whether a linear run from rest can represent this model: it has no contact, no initial velocity from frames,
+  /// and some sensor sees the motion.
   static bool applies(const ModelSettings& settings);
 
   const Eigen::VectorXd& measured() const { return measured_; }

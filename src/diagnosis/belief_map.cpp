@@ -20,7 +20,7 @@ constexpr int kExcesses = 16;
 std::vector<int> part_rows(const TetMesh& mesh, const RecordingFit::Rows& rows, BeliefMap& out) {
   std::map<int, int> part_of;  // nearest centre of each node that is seen
   for (Eigen::Index r = 0; r < rows.error.size(); ++r) {
-    if (rows.used[r] > 0.0) part_of[rows.nodes[r]] = 0;
+    if (rows.tells_length(r)) part_of[rows.nodes[r]] = 0;
   }
   for (const auto& [node, part] : part_of) out.nodes.push_back(node);
   const std::size_t most = std::clamp<std::size_t>(out.nodes.size() / kNodesOfAPart, 1, kParts);
@@ -36,7 +36,7 @@ std::vector<int> part_rows(const TetMesh& mesh, const RecordingFit::Rows& rows, 
   }
   std::vector<int> seen;
   for (Eigen::Index r = 0; r < rows.error.size(); ++r) {
-    seen.push_back(rows.used[r] > 0.0 ? part_of.at(rows.nodes[r]) : -1);
+    seen.push_back(rows.tells_length(r) ? part_of.at(rows.nodes[r]) : -1);
   }
   return seen;
 }

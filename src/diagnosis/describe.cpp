@@ -44,7 +44,7 @@ void describe_residual(const FittedModel& model, Diagnosis& out) {
   const double sigma = noise_floor(model.rows);
   out.sigmas = {std::sqrt(model.rows.error.squaredNorm() / count), 1.0, unknown, 0.0};
   out.sigmas.structured = std::sqrt(std::max(0.0, out.sigmas.total * out.sigmas.total - 1.0));
-  const double total = std::sqrt(model.rows.error.cwiseProduct(model.rows.sigma).squaredNorm() / count);
+  const double total = rms_error(model.rows);
   out.metres = {total, sigma, unknown, std::sqrt(std::max(0.0, total * total - sigma * sigma))};
 }
 

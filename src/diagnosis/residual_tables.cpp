@@ -22,7 +22,10 @@ Frames by_frame(const RecordingFit& recording_fit, const RecordingFit::Rows& row
   const auto n = static_cast<Eigen::Index>(rows.offsets.size()) - 1;
   Frames out{Eigen::VectorXd(n), Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n), Eigen::VectorXd(n)};
   const Eigen::Index first = rows.offsets[1];
-  const Eigen::VectorXd metres = rows.predicted.cwiseProduct(rows.sigma);
+  Eigen::VectorXd metres = rows.predicted.cwiseProduct(rows.sigma);
+  for (Eigen::Index r = 0; r < metres.size(); ++r) {
+    if (!rows.tells_length(r)) metres[r] = 0.0;
+  }
   for (Eigen::Index t = 0; t < n; ++t) {
     const auto k = static_cast<std::size_t>(t);
     const Eigen::Index from = rows.offsets[k], size = rows.offsets[k + 1] - from;
@@ -43,7 +46,7 @@ double rms(double square, double count) {
 void places(const RecordingFit::Rows& rows, ResidualViews& out) {
   std::map<int, std::pair<double, double>> sums;
   for (Eigen::Index r = 0; r < rows.error.size(); ++r) {
-    if (!(rows.used[r] > 0.0)) continue;
+    if (!rows.tells_length(r)) continue;
     sums[rows.nodes[r]].first += rows.error[r] * rows.error[r];
     sums[rows.nodes[r]].second += 1.0;
   }

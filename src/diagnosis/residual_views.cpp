@@ -25,7 +25,7 @@ std::string format(const char* pattern, double a, double b = 0.0, double c = 0.0
 std::map<int, double> node_errors(const RecordingFit::Rows& rows) {
   std::map<int, std::pair<double, double>> sums;
   for (Eigen::Index r = 0; r < rows.error.size(); ++r) {
-    if (!(rows.used[r] > 0.0)) continue;
+    if (!rows.tells_length(r)) continue;
     sums[rows.nodes[r]].first += rows.error[r] * rows.error[r];
     sums[rows.nodes[r]].second += 1.0;
   }

@@ -22,7 +22,7 @@ double twitch(double time, const Parameters& p) {
 class ActiveContraction : public Effect, public FiniteStrainForm {
  public:
   ActiveContraction(const Value& arguments, const EffectContext& context) : fem_(context.fem), fibres_(arguments, context) {
-    if (arguments.has("course")) course_ = load_csv(arguments.at("course"), 1, context);
+    if (arguments.has("course")) course_ = load_csv(arguments.at("course"), LoadInput::Kind::pressure, context);
   }
 
   void linear_terms(LinearTerms& out) const override {

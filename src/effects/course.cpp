@@ -1,6 +1,7 @@
 #include "effects/course.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <mutex>
 #include <sstream>
@@ -8,28 +9,43 @@
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
+namespace {
 
-Course Course::from_csv(const std::string& file, int components) {
+constexpr double kUnitLength = 1e-3;  // by which the length of a quaternion may be off
+
+// Returns the pose that seven numbers of a file give: position and quaternion.
+Eigen::VectorXd read_pose(const Eigen::VectorXd& numbers, const std::string& where) {
+  const Eigen::Quaterniond rotation(numbers[6], numbers[3], numbers[4], numbers[5]);
+  if (!(std::abs(rotation.norm() - 1.0) < kUnitLength)) {
+    throw InputError(where, "a quaternion of length " + std::to_string(rotation.norm()), "length 1");
+  }
+  return pose_values(Eigen::Translation3d(numbers.head<3>()) * rotation.normalized());
+}
+
+}  // namespace
+
+Course Course::from_csv(const std::string& file, LoadInput::Kind kind) {
   std::ifstream stream(file);
   if (!stream) throw InputError(file, "no readable file", "a CSV file with rows of time [s] and value(s)");
-  Course course(components);
+  Course course(kind);
+  const bool poses = kind == LoadInput::Kind::pose;
+  const int columns = poses ? 7 : course.components();
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {
     std::replace(line.begin(), line.end(), ',', ' ');
     std::istringstream row(line);
+    const std::string where = file + ":" + std::to_string(number);
     double time = 0.0;
     if (!(row >> time)) {
       if (number == 1 || line.find_first_not_of(" \t\r") == std::string::npos || line[0] == '#') continue;
-      throw InputError(file + ":" + std::to_string(number), "'" + line + "'", "time [s] and value(s), numbers");
+      throw InputError(where, "'" + line + "'", "time [s] and value(s), numbers");
     }
-    Eigen::VectorXd value(components);
-    for (int i = 0; i < components; ++i) {
-      if (!(row >> value[i])) {
-        throw InputError(file + ":" + std::to_string(number), "'" + line + "'",
-                         "time [s] and " + std::to_string(components) + " value(s)");
-      }
+    Eigen::VectorXd value(columns);
+    for (int i = 0; i < columns; ++i) {
+      if (!(row >> value[i]))
+        throw InputError(where, "'" + line + "'", "time [s] and " + std::to_string(columns) + " value(s)");
     }
-    course.add(time, value);
+    course.add(time, poses ? read_pose(value, where) : value);
   }
   if (course.empty()) throw InputError(file, "no rows", "at least one row of time [s] and value(s)");
   course.from_file_ = true;
@@ -44,9 +60,11 @@ Course& Course::operator=(const Course& other) {
   if (this == &other) return *this;
   const std::shared_lock<std::shared_mutex> theirs(other.mutex_);
   const std::unique_lock<std::shared_mutex> own(mutex_);
+  kind_ = other.kind_;
   components_ = other.components_;
   from_file_ = other.from_file_;
   offset_ = other.offset_;
+  path_ = other.path_;
   times_ = other.times_;
   values_ = other.values_;
   corrected_ = other.corrected_;
@@ -78,6 +96,7 @@ void Course::add(double time, const Eigen::VectorXd& value) {
     values_.insert(values_.begin() + static_cast<std::ptrdiff_t>(index), value);
     if (!corrected_.empty()) corrected_.insert(corrected_.begin() + static_cast<std::ptrdiff_t>(index), value);
   }
+  if (kind_ == LoadInput::Kind::pose) path_.add(time, value);
   if (!corrected_.empty()) correct_sample(index);
 }
 
@@ -92,21 +111,29 @@ double Course::interpolated(const std::vector<Eigen::VectorXd>& values, double t
   return (1.0 - s) * values[i - 1][component] + s * values[i][component];
 }
 
+// Returns a component of the load, or of the motion since rest where the values are poses. The caller must hold the lock.
+double Course::uncorrected(double time, int component) const {
+  return kind_ == LoadInput::Kind::pose ? path_.motion(time - offset_, component) : interpolated(values_, time, component);
+}
+
 double Course::value(double time, int component) const {
   const std::shared_lock<std::shared_mutex> lock(mutex_);
-  return interpolated(corrected_.empty() ? values_ : corrected_, time, component);
+  if (corrected_.empty()) return uncorrected(time, component);
+  if (kind_ != LoadInput::Kind::pose) return interpolated(corrected_, time, component);
+  const double error = interpolated(values_, time, component) - interpolated(corrected_, time, component);
+  return path_.motion(time - offset_, component) - error;
 }
 
 double Course::measured(double time, int component) const {
   const std::shared_lock<std::shared_mutex> lock(mutex_);
-  return interpolated(values_, time, component);
+  return uncorrected(time, component);
 }
 
 // The caller must hold the lock.
 void Course::correct_sample(std::size_t index) {
   const auto measured = [this](double time) {
     Eigen::VectorXd out(acting());
-    for (int i = 0; i < out.size(); ++i) out[i] = interpolated(values_, time, i);
+    for (int i = 0; i < out.size(); ++i) out[i] = uncorrected(time, i);
     return out;
   };
   corrected_[index] = values_[index];
@@ -130,11 +157,18 @@ void Course::clear() {
   if (from_file_) return;
   times_.clear();
   values_.clear();
+  path_.clear();
 }
 
-void Course::shift(double offset) {
+void Course::start(double first_stamp, double at_rest) {
   const std::unique_lock<std::shared_mutex> lock(mutex_);
-  if (from_file_) offset_ = offset;
+  if (from_file_) offset_ = first_stamp;
+  path_.set_rest(at_rest - offset_);
+}
+
+void Course::set_smoothing(double half_width) {
+  const std::unique_lock<std::shared_mutex> lock(mutex_);
+  path_.set_smoothing(half_width);
 }
 
 }  // namespace tissue_stiffness

@@ -9,20 +9,25 @@
 #include <vector>
 
 #include "effects/load_error.hpp"
+#include "effects/motion_path.hpp"
+#include "tissue_stiffness/types/load_sample.hpp"
 
 namespace tissue_stiffness {
 
 /// A load's value over time. It is linear between samples, constant outside them, and zero before the first sample arrives.
 /// It is thread safe: samples may arrive while runs of the past read values.
+///
+/// The course of a pose takes poses (see pose_values) and gives the motion since the body was at rest (see MotionPath).
 class Course {
  public:
-  explicit Course(int components) : components_(components) {}
+  explicit Course(LoadInput::Kind kind) : kind_(kind), components_(component_count(kind)) {}
   Course(const Course& other);
   Course& operator=(const Course& other);
 
   /// Reads `time,value...` rows (s and SI units); a header line and # comments are skipped. Times count from the
-  /// recording's first stamp. Throws InputError naming file and line.
-  static Course from_csv(const std::string& file, int components);
+  /// recording's first stamp. A pose has seven values: position and quaternion (x, y, z, w). Throws InputError naming file
+  /// and line.
+  static Course from_csv(const std::string& file, LoadInput::Kind kind);
 
   /// Adds a sample, which may come late. There is only one for each time: a later value replaces an earlier one.
   void add(double time, const Eigen::VectorXd& value);
@@ -33,7 +38,7 @@ class Course {
   /// Subtracts the error that `basis` and its coefficients describe from every sample, including future ones. The estimated
   /// load is measured - B(t) coefficients. Without coefficients the load is as measured.
   void correct(const LoadErrorBasis& basis, const Eigen::VectorXd& coefficients);
-  /// Returns the number of components that act: 3 of a wrench, 1 of a pressure.
+  /// Returns the number of components whose errors are estimated: 3 of a wrench and of a pose, 1 of a pressure.
   int acting() const { return components_ < 3 ? components_ : 3; }
   const LoadTolerance& tolerance() const { return tolerance_; }
   void set_tolerance(const LoadTolerance& tolerance) { tolerance_ = tolerance; }
@@ -42,22 +47,28 @@ class Course {
   void clear();
   bool empty() const;
   int components() const { return components_; }
-  /// Sets the offset that is added to the times of a file's samples when the recording's first stamp is known.
-  void shift(double offset);
+  LoadInput::Kind kind() const { return kind_; }
+  /// Tells the recording's first stamp, from which the times of a file's samples count, and when the body was at rest [s].
+  void start(double first_stamp, double at_rest);
   bool from_file() const { return from_file_; }
+  /// Sets how a motion is smoothed, see MotionPath.
+  void set_smoothing(double half_width);
 
  private:
   double interpolated(const std::vector<Eigen::VectorXd>& values, double time, int component) const;
+  double uncorrected(double time, int component) const;
   void correct_sample(std::size_t index);
 
   LoadTolerance tolerance_;
   mutable std::shared_mutex mutex_;  ///< protects everything below
+  LoadInput::Kind kind_;
   int components_;
   bool from_file_ = false;
   double offset_ = 0.0;
   std::vector<double> times_;
   std::vector<Eigen::VectorXd> values_;     ///< as measured
   std::vector<Eigen::VectorXd> corrected_;  ///< empty: no correction
+  MotionPath path_;                         ///< of a pose
   LoadErrorBasis basis_;
   Eigen::VectorXd coefficients_;
 };

@@ -5,24 +5,23 @@
 
 namespace tissue_stiffness {
 
-std::shared_ptr<Course> load_csv(const Value& course, int components, const EffectContext& context) {
+std::shared_ptr<Course> load_csv(const Value& course, LoadInput::Kind kind, const EffectContext& context) {
   std::string file = course.at("file").as_text();
   if (!file.empty() && file[0] != '/') file = context.settings.directory + "/" + file;
-  return std::make_shared<Course>(Course::from_csv(file, components));
+  return std::make_shared<Course>(Course::from_csv(file, kind));
 }
 
 std::shared_ptr<Course> load_course(const Value& arguments, LoadInput::Kind kind, const EffectContext& context) {
-  const int components = kind == LoadInput::Kind::pressure ? 1 : 6;
   if (arguments.has("topic") == arguments.has("course")) {
     throw InputError(arguments.path(), arguments.has("topic") ? "topic and course" : "neither topic nor course",
                      "one of the two");
   }
-  const LoadTolerance tolerance = read_load_tolerance(arguments, kind == LoadInput::Kind::wrench);
+  const LoadTolerance tolerance = kind == LoadInput::Kind::pose
+                                      ? read_motion_tolerance(arguments)
+                                      : read_load_tolerance(arguments, kind == LoadInput::Kind::wrench);
   if (arguments.has("course")) {
     auto& course = context.courses["file:" + arguments.at("course").at("file").as_text()];
-    if (course == nullptr || course->components() != components) {
-      course = load_csv(arguments.at("course"), components, context);
-    }
+    if (course == nullptr || course->kind() != kind) course = load_csv(arguments.at("course"), kind, context);
     course->set_tolerance(tolerance);
     return course;
   }
@@ -31,7 +30,7 @@ std::shared_ptr<Course> load_course(const Value& arguments, LoadInput::Kind kind
   const auto known = std::find_if(context.inputs.begin(), context.inputs.end(), same);
   if (known == context.inputs.end()) {
     context.inputs.push_back({topic, kind});
-    context.courses[topic] = std::make_shared<Course>(components);
+    context.courses[topic] = std::make_shared<Course>(kind);
   } else if (known->kind != kind) {
     throw InputError(arguments.at("topic").path(), topic, "one type of message a topic");
   }

@@ -19,6 +19,11 @@ Eigen::VectorXd rate(const LoadErrorBasis::Load& load, double time) {
   return (load(time + kRateSpan) - load(time - kRateSpan)) / (2.0 * kRateSpan);
 }
 
+double correlation(const LoadTolerance& noise, double lag) {
+  const double r = std::sqrt(3.0) * lag / noise.correlation_time;
+  return noise.smooth ? (1.0 + r) * std::exp(-r) : std::exp(-lag / noise.correlation_time);
+}
+
 }  // namespace
 
 bool LoadTolerance::exact() const {
@@ -58,6 +63,28 @@ LoadTolerance read_load_tolerance(const Value& arguments, bool has_direction) {
   return out;
 }
 
+std::vector<std::pair<std::string, std::string>> motion_error_keys() {
+  return {{"gain", "relative error of the travel, 1 sigma; 0.002 when absent"},
+          {"noise", "slow noise of each component of the position [m], 1 sigma; 5e-5 when absent"},
+          {"correlation_time", "of the slow noise [s]; 0.5 when absent"},
+          {"delay", "how late the pose is stamped [s], 1 sigma; 0.01 when absent"},
+          {"direction", "rotation of the pose's frame about each axis [rad], 1 sigma; 0.01 when absent"}};
+}
+
+LoadTolerance read_motion_tolerance(const Value& arguments) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  LoadTolerance out;
+  out.bias = out.hysteresis = 0.0;  // the motion counts from rest
+  out.smooth = true;
+  out.gain = arguments.number_or("gain", 0.002, 0.0, 1.0, "-");
+  out.noise = arguments.number_or("noise", 5e-5, 0.0, infinity, "m");
+  out.correlation_time =
+      arguments.number_or("correlation_time", out.correlation_time, std::numeric_limits<double>::min(), infinity, "s");
+  out.delay = arguments.number_or("delay", out.delay, 0.0, 10.0, "s");
+  out.direction = arguments.number_or("direction", 0.01, 0.0, 1.0, "rad");
+  return out;
+}
+
 LoadErrorBasis::LoadErrorBasis(const LoadTolerance& tolerance, const Load& measured, int components, double begin,
                                double end)
     : tolerance_(tolerance), components_(components), begin_(begin) {
@@ -83,7 +110,7 @@ LoadErrorBasis::LoadErrorBasis(const LoadTolerance& tolerance, const Load& measu
   spacing_ = span / (count - 1);
   Eigen::MatrixXd covariance(count, count);
   for (int i = 0; i < count; ++i) {
-    for (int j = 0; j < count; ++j) covariance(i, j) = std::exp(-std::abs(i - j) * spacing_ / tolerance_.correlation_time);
+    for (int j = 0; j < count; ++j) covariance(i, j) = correlation(tolerance_, std::abs(i - j) * spacing_);
   }
   knots_ = Eigen::MatrixXd(covariance.llt().matrixL());
   add("noise", count * components, tolerance_.noise, "");
@@ -101,35 +128,40 @@ Eigen::RowVectorXd LoadErrorBasis::hats(double time) const {
   const double at = (time - begin_) / spacing_, last = static_cast<double>(knots_.rows() - 1);
   const double inside = std::clamp(at, 0.0, last);
   const auto low = std::min(static_cast<Eigen::Index>(inside), knots_.rows() - 2);
-  const double share = inside - static_cast<double>(low);
+  const double s = inside - static_cast<double>(low);
+  const double share = tolerance_.smooth ? s * s * (3.0 - 2.0 * s) : s;  // a smooth one has no kinks at the knots
   out[low] = 1.0 - share;
   out[low + 1] = share;
   return out * std::exp(-std::abs(at - inside) * spacing_ / tolerance_.correlation_time);
 }
 
 Eigen::MatrixXd LoadErrorBasis::value(const Load& measured, double time) const {
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(components_, size_);
-  const Eigen::VectorXd load = measured(time), slope = rate(measured, time);
-  for (const Group& group : groups_) {
-    auto block = out.middleCols(group.first, group.count);
-    if (group.name == "gain") {
-      block = group.std * load;
-    } else if (group.name == "bias") {
-      block.diagonal().setConstant(group.std);
-    } else if (group.name == "delay") {
-      block = -group.std * slope;
-    } else if (group.name == "hysteresis") {
-      const double turning = std::max(kTurning * rate_, std::numeric_limits<double>::min());
-      block.diagonal() = group.std * (slope.array() / turning).tanh().matrix();
-    } else if (group.name == "direction") {
-      const Eigen::Vector3d force = load;
-      for (int i = 0; i < 3; ++i) block.col(i) = group.std * Eigen::Vector3d::Unit(i).cross(force);
-    } else {
-      const Eigen::RowVectorXd row = group.std * hats(time) * knots_;
-      for (int i = 0; i < components_; ++i) block.block(i, i * knots_.rows(), 1, knots_.rows()) = row;
+  const auto errors = [&](double now) {
+    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(components_, size_);
+    const Eigen::VectorXd load = measured(now), slope = rate(measured, now);
+    for (const Group& group : groups_) {
+      auto block = out.middleCols(group.first, group.count);
+      if (group.name == "gain") {
+        block = group.std * load;
+      } else if (group.name == "bias") {
+        block.diagonal().setConstant(group.std);
+      } else if (group.name == "delay") {
+        block = -group.std * slope;
+      } else if (group.name == "hysteresis") {
+        const double turning = std::max(kTurning * rate_, std::numeric_limits<double>::min());
+        block.diagonal() = group.std * (slope.array() / turning).tanh().matrix();
+      } else if (group.name == "direction") {
+        const Eigen::Vector3d force = load;
+        for (int i = 0; i < 3; ++i) block.col(i) = group.std * Eigen::Vector3d::Unit(i).cross(force);
+      } else {
+        const Eigen::RowVectorXd row = group.std * hats(now) * knots_;
+        for (int i = 0; i < components_; ++i) block.block(i, i * knots_.rows(), 1, knots_.rows()) = row;
+      }
     }
-  }
-  return out;
+    return out;
+  };
+  // A motion counts from rest, and so does its error: else the body would be jolted there.
+  return tolerance_.smooth ? errors(time) - errors(begin_) : errors(time);
 }
 
 }  // namespace tissue_stiffness

@@ -10,16 +10,17 @@
 
 namespace tissue_stiffness {
 
-/// Errors of a load's sensor, each as a standard deviation. A negative `bias`, `noise` or `hysteresis` is a share of the
-/// largest load in the recording: -0.1 is 10 % of it.
+/// Errors of a load's sensor, or of a measured motion [m], each as a standard deviation. A negative `bias`, `noise` or
+/// `hysteresis` is a share of the largest load in the recording: -0.1 is 10 % of it.
 struct LoadTolerance {
   double gain = 0.1;              ///< relative error of the scale [-]
   double bias = -0.1;             ///< constant offset of each component [N or Pa]
   double noise = -0.02;           ///< slow noise of each component [N or Pa]
-  double correlation_time = 0.5;  ///< of this noise, whose autocorrelation is exp(-|t| / correlation_time) [s]
+  double correlation_time = 0.5;  ///< of this noise [s]
   double delay = 0.01;            ///< delay of the load's stamp [s]
   double hysteresis = -0.03;      ///< error of each component along the sign of its rate of change [N or Pa]
   double direction = 0.05;        ///< rotation of the sensor about each axis [rad]; a pressure has none
+  bool smooth = false;            ///< the noise has a velocity, as that of a motion does
 
   /// Returns whether the load is taken as exact.
   bool exact() const;
@@ -31,10 +32,14 @@ std::vector<std::pair<std::string, std::string>> load_error_keys(const std::stri
 /// not >= 0.
 LoadTolerance read_load_tolerance(const Value& arguments, bool has_direction);
 
+/// These do the same for the motion that a region follows: errors of its displacement.
+std::vector<std::pair<std::string, std::string>> motion_error_keys();
+LoadTolerance read_motion_tolerance(const Value& arguments);
+
 /// Linear model of a load's error: measured(t) = true(t) + B(t) eta with eta ~ N(0, I). The columns of B are the measured
 /// load (gain), unit loads (bias), the load's rate (delay), the sign of its rate (hysteresis), and its rotation about each
-/// axis (direction). Further columns are hat functions whose covariance at their knots is that of an Ornstein-Uhlenbeck
-/// process (noise).
+/// axis (direction). Further columns are hat functions, whose covariance at their knots is that of a stationary process
+/// (noise): exp(-|t| / T), Ornstein & Uhlenbeck, or for a smooth one (1 + r) exp(-r), r = sqrt(3) |t| / T (Matern 1960).
 class LoadErrorBasis {
  public:
   using Load = std::function<Eigen::VectorXd(double)>;  ///< components at a time [s]

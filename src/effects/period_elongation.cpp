@@ -13,7 +13,7 @@ class PeriodElongation : public Effect {
 
 // Simulators take one to several steps a frame. Every simulation has such an error, usually a small one.
 std::vector<Proposal> propose(const ProposalContext& context) {
-  if (context.holds("period_elongation")) return {};
+  if (context.holds("period_elongation") || context.holds("moved")) return {};  // springs of `moved` have no inertia
   const double step = 0.25 * context.frame_interval, longest = 0.5 * context.frame_interval;
   const auto with = [](const Quantity& square) { return EffectEntry{"period_elongation", {{"step_squared", square}}}; };
   return {{with(normal_prior(0.0, longest * longest)), "step_squared", with(log_normal_prior(step * step, 4.0))}};

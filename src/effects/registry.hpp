@@ -15,7 +15,7 @@ namespace tissue_stiffness {
 std::shared_ptr<Course> load_course(const Value& arguments, LoadInput::Kind kind, const EffectContext& context);
 
 /// Returns a course from {file: ...}, relative to the model file's folder. Times count from the recording's first stamp.
-std::shared_ptr<Course> load_csv(const Value& course, int components, const EffectContext& context);
+std::shared_ptr<Course> load_csv(const Value& course, LoadInput::Kind kind, const EffectContext& context);
 
 /// Returns the library: every effect's spec, in the order of effects.def.
 const std::vector<EffectSpec>& effect_specs();

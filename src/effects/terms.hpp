@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "effects/course.hpp"
@@ -20,6 +21,7 @@ using Coefficient = std::function<double(const Parameters&)>;
 struct MatrixTerm {
   std::shared_ptr<const SparseMatrix> matrix;  ///< 3n x 3n; a local term stores only its own non-zeros
   Coefficient coefficient;
+  bool relaxes = true;  ///< of a stiffness: damping and relaxing branches act on it, too
 };
 
 /// Stiffness coefficient(p) int B^T R R^T B dV, whose integrand may depend on parameters (a place, an angle). It is never
@@ -38,8 +40,9 @@ struct StrainTerm {
 struct LoadTerm {
   Eigen::VectorXd pattern;  ///< nodal forces of a unit load, 3n
   Coefficient coefficient;
-  std::shared_ptr<const Course> course;                         ///< a measured load; null: none
-  int component = 0;                                            ///< component of the course
+  std::shared_ptr<const Course> course;  ///< a measured load; null: none
+  int component = 0;                     ///< component of the course
+  bool prescribed = false;  ///< the course is a displacement [m], which a spring of `pattern` imposes; it is no load
   std::function<double(double, const Parameters&)> activation;  ///< function of the time since the first stamp; null: 1
   std::function<Eigen::VectorXd(const Parameters&)> shaped;     ///< pattern for given parameters; null: it is constant
   std::vector<int> shape;                                       ///< indices of the parameters that `shaped` depends on
@@ -70,6 +73,9 @@ struct LinearTerms {
   std::vector<Coefficient> mass_factor;   ///< factors of every mass
   std::vector<Coefficient> load_factor;   ///< factors of every measured load
   std::vector<Coefficient> finite_share;  ///< share of finite strain, 0 to 1; the rest is small strain
+  /// Region whose motion is prescribed; empty: none. Its stiffness terms do not relax and pull it to where its prescribed
+  /// loads want it. Together they are the whole force on it.
+  std::string guided_region;
 };
 
 }  // namespace tissue_stiffness

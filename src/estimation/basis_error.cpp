@@ -67,7 +67,7 @@ Eigen::VectorXd basis_shift(const ReducedModel& reduced, const FitProblem& probl
     const bool at_this_frame = is_checked(k, problem);
     const auto moved = [&](Trajectory& run, const Eigen::VectorXd& at) {
       run.advance(frame.time - problem.model.sensors().delay(at));
-      return at_this_frame ? predict_frame(problem.model, problem.operators, frame, at, run.displacement()) : Prediction{};
+      return at_this_frame ? predict_frame(problem.model, problem.operators, frame, at, run.output()) : Prediction{};
     };
     const Prediction truth = moved(*whole, theta);
     Eigen::MatrixXd rows(truth.predicted.size(), points.cols());

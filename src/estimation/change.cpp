@@ -106,7 +106,7 @@ class Search {
   FreeFit frame_fit(Trajectory& run, std::size_t frame, const Eigen::VectorXd& theta) const {
     problem_.checkpoint();
     run.advance(problem_.frames[frame].time - problem_.model.sensors().delay(theta));
-    return fit_frame(problem_, problem_.frames[frame], theta, run.displacement());
+    return fit_frame(problem_, problem_.frames[frame], theta, run.output());
   }
 
   double cost_after(const Instant& at, const Eigen::VectorXd& w) const {

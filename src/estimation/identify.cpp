@@ -32,6 +32,9 @@ std::vector<std::string> known_scales(const Model& model) {
       if (is_scale(name) && !free && effect.name != "contact_plane") known.push_back(name);
     }
   }
+  for (const ObservationSettings& observation : model.settings().observations) {
+    if (traits_of(observation.kind).force) known.push_back("force on " + observation.topic);
+  }
   return known;
 }
 
@@ -61,12 +64,14 @@ Eigen::VectorXd narrowing(const Model& model, const Eigen::MatrixXd& covariance,
 std::map<std::string, Identifiability> identify(const Model& model, const Eigen::MatrixXd& covariance) {
   std::map<std::string, Identifiability> result;
   const std::vector<std::string> known = known_scales(model);
-  const Eigen::VectorXd narrowed = narrowing(model, covariance, known.empty());
+  const Eigen::VectorXd narrowed = narrowing(model, covariance, known.empty()), ratios = narrowing(model, covariance, true);
   for (std::size_t i = 0; i < model.parameters().free().size(); ++i) {
     const std::string& name = model.parameters().free()[i].name;
     const auto k = static_cast<Eigen::Index>(i);
     const std::string percent = std::to_string(static_cast<int>(std::round(100.0 * narrowed[k])));
-    if (narrowed[k] > learnt) {
+    if (narrowed[k] > learnt && ratios[k] <= learnt) {
+      result[name] = {"ratio_only", "the data tell it over the other scales, but no force that they depend on is known"};
+    } else if (narrowed[k] > learnt) {
       result[name] = {"none", "the data hardly narrow the prior: posterior standard deviation is " + percent + " % of it"};
     } else if (is_scale(name) && known.empty()) {
       result[name] = {"ratio_only", "no force, pressure, density or mass is known: all scale together"};

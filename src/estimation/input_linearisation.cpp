@@ -108,6 +108,7 @@ InputLinearisation::InputLinearisation(const MeshError::Question& question, Inpu
   if (models.base.settings().exact_inputs) return;
   for (const auto& [topic, course] : models.uncertain.loads().courses()) add_load(topic, course);
   for (std::size_t i = 0; i < models.base.settings().observations.size(); ++i) add_pose(i);
+  for (std::size_t i = 0; i < models.base.settings().observations.size(); ++i) add_force_sensor(i);
   if (question.mesh_changes.empty()) return;
   mesh_columns_ = kLowestModes + 1;
   size_ += mesh_columns_;
@@ -138,9 +139,23 @@ void InputLinearisation::add_load(const std::string& topic, const std::shared_pt
 
 void InputLinearisation::add_pose(std::size_t source) {
   const ObservationSettings& sensor = models_.base.settings().observations[source];
-  if (sensor.rotation == 0.0 && sensor.offset == 0.0) return;
+  if (traits_of(sensor.kind).force || (sensor.rotation == 0.0 && sensor.offset == 0.0)) return;
   poses_.push_back({static_cast<int>(source), sensor.rotation, sensor.offset, size_});
   size_ += 6;
+}
+
+void InputLinearisation::add_force_sensor(std::size_t source) {
+  const ObservationSettings& sensor = models_.base.settings().observations[source];
+  if (!traits_of(sensor.kind).force) return;
+  double bias = sensor.bias;
+  for (const Frame& frame : q_.frames) {
+    for (const Observation& observation : frame.observations) {
+      if (sensor.bias >= 0.0 || observation.source != static_cast<int>(source)) continue;
+      bias = std::max(bias, -sensor.bias * observation.points.col(0).norm());
+    }
+  }
+  force_sensors_.push_back({static_cast<int>(source), sensor.gain, std::max(0.0, bias), sensor.rotation, size_});
+  size_ += 7;
 }
 
 void InputLinearisation::correct_loads(const Eigen::VectorXd& z) {
@@ -169,7 +184,7 @@ std::vector<Eigen::VectorXd> InputLinearisation::points(const Eigen::VectorXd& w
 }
 
 InputLinearisation::Row InputLinearisation::row(std::size_t index, const std::vector<Eigen::VectorXd>& thetas,
-                                                const Eigen::MatrixXd& u, const Eigen::MatrixXd& mode_shapes,
+                                                const Eigen::MatrixXd& u, const ReducedModes& modes,
                                                 const Eigen::VectorXd& z) {
   const Frame& frame = q_.frames[index];
   const auto predict = [&](std::size_t i) {
@@ -191,18 +206,58 @@ InputLinearisation::Row InputLinearisation::row(std::size_t index, const std::ve
         (predict(high).predicted - predict(high + nc).predicted) / (2.0 * kConstantStep);
   }
   const Eigen::MatrixXd& seen = motions_seen(frame, thetas[0], u.col(0), there);
-  out.modes = seen.leftCols(mode_shapes.rows()) * mode_shapes;
+  out.modes = modes_seen(frame, thetas[0], seen, modes);
   out.direct = Eigen::MatrixXd::Zero(rows, direct_columns());
-  if (!poses_.empty())
-    out.direct.leftCols(direct_columns() - mesh_columns_) =
-        pose_columns(frame, u.col(0), seen.rightCols(models_.rigid.cols()));
+  if (sensor_column_count() > 0)
+    out.direct.leftCols(sensor_column_count()) = sensor_columns(frame, there, seen.rightCols(models_.rigid.cols()));
   const Eigen::VectorXd precision = row_weights(there).cwiseQuotient(there.sigma.cwiseAbs2());
   if (mesh_columns_ > 0) out.direct.rightCols(mesh_columns_) = mesh_columns(index, out.modes, precision);
   Prediction corrected = there;
   corrected.predicted += out.direct * z.tail(direct_columns());
   out.error = there.measured - corrected.predicted;
-  out.precision = row_weights(corrected).cwiseQuotient(there.sigma.cwiseAbs2());
+  weigh_forces(frame, corrected, out);
+  out.precision = row_weights(corrected).cwiseQuotient(corrected.sigma.cwiseAbs2());
   clean(out);
+  return out;
+}
+
+// Counts the errors of each force sensor, and takes its noise as large as it was found to be.
+void InputLinearisation::weigh_forces(const Frame& frame, Prediction& corrected, Row& row) const {
+  Eigen::Index first = 0;
+  for (const Observation& observation : frame.observations) {
+    const Eigen::Index count = observation.row_count();
+    if (traits_of(observation.kind).force) {
+      auto sigma = corrected.sigma.segment(first, count);
+      Eigen::Vector2d& sums = row.forces.try_emplace(observation.source, Eigen::Vector2d::Zero()).first->second;
+      sums +=
+          Eigen::Vector2d(row.error.segment(first, count).cwiseQuotient(sigma).squaredNorm(), static_cast<double>(count));
+      const auto noise = force_noise_.find(observation.source);
+      if (noise != force_noise_.end()) sigma *= std::sqrt(noise->second);
+    }
+    first += count;
+  }
+}
+
+// A force sensor sees the elastic force of each mode, and what else is in the reaction.
+Eigen::MatrixXd InputLinearisation::modes_seen(const Frame& frame, const Eigen::VectorXd& theta,
+                                               const Eigen::MatrixXd& seen, const ReducedModes& modes) const {
+  const Eigen::Index own = modes.shapes.cols(), forces = models_.base.output_size() - models_.base.fem().dof_count();
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(seen.rows(), own + forces);
+  out.leftCols(own) = seen.leftCols(modes.shapes.rows()) * modes.shapes;
+  if (forces == 0) return out;
+  const Eigen::MatrixXd elastic = models_.runs->reaction_rows(theta, modes).elastic;
+  Eigen::Index first = 0;
+  for (const Observation& observation : frame.observations) {
+    for (std::size_t r = 0; r < models_.base.reactions().size() && traits_of(observation.kind).force; ++r) {
+      const ObservationSettings& sensor =
+          models_.base.settings().observations[static_cast<std::size_t>(observation.source)];
+      if (models_.base.reactions()[r].region != sensor.region) continue;
+      const Eigen::Index column = 3 * static_cast<Eigen::Index>(r);
+      out.block(first, 0, 3, own) = elastic.middleCols<3>(column).transpose();
+      out.block<3, 3>(first, own + column).setIdentity();
+    }
+    first += observation.row_count();
+  }
   return out;
 }
 
@@ -221,18 +276,28 @@ const Eigen::MatrixXd& InputLinearisation::motions_seen(const Frame& frame, cons
   return known != named_.end() ? known->second : named_.emplace(std::move(key), seen()).first->second;
 }
 
-Eigen::MatrixXd InputLinearisation::pose_columns(const Frame& frame, const Eigen::VectorXd& u,
-                                                 const Eigen::MatrixXd& rigid) const {
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(rigid.rows(), 6 * static_cast<Eigen::Index>(poses_.size()));
+Eigen::MatrixXd InputLinearisation::sensor_columns(const Frame& frame, const Prediction& there,
+                                                   const Eigen::MatrixXd& rigid) const {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(rigid.rows(), sensor_column_count());
+  const Eigen::Index poses = 6 * static_cast<Eigen::Index>(poses_.size());
   Eigen::Index first = 0;
   for (const Observation& observation : frame.observations) {
-    const auto& sensor = *models_.operators[static_cast<std::size_t>(observation.source)];
-    const Eigen::Index count = sensor.predict(observation, u).predicted.size();
+    const Eigen::Index count = observation.row_count();
     for (std::size_t k = 0; k < poses_.size(); ++k) {
       if (poses_[k].source != observation.source) continue;
       const Eigen::Index column = 6 * static_cast<Eigen::Index>(k);
       out.block(first, column, count, 3) = poses_[k].offset * rigid.block(first, 0, count, 3);
       out.block(first, column + 3, count, 3) = poses_[k].rotation * rigid.block(first, 3, count, 3);
+    }
+    for (std::size_t k = 0; k < force_sensors_.size(); ++k) {
+      const ForceSensor& sensor = force_sensors_[k];
+      if (sensor.source != observation.source) continue;
+      const Eigen::Index column = poses + 7 * static_cast<Eigen::Index>(k);
+      const Eigen::Vector3d force = there.predicted.segment<3>(first);
+      out.block<3, 1>(first, column) = sensor.gain * force;
+      out.block<3, 3>(first, column + 1) = sensor.bias * Eigen::Matrix3d::Identity();
+      for (int axis = 0; axis < 3; ++axis)
+        out.block<3, 1>(first, column + 4 + axis) = sensor.rotation * Eigen::Vector3d::Unit(axis).cross(force);
     }
     first += count;
   }
@@ -263,21 +328,24 @@ void InputLinearisation::each_row(const Eigen::VectorXd& z, const Visitor& visit
   std::vector<LoadErrorResponse> responses;
   for (const Load& load : loads_) responses.emplace_back(*models_.runs, thetas[0], q_.start, load.course, load.basis);
   const ReducedTrajectory at_rest(*models_.runs, thetas[0], q_.start);
-  const Eigen::MatrixXd& mode_shapes = at_rest.modes()->shapes;  // in the runs' basis
-  Eigen::MatrixXd u = Eigen::MatrixXd::Zero(models_.base.fem().dof_count(), static_cast<Eigen::Index>(thetas.size()));
-  Eigen::MatrixXd amplitudes(mode_shapes.cols(), load_columns());
+  const ReducedModes& modes = *at_rest.modes();
+  Eigen::MatrixXd u = Eigen::MatrixXd::Zero(models_.base.output_size(), static_cast<Eigen::Index>(thetas.size()));
+  const Eigen::Index own = modes.shapes.cols(), forces = u.rows() - models_.base.fem().dof_count();
+  Eigen::MatrixXd amplitudes(own + forces, load_columns());
   for (const std::size_t index : frames_) {
     std::vector<double> times;
     for (const Eigen::VectorXd& theta : thetas)
       times.push_back(q_.frames[index].time - models_.base.sensors().delay(theta));
     all->advance(times);
-    all->displacements(u);
+    all->outputs(u);
     for (std::size_t i = 0; i < loads_.size(); ++i) {
       responses[i].advance(times[0]);
       // The measured load is too large by B eta, so the motion under the true one is smaller.
-      amplitudes.middleCols(loads_[i].first - p_, loads_[i].basis.size()) = -responses[i].amplitudes();
+      auto columns = amplitudes.middleCols(loads_[i].first - p_, loads_[i].basis.size());
+      columns.topRows(own) = -responses[i].amplitudes();
+      columns.bottomRows(forces) = -responses[i].further_reactions();
     }
-    visit(row(index, thetas, u, mode_shapes, z), amplitudes);
+    visit(row(index, thetas, u, modes, z), amplitudes);
   }
 }
 
@@ -306,6 +374,9 @@ NormalEquations InputLinearisation::at(const Eigen::VectorXd& z) {
     out.constants.middleRows(p_, l) += amplitudes.transpose() * (seen.transpose() * row.constants);
     out.cost += row.error.dot(row.precision.cwiseProduct(row.error));
     out.rows += static_cast<double>((row.precision.array() > 0.0).count());
+    for (const auto& [source, sums] : row.forces) {
+      out.forces.try_emplace(source, Eigen::Vector2d::Zero()).first->second += sums;
+    }
   });
   out.information.triangularView<Eigen::StrictlyLower>() = out.information.transpose();
   out.repeat(repeated_);

@@ -34,6 +34,7 @@ struct NormalEquations {
   Eigen::MatrixXd constants;    ///< Z^T R^-1 C; each column of C is one constant's tolerance
   double cost = 0.0;            ///< r^T R^-1 r
   double rows = 0.0;
+  std::map<int, Eigen::Vector2d> forces;  ///< the same cost and rows of each force sensor, with its noise as stated
 
   NormalEquations(Eigen::Index size, Eigen::Index constant_count);
   /// Multiplies all sums, because every frame stands for those that were left out.
@@ -47,8 +48,9 @@ class InputLinearisation {
   /// A row object holds the rows of one frame. The columns of the loads' errors are `modes` times their modal amplitudes.
   struct Row {
     Eigen::VectorXd error, precision;
-    Eigen::MatrixXd parameters, constants, direct;  ///< d row / d each; direct: by the poses, then by the mesh
-    Eigen::MatrixXd modes;                          ///< d row / d amplitude of each mode
+    Eigen::MatrixXd parameters, constants, direct;  ///< d row / d each; direct: by poses, force sensors, mesh
+    std::map<int, Eigen::Vector2d> forces;          ///< cost and rows of each force sensor, see NormalEquations
+    Eigen::MatrixXd modes;  ///< d row / d amplitude of each mode, and then by each reaction of a run's output
   };
   struct Load {
     std::string topic;
@@ -59,6 +61,12 @@ class InputLinearisation {
   struct Pose {
     int source;
     double rotation, offset;  ///< tolerances [rad], [m]
+    Eigen::Index first;
+  };
+  /// A sensor of forces. Its columns are gain, offset (3) and rotation (3).
+  struct ForceSensor {
+    int source;
+    double gain, bias, rotation;  ///< tolerances [-], [N], [rad]
     Eigen::Index first;
   };
   using Visitor = std::function<void(const Row&, const Eigen::MatrixXd& amplitudes)>;
@@ -73,9 +81,12 @@ class InputLinearisation {
   double repeated() const { return repeated_; }  ///< recorded frames for each used one
   const std::vector<Load>& loads() const { return loads_; }
   const std::vector<Pose>& poses() const { return poses_; }
+  const std::vector<ForceSensor>& force_sensors() const { return force_sensors_; }
   /// Returns the first of the columns that say what the mesh may change; they are the last of z.
   Eigen::Index first_of_mesh() const { return size_ - mesh_columns_; }
 
+  /// Sets by how much the variance of a force sensor's noise is larger than stated.
+  void set_force_noise(int source, double variance) { force_noise_[source] = variance; }
   /// Returns the normal equations at z. Throws NumericalError when runs diverge.
   NormalEquations at(const Eigen::VectorXd& z);
   /// Visits every used frame in the order of time.
@@ -84,15 +95,22 @@ class InputLinearisation {
  private:
   void add_load(const std::string& topic, const std::shared_ptr<Course>& course);
   void add_pose(std::size_t source);
+  void add_force_sensor(std::size_t source);
   void correct_loads(const Eigen::VectorXd& z);
   std::vector<Eigen::VectorXd> points(const Eigen::VectorXd& w) const;
+  Eigen::MatrixXd modes_seen(const Frame& frame, const Eigen::VectorXd& theta, const Eigen::MatrixXd& seen,
+                             const ReducedModes& modes) const;
+  void weigh_forces(const Frame& frame, Prediction& corrected, Row& row) const;
   Row row(std::size_t index, const std::vector<Eigen::VectorXd>& thetas, const Eigen::MatrixXd& u,
-          const Eigen::MatrixXd& mode_shapes, const Eigen::VectorXd& z);
+          const ReducedModes& modes, const Eigen::VectorXd& z);
   const Eigen::MatrixXd& motions_seen(const Frame& frame, const Eigen::VectorXd& theta, const Eigen::VectorXd& u,
                                       const Prediction& there);
-  Eigen::MatrixXd pose_columns(const Frame& frame, const Eigen::VectorXd& u, const Eigen::MatrixXd& rigid) const;
+  Eigen::MatrixXd sensor_columns(const Frame& frame, const Prediction& there, const Eigen::MatrixXd& rigid) const;
   Eigen::MatrixXd mesh_columns(std::size_t frame, const Eigen::MatrixXd& modes, const Eigen::VectorXd& precision) const;
-  Eigen::Index direct_columns() const { return 6 * static_cast<Eigen::Index>(poses_.size()) + mesh_columns_; }
+  Eigen::Index sensor_column_count() const {
+    return 6 * static_cast<Eigen::Index>(poses_.size()) + 7 * static_cast<Eigen::Index>(force_sensors_.size());
+  }
+  Eigen::Index direct_columns() const { return sensor_column_count() + mesh_columns_; }
   Eigen::Index load_columns() const { return size_ - p_ - direct_columns(); }
   const MeshError::Question& q_;
   InputModels& models_;
@@ -101,6 +119,8 @@ class InputLinearisation {
   Eigen::Index p_ = 0, size_ = 0, mesh_columns_ = 0;
   std::vector<Load> loads_;
   std::vector<Pose> poses_;
+  std::vector<ForceSensor> force_sensors_;
+  std::map<int, double> force_noise_;
   Eigen::MatrixXd motions_;                            ///< the runs' basis, then the rigid motions
   std::map<std::vector<int>, Eigen::MatrixXd> named_;  ///< rows / amplitude of each motion, by the named nodes seen
   Eigen::MatrixXd seen_;                               ///< rows / amplitude of each motion, for any other frame

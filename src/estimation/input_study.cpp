@@ -13,6 +13,8 @@
 namespace tissue_stiffness {
 namespace {
 
+constexpr int kNoiseSteps = 2;
+constexpr double kMoreNoise = 1.2;   // variance over the stated one that is worth another fit
 constexpr double kNoise = 2.0;       // mean square over the noise's below which no other start is tried
 constexpr Eigen::Index kModes = 12;  // modes along which missing physics is searched
 constexpr double kPlausible = 3.0;   // standard deviations
@@ -46,6 +48,7 @@ class InputFit {
     answer.fitted = !models_.base.nonlinear();
     const bool uncertain = answer.fitted && rows_.size() > p_;  // else the fit is at the question's parameters
     Fit best = uncertain ? best_mode() : posterior_.at(q_.w);
+    if (uncertain) best = with_noise_of_forces(std::move(best));
     if (answer.fitted) answer.test = test(best);
     if (uncertain) {
       best = tempered_fit(answer.test);
@@ -67,6 +70,23 @@ class InputFit {
     Fit other = posterior_.mode(models_.base.parameters().prior_mean());
     const double s = std::min(posterior_.scale(best.normal), posterior_.scale(other.normal));
     return posterior_.cost(other, s) < posterior_.cost(best, s) ? other : best;
+  }
+
+  // A force has three rows beside hundreds of points', which would hide that it fits badly: the noise of a pose shows in
+  // the force that it takes. So the noise of each force sensor is that of its own residual, or as stated where that is
+  // more.
+  Fit with_noise_of_forces(Fit best) {
+    for (int k = 0; k < kNoiseSteps; ++k) {
+      bool changed = false;
+      for (const auto& [source, sums] : best.normal.forces) {
+        const double variance = std::max(1.0, sums[0] / std::max(1.0, sums[1]));
+        rows_.set_force_noise(source, variance);
+        changed = changed || variance > kMoreNoise;
+      }
+      if (!changed) break;
+      best = posterior_.mode(best.z.head(p_));
+    }
+    return best;
   }
 
   // Where a load's course is uncertain, only inertia tells the modulus, by a small part of the motion. Structure that the
@@ -139,7 +159,8 @@ class InputFit {
     const Eigen::VectorXd& z = fit.z;
     const Eigen::MatrixXd posterior = posterior_.covariance(fit.normal);
     for (const InputLinearisation::Load& load : rows_.loads()) {
-      const std::string unit = load.basis.components() == 1 ? "Pa" : "N";
+      const bool motion = load.course->kind() == LoadInput::Kind::pose;
+      const std::string unit = motion ? "m" : load.basis.components() == 1 ? "Pa" : "N";
       for (const LoadErrorBasis::Group& group : load.basis.groups()) {
         tell(load.topic, group.name, group.unit.empty() ? unit : group.unit, group.std, load.first + group.first,
              group.count, z, posterior, answer);
@@ -152,6 +173,13 @@ class InputFit {
       const std::string topic = models_.base.settings().observations[static_cast<std::size_t>(pose.source)].topic;
       if (pose.offset > 0.0) tell(topic, "pose offset", "m", pose.offset, pose.first, 3, z, posterior, answer);
       if (pose.rotation > 0.0) tell(topic, "pose rotation", "rad", pose.rotation, pose.first + 3, 3, z, posterior, answer);
+    }
+    for (const InputLinearisation::ForceSensor& sensor : rows_.force_sensors()) {
+      const std::string topic = models_.base.settings().observations[static_cast<std::size_t>(sensor.source)].topic;
+      if (sensor.gain > 0.0) tell(topic, "gain", "-", sensor.gain, sensor.first, 1, z, posterior, answer);
+      if (sensor.bias > 0.0) tell(topic, "bias", "N", sensor.bias, sensor.first + 1, 3, z, posterior, answer);
+      if (sensor.rotation > 0.0)
+        tell(topic, "direction", "rad", sensor.rotation, sensor.first + 4, 3, z, posterior, answer);
     }
     for (const UncertainConstant& c : models_.constants) answer.inputs.push_back({c.name, "value", "", c.std, 0.0, c.std});
   }

@@ -147,8 +147,11 @@ struct MeshError::Studies {
     std::vector<Prediction> out;
     for (const Frame& frame : q.frames) {
       run->advance(frame.time - coarse.sensors().delay(theta));
-      const Eigen::VectorXd u = run->displacement().head(coarse.fem().dof_count());
-      out.push_back(predict_frame(coarse, operators, frame, theta, u));
+      const Eigen::VectorXd fine = run->output();
+      const Eigen::Index own = coarse.fem().dof_count(), forces = coarse.output_size() - own;
+      Eigen::VectorXd output(own + forces);
+      output << fine.head(own), fine.tail(forces);
+      out.push_back(predict_frame(coarse, operators, frame, theta, output));
     }
     return out;
   }

@@ -80,7 +80,7 @@ class PaperScheme : public Scheme {
   }
 
   void hold(const Eigen::VectorXi& nodes) {
-    SparseMatrix k = model_->reference_stiffness(model_->parameters().theta(model_->parameters().prior_mean()));
+    SparseMatrix k = model_->rest_stiffness(model_->parameters().theta(model_->parameters().prior_mean()));
     hold_ = kHold * k.diagonal().mean();
     for (Eigen::Index i = 0; i < nodes.size(); ++i) k.coeffRef(3 * nodes[i] + i % 3, 3 * nodes[i] + i % 3) += hold_;
     fix_dofs(k, model_->fixed(), k.diagonal().mean());

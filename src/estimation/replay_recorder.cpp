@@ -113,6 +113,9 @@ void ReplayRecorder::add_tracks(const FreeFrame& frame) {
       kinds_[whole] = observation.kind;
       const FacingPoints points = facing_points(*observation.contour, frame.prediction, from);
       seen_.back()[whole] = {edges(points.measured), edges(points.predicted)};
+    } else if (traits.force) {
+      kinds_[whole] = observation.kind;
+      seen_.back()[whole] = {frame.prediction.measured.segment(from, rows), frame.prediction.predicted.segment(from, rows)};
     } else if (!traits.identified) {
       kinds_[whole] = observation.kind;
       const Prediction& p = frame.prediction;
@@ -158,6 +161,10 @@ ReplayTrack ReplayRecorder::track(const Key& key, ObservationKind kind) const {
     out.name = "outline " + std::to_string(key.first + 1);
     out.unit = "pixel";
     out.components = {"left edge", "right edge", "upper edge", "lower edge"};
+  } else if (traits_of(kind).force) {
+    out.name = "reaction " + std::to_string(key.first + 1);
+    out.unit = "N";
+    out.components = {"x", "y", "z"};
   } else if (!traits_of(kind).identified) {
     out.name = "points " + std::to_string(key.first + 1);
     out.components = {"mean distance from the surface"};

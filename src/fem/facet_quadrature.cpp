@@ -114,4 +114,8 @@ Eigen::VectorXd along_axis(const Eigen::VectorXd& weights, int axis) {
   return out;
 }
 
+Eigen::Vector3d resultant(const Eigen::VectorXd& forces) {
+  return Eigen::Map<const Eigen::Matrix3Xd>(forces.data(), 3, forces.size() / 3).rowwise().sum();
+}
+
 }  // namespace tissue_stiffness

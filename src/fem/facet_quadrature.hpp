@@ -48,4 +48,7 @@ Eigen::VectorXd facet_mean(const TetMesh& mesh, const std::vector<int>& facets);
 /// Returns the 3n vector whose component `axis` (0, 1, 2) of node a is weights[a]. The other components are 0.
 Eigen::VectorXd along_axis(const Eigen::VectorXd& weights, int axis);
 
+/// Returns the sum of nodal forces (3n).
+Eigen::Vector3d resultant(const Eigen::VectorXd& forces);
+
 }  // namespace tissue_stiffness

@@ -79,6 +79,9 @@ class GeneralizedAlpha {
   int factorisations() const { return factorisations_; }
   int iterations() const { return iterations_; }
 
+  /// Returns the share of the state before in the forces that a step balances, alpha_f.
+  double force_share() const { return alpha_f_; }
+
  private:
   /// One system during a step.
   struct Column {

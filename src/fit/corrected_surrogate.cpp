@@ -9,14 +9,14 @@ namespace {
 
 constexpr double kFarthest = 1.0;  // lengths of the last move: nothing is known farther away
 
-Eigen::MatrixXd displacements(const ForwardModel& model, const Eigen::VectorXd& theta, double start,
-                              const std::vector<double>& times, const std::function<void()>& checkpoint) {
+Eigen::MatrixXd outputs(const ForwardModel& model, const Eigen::VectorXd& theta, double start,
+                        const std::vector<double>& times, const std::function<void()>& checkpoint) {
   const auto run = model.start(theta, start);
-  Eigen::MatrixXd u(run->displacement().size(), static_cast<Eigen::Index>(times.size()));
+  Eigen::MatrixXd u(run->output().size(), static_cast<Eigen::Index>(times.size()));
   for (std::size_t k = 0; k < times.size(); ++k) {
     checkpoint();
     run->advance(times[k]);
-    u.col(static_cast<Eigen::Index>(k)) = run->displacement();
+    u.col(static_cast<Eigen::Index>(k)) = run->output();
   }
   return u;
 }
@@ -29,7 +29,11 @@ class CorrectedTrajectory : public Trajectory {
 
   void advance(double time) override { run_->advance(time); }
   double time() const override { return run_->time(); }
-  Eigen::VectorXd displacement() const override { return run_->displacement() + at(run_->time()); }
+  Eigen::VectorXd displacement() const override {
+    const Eigen::VectorXd quick = run_->displacement();
+    return quick + at(run_->time()).head(quick.size());
+  }
+  Eigen::VectorXd output() const override { return run_->output() + at(run_->time()); }
   Eigen::VectorXd velocity() const override { return run_->velocity(); }
 
  private:
@@ -58,8 +62,8 @@ class CorrectedTrajectory : public Trajectory {
 void CorrectedSurrogate::anchor(const Eigen::VectorXd& theta, double start, const std::vector<double>& times,
                                 const std::function<void()>& checkpoint) {
   Eigen::MatrixXd accurate, cheap;
-  run_side_by_side([&] { accurate = displacements(*accurate_, theta, start, times, checkpoint); },
-                   [&] { cheap = displacements(*cheap_, theta, start, times, checkpoint); });
+  run_side_by_side([&] { accurate = outputs(*accurate_, theta, start, times, checkpoint); },
+                   [&] { cheap = outputs(*cheap_, theta, start, times, checkpoint); });
   times_ = times;
   anchor_ = theta;
   difference_ = accurate - cheap;

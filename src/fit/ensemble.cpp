@@ -10,14 +10,14 @@ void Ensemble::restart(const Eigen::MatrixXd& sigma_points, const RunStart& star
   theta_.clear();
   for (Eigen::Index i = 0; i < sigma_points.cols(); ++i) theta_.push_back(model_.parameters().theta(sigma_points.col(i)));
   runs_ = forward_.begin_all(theta_, start);
-  displacements_ = Eigen::MatrixXd::Zero(model_.fem().dof_count(), sigma_points.cols());
+  displacements_ = Eigen::MatrixXd::Zero(model_.output_size(), sigma_points.cols());
 }
 
 void Ensemble::advance(double time) {
   std::vector<double> times;
   for (const Eigen::VectorXd& theta : theta_) times.push_back(time - model_.sensors().delay(theta));
   runs_->advance(times);
-  runs_->displacements(displacements_);
+  runs_->outputs(displacements_);
 }
 
 Ensemble::Predicted Ensemble::predict(const Frame& frame) const {

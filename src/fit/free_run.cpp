@@ -17,8 +17,8 @@ std::vector<Misfit> free_run(const FitProblem& problem, Eigen::VectorXd theta, c
       run = problem.forward.resume(theta = change->theta, *run);
     }
     run->advance(frame.time - model.sensors().delay(theta));
-    const Eigen::VectorXd u = run->displacement();
-    const Prediction p = predict_frame(model, problem.operators, frame, theta, u);
+    const Eigen::VectorXd output = run->output(), u = output.head(model.fem().dof_count());
+    const Prediction p = predict_frame(model, problem.operators, frame, theta, output);
     misfits.push_back(
         frame_misfit(frame.time, p, predict_at_rest(model, problem.operators, frame).predicted, model.mesh().node_count()));
     if (!visit) continue;

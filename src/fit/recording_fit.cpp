@@ -150,7 +150,7 @@ Eigen::MatrixXd RecordingFit::rows_along(const Eigen::VectorXd& w, const Eigen::
   for (std::size_t k = 0; k < all.frames.size(); ++k) {
     recording_.checkpoint();
     run->advance(all.frames[k].time);
-    const Eigen::VectorXd u = run->displacement();
+    const Eigen::VectorXd u = run->output();
     const Prediction there = predict_frame(model_, operators_, all.frames[k], theta, u);
     out.middleRows(rows.offsets[k], rows.offsets[k + 1] - rows.offsets[k]) =
         predict_along(model_, operators_, all.frames[k], theta, u, there, shapes);
@@ -311,20 +311,39 @@ double structured_squares(const RecordingFit::Rows& rows) {
   return std::max(0.0, rows.error.squaredNorm() - rows.count());
 }
 
-double rms_error(const RecordingFit::Rows& rows, const Recording& recording, bool held_out) {
+namespace {
+
+// Returns the root mean square of a value [m] over the rows of lengths that `counts` takes.
+template <typename Counts, typename Value>
+double rms_of_lengths(const RecordingFit::Rows& rows, const Counts& counts, const Value& value) {
   double sum = 0.0, count = 0.0;
-  for (std::size_t k = 0; k < recording.frames.size(); ++k) {
-    if (recording.held_out(k) != held_out) continue;
+  for (std::size_t k = 0; k + 1 < rows.offsets.size(); ++k) {
+    if (!counts(k)) continue;
     for (Eigen::Index r = rows.offsets[k]; r < rows.offsets[k + 1]; ++r) {
-      sum += std::pow(rows.sigma[r] * rows.error[r], 2);
-      count += rows.used[r] > 0.0 ? 1.0 : 0.0;
+      if (!rows.tells_length(r)) continue;
+      sum += std::pow(value(r), 2);
+      count += 1.0;
     }
   }
-  return std::sqrt(sum / count);
+  return count > 0.0 ? std::sqrt(sum / count) : 0.0;
+}
+
+}  // namespace
+
+double rms_error(const RecordingFit::Rows& rows, const Recording& recording, bool held_out) {
+  return rms_of_lengths(
+      rows, [&](std::size_t frame) { return recording.held_out(frame) == held_out; },
+      [&](Eigen::Index r) { return rows.sigma[r] * rows.error[r]; });
+}
+
+double rms_error(const RecordingFit::Rows& rows) {
+  return rms_of_lengths(
+      rows, [](std::size_t) { return true; }, [&](Eigen::Index r) { return rows.sigma[r] * rows.error[r]; });
 }
 
 double noise_floor(const RecordingFit::Rows& rows) {
-  return std::sqrt(rows.sigma.squaredNorm() / rows.count());
+  return rms_of_lengths(
+      rows, [](std::size_t) { return true; }, [&](Eigen::Index r) { return rows.sigma[r]; });
 }
 
 }  // namespace tissue_stiffness

@@ -39,12 +39,14 @@ class RecordingFit {
     Eigen::VectorXd error;      ///< (measured - predicted) / sigma, times used
     Eigen::VectorXd predicted;  ///< predicted / sigma
     Eigen::VectorXd used;
-    Eigen::VectorXd sigma;              ///< [m]
-    Eigen::VectorXi nodes;              ///< nearest mesh node
+    Eigen::VectorXd sigma;              ///< [m], or [N] of a force
+    Eigen::VectorXi nodes;              ///< nearest mesh node, or kForceRow
     std::vector<Eigen::Index> offsets;  ///< first row of each frame, and the number of rows at the end
 
     /// Returns the number of rows that say something.
     double count() const { return static_cast<double>((used.array() > 0.0).count()); }
+    /// Returns whether a row says something of a length, and not of a force.
+    bool tells_length(Eigen::Index row) const { return used[row] > 0.0 && nodes[row] != kForceRow; }
   };
   /// Returns the rows of the free run at w. A nonlinear model takes a quick run, corrected by what quick runs were off at
   /// the last full run. Only fit() and borrow() change which run that is.
@@ -126,8 +128,10 @@ Eigen::VectorXd motion_of(const RecordingFit::Rows& rows);
 /// Returns the sum of the rows' squared errors beyond the stated noise [sigma^2], or 0.
 double structured_squares(const RecordingFit::Rows& rows);
 
-/// Returns the root mean square of the rows' errors over held-out (true) or training (false) frames [m].
+/// Returns the root mean square of the lengths' errors over held-out (true) or training (false) frames [m]; 0 without any.
 double rms_error(const RecordingFit::Rows& rows, const Recording& recording, bool held_out);
+/// Returns the same over all frames.
+double rms_error(const RecordingFit::Rows& rows);
 /// Returns the root mean square of the noise that the model file states [m].
 double noise_floor(const RecordingFit::Rows& rows);
 

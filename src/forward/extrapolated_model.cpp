@@ -23,6 +23,7 @@ class ExtrapolatedTrajectory : public Trajectory {
   }
   double time() const override { return fine_->time(); }
   Eigen::VectorXd displacement() const override { return extrapolated(fine_->displacement(), coarse_->displacement()); }
+  Eigen::VectorXd output() const override { return extrapolated(fine_->output(), coarse_->output()); }
   Eigen::VectorXd velocity() const override { return extrapolated(fine_->velocity(), coarse_->velocity()); }
 
  private:

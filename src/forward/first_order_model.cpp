@@ -59,6 +59,13 @@ class FirstOrderTrajectory : public Trajectory {
   }
   double time() const override { return linear_.time(); }
   Eigen::VectorXd displacement() const override { return reduced_.displacement(coordinates()); }
+  Eigen::VectorXd reactions() const { return linear_.reactions_with(state_); }
+  Eigen::VectorXd output() const override {
+    Eigen::VectorXd out(reduced_.model().output_size());
+    const Eigen::VectorXd forces = reactions();
+    out << displacement(), forces;
+    return out;
+  }
   Eigen::VectorXd coordinates() const { return linear_.coordinates() + modes_->shapes * state_.col(0); }
   Eigen::VectorXd velocity() const override {
     return linear_.velocity() + reduced_.basis() * (modes_->shapes * state_.col(1));

@@ -22,6 +22,9 @@ class Trajectory {
   virtual double time() const = 0;
   /// Returns the nodal displacement, 3n [m].
   virtual Eigen::VectorXd displacement() const = 0;
+  /// Returns what sensors depend on: the nodal displacement, and after it each reaction to a prescribed motion (see
+  /// Model::output_size).
+  virtual Eigen::VectorXd output() const { return displacement(); }
   /// Returns the nodal velocity, 3n [m/s].
   virtual Eigen::VectorXd velocity() const = 0;
 };
@@ -34,8 +37,8 @@ class Trajectories {
   /// Advances each run to its own time [s]; they share what they can. Throws as Trajectory::advance, for the first run that
   /// diverges.
   virtual void advance(const std::vector<double>& times) = 0;
-  /// Returns the nodal displacements, one in each column, 3n x size [m].
-  virtual void displacements(Eigen::MatrixXd& out) const = 0;
+  /// Returns the output of each run in a column.
+  virtual void outputs(Eigen::MatrixXd& out) const = 0;
   /// Returns their weighted sum at every node, even if the output is restricted, 3n [m].
   virtual void combine(const Eigen::VectorXd& weights, Eigen::Ref<Eigen::VectorXd> sum) const = 0;
 };
@@ -53,7 +56,7 @@ class SeparateTrajectories : public Trajectories {
   explicit SeparateTrajectories(std::vector<std::unique_ptr<Trajectory>> runs) : runs_(std::move(runs)) {}
   std::size_t size() const override { return runs_.size(); }
   void advance(const std::vector<double>& times) override;
-  void displacements(Eigen::MatrixXd& out) const override;
+  void outputs(Eigen::MatrixXd& out) const override;
   void combine(const Eigen::VectorXd& weights, Eigen::Ref<Eigen::VectorXd> sum) const override;
   Trajectory& operator[](std::size_t i) { return *runs_[i]; }
 
@@ -83,7 +86,7 @@ class ForwardModel {
   /// Starts from rest or continues a motion, depending on `from`.
   std::unique_ptr<Trajectory> begin(const Eigen::VectorXd& theta, const RunStart& from) const;
   std::unique_ptr<Trajectories> begin_all(const std::vector<Eigen::VectorXd>& thetas, const RunStart& from) const;
-  /// Calls `show` at each of `times` [s], ascending, with the index of the time and the nodal displacement (3n).
+  /// Calls `show` at each of `times` [s], ascending, with the index of the time and the run's output.
   using Show = std::function<void(std::size_t, const Eigen::Ref<const Eigen::VectorXd>&)>;
   virtual void advance_through(Trajectory& run, const std::vector<double>& times, const Show& show) const;
   /// Runs started from now on need to give the motion of these nodes only. Cheaper models may leave the others at rest.

@@ -13,11 +13,16 @@
 namespace tissue_stiffness {
 namespace {
 
+constexpr double kForReactions = 1e-5;     // of the tolerance
+constexpr double kMostForReactions = 0.9;  // spectral radius
 constexpr double kExplicitSteps =
     250;  // explicit steps that one call of advance() may take before implicit ones are cheaper
 
-double body_size(const TetMesh& mesh) {
-  return (mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff()).norm();
+// Returns the largest error of a displacement [m]. The springs of a moved region turn it into an error of its reaction.
+double tolerance_of(const Model& model, double share) {
+  const Eigen::Matrix3Xd& nodes = model.mesh().nodes;
+  const double size = (nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff()).norm();
+  return (model.reactions().empty() ? share : kForReactions * share) * size;
 }
 
 DynamicState at_start(const Model& model, const Eigen::VectorXd& theta, double start) {
@@ -32,14 +37,20 @@ DynamicState at_start(const Model& model, const Eigen::VectorXd& theta, double s
   return state;
 }
 
+// What rings in the springs of a moved region has to decay.
+double radius_of(const Model& model, double wanted) {
+  return model.reactions().empty() ? wanted : std::min(wanted, kMostForReactions);
+}
+
 class FullTrajectories : public Trajectories {
  public:
   FullTrajectories(const Model& model, const std::vector<Eigen::VectorXd>& thetas, std::vector<DynamicState> states,
                    const FullModel::Options& options)
       : options_(options),
         systems_(make_systems(model, thetas)),
-        stepper_(views(systems_), options.spectral_radius, options.tolerance * body_size(model.mesh())),
-        states_(std::move(states)) {}
+        stepper_(views(systems_), radius_of(model, options.spectral_radius), tolerance_of(model, options.tolerance)),
+        states_(std::move(states)),
+        reactions_(states_.size(), Eigen::MatrixXd(model.output_size() - model.fem().dof_count(), 2)) {}
 
   std::size_t size() const override { return states_.size(); }
   void advance(const std::vector<double>& times) override {
@@ -50,8 +61,13 @@ class FullTrajectories : public Trajectories {
     explicit_steps_ ? leap(spans) : implicit(spans);
     for (std::size_t i = 0; i < times.size(); ++i) states_[i].time = times[i];
   }
-  void displacements(Eigen::MatrixXd& out) const override {
-    for (std::size_t i = 0; i < states_.size(); ++i) out.col(static_cast<Eigen::Index>(i)) = states_[i].displacement;
+  void outputs(Eigen::MatrixXd& out) const override {
+    for (std::size_t i = 0; i < states_.size(); ++i) out.col(static_cast<Eigen::Index>(i)) = output(i);
+  }
+  Eigen::VectorXd output(std::size_t i) const {
+    Eigen::VectorXd out(states_[i].displacement.size() + reactions_[i].rows());
+    out << states_[i].displacement, reactions(i);
+    return out;
   }
   void combine(const Eigen::VectorXd& weights, Eigen::Ref<Eigen::VectorXd> sum) const override {
     const auto displacement = [this](std::size_t i) -> const Eigen::VectorXd& { return states_[i].displacement; };
@@ -94,7 +110,32 @@ class FullTrajectories : public Trajectories {
     const int count = options_.step > 0.0 ? static_cast<int>(std::ceil(spans.front() / options_.step * (1.0 - 1e-9)))
                                           : options_.steps_per_frame;
     for (double& span : spans) span /= count;
-    for (int k = 0; k < count; ++k) stepper_.step(states_, spans);
+    for (int k = 0; k < count; ++k) {
+      if (reactions_.front().rows() > 0) before_ = states_;
+      stepper_.step(states_, spans);
+      note_reactions();
+    }
+  }
+
+  // Keeps the reactions of the last two steps, the newest first. A step of generalised-alpha balances the forces within it,
+  // and stiff springs ring between its ends.
+  void note_reactions() {
+    if (before_.empty()) return;
+    ++noted_;
+    const double share = stepper_.force_share();
+    for (std::size_t i = 0; i < states_.size(); ++i) {
+      const DynamicState &from = before_[i], &to = states_[i];
+      reactions_[i].col(1) = reactions_[i].col(0).eval();
+      reactions_[i].col(0) = systems_[i]->reactions((1.0 - share) * to.time + share * from.time,
+                                                    (1.0 - share) * to.displacement + share * from.displacement);
+    }
+  }
+
+  // Extrapolates them to the end of the last step.
+  Eigen::VectorXd reactions(std::size_t i) const {
+    const Eigen::MatrixXd& kept = reactions_[i];
+    if (noted_ < 2) return systems_[i]->reactions(states_[i].time, states_[i].displacement);
+    return kept.col(0) + stepper_.force_share() * (kept.col(0) - kept.col(1));
   }
 
   FullModel::Options options_;
@@ -102,6 +143,9 @@ class FullTrajectories : public Trajectories {
   GeneralizedAlpha stepper_;
   std::vector<CentralDifference> central_;
   std::vector<DynamicState> states_;
+  std::vector<DynamicState> before_;        ///< states before the last step; empty where nothing is moved
+  std::vector<Eigen::MatrixXd> reactions_;  ///< of each run in its last two steps
+  int noted_ = 0;                           ///< steps
   bool chosen_ = false, explicit_steps_ = false;
 };
 
@@ -113,6 +157,7 @@ class FullTrajectory : public Trajectory {
   void advance(double time) override { runs_.advance({time}); }
   double time() const override { return runs_.state(0).time; }
   Eigen::VectorXd displacement() const override { return runs_.state(0).displacement; }
+  Eigen::VectorXd output() const override { return runs_.output(0); }
   Eigen::VectorXd velocity() const override { return runs_.state(0).velocity; }
 
  private:
@@ -219,6 +264,12 @@ SparseMatrix ModelSystem::friction(double time, const Eigen::VectorXd& u, const 
 
 void ModelSystem::find_rotations(const Eigen::VectorXd& u, Eigen::Matrix3Xd& rotations) const {
   rotations_ ? rotations_->find(u, rotations) : DynamicSystem::find_rotations(u, rotations);
+}
+
+Eigen::VectorXd ModelSystem::reactions(double time, const Eigen::VectorXd& u) const {
+  Eigen::VectorXd out(model_.output_size() - u.size());
+  model_.find_reactions(point_, time, u, out);
+  return out;
 }
 
 double ModelSystem::energy(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const {

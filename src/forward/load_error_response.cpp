@@ -9,10 +9,6 @@ namespace {
 
 constexpr double kLoadStep = 0.008;  // [s] at most between two values of a load
 
-ModalStep modal_step(const Model& model, const ReducedModes& modes, const Eigen::VectorXd& theta) {
-  return {modes.square, modes.damping(model.mass_damping(theta), model.stiffness_damping(theta)), model.relaxations(theta)};
-}
-
 }  // namespace
 
 LoadErrorResponse::LoadErrorResponse(const ReducedModel& reduced, const Eigen::VectorXd& theta, double start,
@@ -23,7 +19,10 @@ LoadErrorResponse::LoadErrorResponse(const ReducedModel& reduced, const Eigen::V
       time_(start),
       modes_(reduced.modes(theta)),
       patterns_(Eigen::MatrixXd::Zero(modes_->square.size(), basis.components())),
-      step_(modal_step(reduced.model(), *modes_, theta)) {
+      reaction_rows_(reduced.reaction_rows(theta, *modes_)),
+      stiffness_damping_(reduced.model().stiffness_damping(theta)),
+      branches_(reduced.model().relaxations(theta)),
+      step_(modes_->square, modes_->damping(reduced.model().mass_damping(theta), stiffness_damping_), branches_) {
   const auto& parts = reduced.model().parts();
   const double factor = reduced.model().load_factor(theta);
   for (std::size_t p = 0; p < parts.size(); ++p) {
@@ -31,21 +30,22 @@ LoadErrorResponse::LoadErrorResponse(const ReducedModel& reduced, const Eigen::V
     for (std::size_t i = 0; i < parts[p].terms.loads.size(); ++i) {
       const LoadTerm& term = parts[p].terms.loads[i];
       if (term.course != course_ || term.component >= basis.components()) continue;
-      patterns_.col(term.component) +=
-          factor * term.coefficient(own) * (modes_->shapes.transpose() * reduced.load(p, i, own));
+      const double c = (term.prescribed ? 1.0 : factor) * term.coefficient(own);
+      patterns_.col(term.component) += c * (modes_->shapes.transpose() * reduced.load(p, i, own));
+      prescribed_ = prescribed_ || term.prescribed;
     }
   }
   states_.assign(static_cast<std::size_t>(basis.size()), Eigen::MatrixXd::Zero(modes_->square.size(), step_.states()));
   forces_ = modal_forces(start);
 }
 
-Eigen::MatrixXd LoadErrorResponse::modal_forces(double time) const {
+Eigen::MatrixXd LoadErrorResponse::errors(double time) const {
   const auto measured = [this](double t) {
     Eigen::VectorXd load(basis_.components());
     for (int i = 0; i < load.size(); ++i) load[i] = course_->measured(t, i);
     return load;
   };
-  return patterns_ * basis_.value(measured, time);
+  return basis_.value(measured, time);
 }
 
 void LoadErrorResponse::advance(double time) {
@@ -69,6 +69,27 @@ Eigen::MatrixXd LoadErrorResponse::amplitudes() const {
   Eigen::MatrixXd modal(modes_->square.size(), static_cast<Eigen::Index>(states_.size()));
   for (std::size_t j = 0; j < states_.size(); ++j) modal.col(static_cast<Eigen::Index>(j)) = states_[j].col(0);
   return modal;
+}
+
+// Modes that are faster than the steps follow the load without inertia (see ReducedTrajectory).
+Eigen::MatrixXd LoadErrorResponse::further_reactions() const {
+  const Eigen::MatrixXd &lift = reaction_rows_.lift, &elastic = reaction_rows_.elastic;
+  Eigen::MatrixXd out(lift.cols(), static_cast<Eigen::Index>(states_.size()));
+  if (out.rows() == 0) return out;
+  const Eigen::VectorXd& square = modes_->square;
+  const Eigen::Array<bool, Eigen::Dynamic, 1> fast = square.array() * kLoadStep * kLoadStep > 1.0;
+  for (std::size_t j = 0; j < states_.size(); ++j) {
+    const auto column = static_cast<Eigen::Index>(j);
+    const Eigen::MatrixXd& state = states_[j];
+    Eigen::VectorXd stretched = state.col(0) + stiffness_damping_ * state.col(1);
+    for (std::size_t b = 0; b < branches_.size(); ++b)
+      stretched += branches_[b].modulus * (state.col(0) - state.col(2 + static_cast<Eigen::Index>(b)));
+    stretched = fast.select(forces_.col(column).cwiseQuotient(square), stretched);
+    Eigen::VectorXd beyond = fast.select(0.0, forces_.col(column) - square.cwiseProduct(stretched));
+    if (!prescribed_) beyond -= forces_.col(column);
+    out.col(column) = lift.transpose() * beyond + elastic.transpose() * (stretched - state.col(0));
+  }
+  return out;
 }
 
 }  // namespace tissue_stiffness

@@ -21,9 +21,13 @@ class LoadErrorResponse {
   void advance(double time);
   /// Returns the amplitudes of the reduced model's modes at theta, modes x columns.
   Eigen::MatrixXd amplitudes() const;
+  /// Returns what is left of each reaction [N] beyond the elastic force at these amplitudes, rows of a run's output x
+  /// columns: inertia, damping, relaxation and the loads themselves.
+  Eigen::MatrixXd further_reactions() const;
 
  private:
-  Eigen::MatrixXd modal_forces(double time) const;
+  Eigen::MatrixXd errors(double time) const;  ///< components x columns
+  Eigen::MatrixXd modal_forces(double time) const { return patterns_ * errors(time); }
 
   const ReducedModel& reduced_;
   std::shared_ptr<const Course> course_;
@@ -31,6 +35,10 @@ class LoadErrorResponse {
   double time_;
   std::shared_ptr<const ReducedModes> modes_;
   Eigen::MatrixXd patterns_;  ///< modal force of a unit load, modes x components
+  ReactionRows reaction_rows_;
+  bool prescribed_ = false;   ///< the load is a motion, and its force acts on no other region
+  double stiffness_damping_;  ///< [s]
+  std::vector<Relaxation> branches_;
   ModalStep step_;
   Eigen::MatrixXd forces_;               ///< modes x columns
   std::vector<Eigen::MatrixXd> states_;  ///< displacement, velocity and branches, for each column

@@ -4,7 +4,7 @@ namespace tissue_stiffness {
 
 void Loads::set_first_stamp(double time) {
   first_stamp_ = time;
-  for (auto& course : courses_) course.second->shift(time);
+  for (auto& course : courses_) course.second->start(time, time + rest_);
 }
 
 void Loads::drive(double first_stamp, const std::vector<LoadSample>& samples) {
@@ -16,7 +16,7 @@ void Loads::drive(double first_stamp, const std::vector<LoadSample>& samples) {
 }
 
 double Loads::value(const LoadTerm& term, const Parameters& parameters, double factor, double time) const {
-  return (term.course ? factor : 1.0) * term.value(time, time - first_stamp_, parameters);
+  return (term.course && !term.prescribed ? factor : 1.0) * term.value(time, time - first_stamp_, parameters);
 }
 
 }  // namespace tissue_stiffness

@@ -19,17 +19,20 @@ class Loads {
   /// Sets the time of the recording's first stamp [s]. Courses from files and rhythms count from it. It is 0 until it is
   /// set.
   void set_first_stamp(double time);
+  /// Sets when the body was at rest, after the first stamp [s].
+  void set_rest(double after_first_stamp) { rest_ = after_first_stamp; }
   double first_stamp() const { return first_stamp_; }
   /// Sets the first stamp and adds the loads of a whole recording. Loads of topics that the model does not use are skipped.
   void drive(double first_stamp, const std::vector<LoadSample>& samples);
 
-  /// Returns the value of a load term at a time: measured, from a rhythm, or 1. A measured load includes `factor`.
+  /// Returns the value of a load term at a time: measured, from a rhythm, or 1. A measured load includes `factor`, and a
+  /// prescribed motion does not.
   double value(const LoadTerm& term, const Parameters& parameters, double factor, double time) const;
 
  private:
   CourseTable courses_;
   std::vector<LoadInput> inputs_;
-  double first_stamp_ = 0.0;
+  double first_stamp_ = 0.0, rest_ = 0.0;
 };
 
 }  // namespace tissue_stiffness

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "effects/registry.hpp"
+#include "fem/facet_quadrature.hpp"
 #include "tissue_stiffness/meshing/build_mesh.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
@@ -37,7 +38,7 @@ Model::Model(const ModelSettings& settings, const TetMesh& mesh, std::map<std::s
 Model::Model(const ModelSettings& settings, const Model& relative) : Model(settings, relative.body_, &relative) {}
 
 Model::Model(const ModelSettings& settings, std::shared_ptr<const Body> body, const Model* relative)
-    : settings_(settings), body_(std::move(body)), rest_(Eigen::VectorXd::Zero(fem().dof_count())) {
+    : settings_(settings), body_(std::move(body)) {
   require_effect(settings_, "inertia");
   const EffectContext shared = context();
   constraint_count_.assign(static_cast<std::size_t>(fem().node_count()), 0);
@@ -57,6 +58,22 @@ Model::Model(const ModelSettings& settings, std::shared_ptr<const Body> body, co
   }
   parameters_.add_initial_velocity(settings_.initial);
   sensors_ = Sensors(mesh(), parts_);
+  loads_.set_rest(settings_.time.start);
+  find_guided_regions();
+  rest_ = Eigen::VectorXd::Zero(fem().dof_count() + 3 * static_cast<Eigen::Index>(reactions_.size()));
+}
+
+void Model::find_guided_regions() {
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    const LinearTerms& terms = parts_[i].terms;
+    if (terms.guided_region.empty()) continue;
+    Eigen::MatrixX3d springs = Eigen::MatrixX3d::Zero(fem().dof_count(), 3);
+    for (const MatrixTerm& term : terms.stiffness) {
+      for (int axis = 0; axis < 3; ++axis)
+        springs.col(axis) += *term.matrix * along_axis(Eigen::VectorXd::Ones(fem().node_count()), axis);
+    }
+    reactions_.push_back({i, terms.guided_region, std::move(springs)});
+  }
 }
 
 EffectContext Model::context() {

@@ -34,7 +34,17 @@ class Model {
 
   const TetMesh& mesh() const { return body_->mesh; }
   const Discretisation& fem() const { return body_->fem; }
-  /// Returns the displacement of the body before anything moves it: 3n zeros.
+  /// A region whose motion is prescribed. The force on it is a reaction of the body.
+  struct Reaction {
+    std::size_t part;  ///< index of the effect that prescribes the motion
+    std::string region;
+    Eigen::MatrixX3d springs;  ///< force of its springs when the body moves by a unit along each axis, 3n x 3 [N/m]
+  };
+  const std::vector<Reaction>& reactions() const { return reactions_; }
+  /// Returns the number of rows that a run shows of an instant: the displacement of every node, 3n [m], and then each
+  /// reaction, 3 rows [N].
+  Eigen::Index output_size() const { return rest_.size(); }
+  /// Returns what a run shows of the body before anything moves it: zeros.
   const Eigen::VectorXd& rest() const { return rest_; }
   const Body& body() const { return *body_; }
   const ModelSettings& settings() const { return settings_; }
@@ -55,10 +65,11 @@ class Model {
 
   Eigen::Vector3d initial_velocity(const Eigen::VectorXd& theta) const { return theta.tail<3>(); }
 
-  /// These return the matrices at theta. `stiffness` holds the linear part, `reference_stiffness` the rest stiffness of
-  /// every law.
+  /// These return the matrices at theta. `stiffness` holds the linear part, `rest_stiffness` that of the body at rest,
+  /// `reference_stiffness` the same without springs that do not relax.
   SparseMatrix mass(const Eigen::VectorXd& theta) const;
   SparseMatrix stiffness(const Eigen::VectorXd& theta) const;
+  SparseMatrix rest_stiffness(const Eigen::VectorXd& theta) const;
   SparseMatrix reference_stiffness(const Eigen::VectorXd& theta) const;
   /// Returns what of the reference stiffness damps and relaxes linearly. It lacks the share that acts through strain.
   SparseMatrix linear_reference_stiffness(const Eigen::VectorXd& theta) const;
@@ -104,6 +115,8 @@ class Model {
   void add_strain_force(const Point& at, const Eigen::VectorXd& u, const Eigen::Ref<const Eigen::VectorXd>& strains,
                         Eigen::VectorXd& force) const;
   void add_velocity_tangent(const Point& at, Motion motion, SparseMatrix& damping) const;
+  /// Computes the reactions [N] to prescribed motions, 3 rows each, at an instant of a run with displacement u (3n).
+  void find_reactions(const Point& at, double time, const Eigen::VectorXd& u, Eigen::Ref<Eigen::VectorXd> out) const;
   /// Returns elastic and contact energy [J].
   double stored_energy(const Point& at, Motion motion) const;
 
@@ -124,8 +137,9 @@ class Model {
   void link_elasticities();
   void check_laws() const;
   void settle_terms(Part& part) const;
-  /// Sums the parts' stiffness at rest, each times its share.
-  SparseMatrix sum_stiffness(const Eigen::VectorXd& theta, const std::function<double(const Part&)>& share) const;
+  void find_guided_regions();
+  /// Sums the parts' stiffness at rest, each times its share: all of it, or without what does not relax.
+  SparseMatrix sum_stiffness(const Eigen::VectorXd& theta, bool all, const std::function<double(const Part&)>& share) const;
 
   ModelSettings settings_;
   std::shared_ptr<const Body> body_;
@@ -134,6 +148,7 @@ class Model {
   Loads loads_;
   Sensors sensors_;
   std::vector<Part> parts_;
+  std::vector<Reaction> reactions_;
   std::vector<int> constraint_count_;  ///< number of `fixed` effects that hold each node
   std::vector<char> fixed_;
   bool finite_law_ = false;  ///< the elasticity has a law of finite strain

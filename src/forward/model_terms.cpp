@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "fem/facet_quadrature.hpp"
 #include "fem/strain.hpp"
 #include "forward/model.hpp"
 
@@ -64,14 +65,17 @@ SparseMatrix Model::mass(const Eigen::VectorXd& theta) const {
   return m;
 }
 
-SparseMatrix Model::sum_stiffness(const Eigen::VectorXd& theta, const std::function<double(const Part&)>& share_of) const {
+SparseMatrix Model::sum_stiffness(const Eigen::VectorXd& theta, bool all,
+                                  const std::function<double(const Part&)>& share_of) const {
   SparseMatrix k = fem().pattern();
   for (const Part& part : parts_) {
     if (part.terms.stiffness.empty() && part.terms.strain_stiffness.empty()) continue;
     const double share = share_of(part);
     if (share == 0.0) continue;
     const Eigen::VectorXd p = part.parameters(theta);
-    for (const MatrixTerm& term : part.terms.stiffness) add(k, share * term.coefficient(p), term);
+    for (const MatrixTerm& term : part.terms.stiffness) {
+      if (all || term.relaxes) add(k, share * term.coefficient(p), term);
+    }
     for (const StrainTerm& term : part.terms.strain_stiffness) {
       const double scale = share * term.coefficient(p);
       if (scale != 0.0) add_strain_stiffness(fem(), term.at(p), scale, k);
@@ -81,15 +85,19 @@ SparseMatrix Model::sum_stiffness(const Eigen::VectorXd& theta, const std::funct
 }
 
 SparseMatrix Model::stiffness(const Eigen::VectorXd& theta) const {
-  return sum_stiffness(theta, [&](const Part& part) { return 1.0 - finite_share(part, theta); });
+  return sum_stiffness(theta, true, [&](const Part& part) { return 1.0 - finite_share(part, theta); });
+}
+
+SparseMatrix Model::rest_stiffness(const Eigen::VectorXd& theta) const {
+  return sum_stiffness(theta, true, [](const Part&) { return 1.0; });
 }
 
 SparseMatrix Model::reference_stiffness(const Eigen::VectorXd& theta) const {
-  return sum_stiffness(theta, [](const Part&) { return 1.0; });
+  return sum_stiffness(theta, false, [](const Part&) { return 1.0; });
 }
 
 SparseMatrix Model::linear_reference_stiffness(const Eigen::VectorXd& theta) const {
-  return sum_stiffness(theta,
+  return sum_stiffness(theta, false,
                        [&](const Part& part) { return has_strain_form(part) ? 1.0 - finite_share(part, theta) : 1.0; });
 }
 
@@ -274,6 +282,21 @@ void Model::add_velocity_tangent(const Point& at, Motion motion, SparseMatrix& d
     if (force != nullptr && force->has_velocity_tangent(p)) force->add_velocity_tangent(motion, p, damping);
     const double beta = at.stiffness_damping * strain_share(parts_[i], at.parts[i]);
     if (beta > 0.0) parts_[i].effect->finite_strain()->add_strain_tangent(motion.displacement, p, beta, damping);
+  }
+}
+
+// The prescribed loads and the springs of a part share one coefficient.
+void Model::find_reactions(const Point& at, double time, const Eigen::VectorXd& u, Eigen::Ref<Eigen::VectorXd> out) const {
+  for (std::size_t r = 0; r < reactions_.size(); ++r) {
+    const Reaction& reaction = reactions_[r];
+    const Point::Part& own = at.parts[reaction.part];
+    const LinearTerms& terms = parts_[reaction.part].terms;
+    Eigen::Vector3d force = -terms.stiffness.front().coefficient(own.parameters) * (reaction.springs.transpose() * u);
+    for (const LoadTerm& term : terms.loads) {
+      const double value = term.coefficient(own.parameters) * loads_.value(term, own.parameters, 1.0, time);
+      force += value * resultant(term.pattern);
+    }
+    out.segment<3>(3 * static_cast<Eigen::Index>(r)) = force;
   }
 }
 

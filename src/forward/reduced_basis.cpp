@@ -14,6 +14,8 @@
 namespace tissue_stiffness {
 namespace {
 
+constexpr Eigen::Index kManyLoads = 8;  // more of them have kPerLoad vectors each
+constexpr Eigen::Index kPerLoad = 6;
 constexpr int kLeading = 4;             // modes that tell what an absent effect would do
 constexpr double kResponseShare = 0.6;  // of the room for absent effects: static responses; dynamic ones fill the rest
 constexpr int kFew = 3;                 // absent effects that may grow large: their stiffness acts on what is added, too
@@ -106,9 +108,7 @@ class Builder {
       : model_(model), options_(options), prior_(model), root_(make_root(known)) {}
 
   ReducedBasis build() {
-    const Eigen::Index free_dofs = model_.fem().dof_count() / 2;
-    const Eigen::Index room = std::min<Eigen::Index>(std::max(options_.size, options_.largest), free_dofs);
-    OrthonormalBasis basis(mass_, room);
+    OrthonormalBasis basis(mass_, most(root_->loads.cols()));
     basis.begin(root_->vectors, root_->weighted);
     const Eigen::Index awake = basis.size();
     add_inactive(basis, root_->loads);
@@ -124,6 +124,15 @@ class Builder {
   }
 
  private:
+  // Many loads need more vectors: a prescribed motion has twelve.
+  Eigen::Index beyond_size(Eigen::Index loads) const {
+    return loads > kManyLoads ? std::max<Eigen::Index>(0, kPerLoad * loads - options_.size) : 0;
+  }
+  Eigen::Index most(Eigen::Index loads) const {
+    const Eigen::Index free_dofs = model_.fem().dof_count() / 2;
+    return std::min<Eigen::Index>(std::max(options_.size, options_.largest) + beyond_size(loads), free_dofs);
+  }
+
   std::shared_ptr<const BasisRoot> make_root(const std::shared_ptr<const BasisRoot>& known) const {
     auto root = std::make_shared<BasisRoot>();
     root->terms = BodyTerms(model_, prior_.theta);
@@ -131,7 +140,7 @@ class Builder {
     const bool same_hold = known && known->fixed == root->fixed;
     bool same_body = same_hold && known->terms.same_body(root->terms);
     if (!same_body) {
-      root->stiffness = share_matrix(model_.reference_stiffness(prior_.theta));
+      root->stiffness = share_matrix(model_.rest_stiffness(prior_.theta));
       SparseMatrix mass = model_.mass(prior_.theta);
       mass.prune(0.0);  // of each pair of nodes' 3 x 3 block, a third
       root->mass = share_matrix(std::move(mass));
@@ -140,8 +149,7 @@ class Builder {
     if (same_body) root->take_body(*known);
     root->loads = acting_loads(model_, prior_, *root->mass);
     root->groups = stiffness_groups(model_, prior_);
-    const Eigen::Index most = std::max(options_.size, options_.largest), free_dofs = model_.fem().dof_count() / 2;
-    root->size = std::min<Eigen::Index>(options_.size, std::min(most, free_dofs));
+    root->size = std::min(options_.size + beyond_size(root->loads.cols()), most(root->loads.cols()));
     if (same_body && known->same_motion(*root)) return known;
     if (!root->held) {
       root->held = std::make_shared<StaticResponse>(*root->stiffness, *root->mass, root->fixed, options_.coarser.get());
@@ -332,7 +340,7 @@ class Builder {
       Eigen::VectorXd theta = prior_.theta;
       const Eigen::VectorXd& soft = part.is_compliant(part.parameters(prior)) ? prior : prior_.generic;
       for (const int index : part.indices) theta[index] = soft[index];
-      const StaticResponse respond(model_.reference_stiffness(theta), mass_, model_.fixed(theta), nullptr);
+      const StaticResponse respond(model_.rest_stiffness(theta), mass_, model_.fixed(theta), nullptr);
       const Eigen::Index before = held.size();
       OrthonormalBasis basis(mass_, before + options_.released);
       basis.add(held.vectors(), before);

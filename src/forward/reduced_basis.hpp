@@ -22,7 +22,7 @@ struct ReducedBasis {
 };
 
 struct BasisOptions {
-  int size = 48;      ///< vectors of the loads that are active at the prior
+  int size = 48;      ///< vectors of the loads that are active at the prior; more than eight loads have six each
   int per_part = 32;  ///< more for each effect that is absent at the prior, or whose place or angle is estimated
   int largest = 160;  ///< limit of their sum; vectors for compliant supports are added to it
   int released = 40;  ///< vectors for each support that may be compliant

@@ -119,6 +119,7 @@ ReducedModel::ReducedModel(const Model& model, const BasisOptions& options, cons
     adopt_projections(*relative);
   }
   project();
+  project_reactions();
 }
 
 // Returns the relative's vectors, except those of supports that this model does not have.
@@ -211,6 +212,49 @@ void ReducedModel::project_part(std::size_t index) {
     out.strain_stiffness[k] = project_strain_stiffness(model_.fem(), term.at(prior_parameters(model_, part)), strains_);
   }
   for (const auto& term : part.terms.loads) out.loads.push_back(b.transpose() * term.pattern);
+}
+
+void ReducedModel::project_reactions() {
+  const std::vector<Model::Reaction>& reactions = model_.reactions();
+  reaction_springs_.resize(basis_.vectors.cols(), 3 * static_cast<Eigen::Index>(reactions.size()));
+  for (std::size_t r = 0; r < reactions.size(); ++r)
+    reaction_springs_.middleCols<3>(3 * static_cast<Eigen::Index>(r)) = basis_.vectors.transpose() * reactions[r].springs;
+}
+
+// Returns the stiffness in the basis without springs that do not relax.
+Eigen::MatrixXd ReducedModel::relaxing_stiffness(const Eigen::VectorXd& theta) const {
+  const Eigen::Index m = basis_.vectors.cols();
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(m, m);
+  for (std::size_t i = 0; i < projected_.size(); ++i) {
+    const LinearTerms& terms = model_.parts()[i].terms;
+    const Eigen::VectorXd p = model_.parts()[i].parameters(theta);
+    for (std::size_t k = 0; k < terms.stiffness.size(); ++k) {
+      if (terms.stiffness[k].relaxes) sum += terms.stiffness[k].coefficient(p) * projected_[i].stiffness[k];
+    }
+    for (std::size_t k = 0; k < terms.strain_stiffness.size(); ++k) {
+      const double c = terms.strain_stiffness[k].coefficient(p);
+      const bool constant = projected_[i].strain_stiffness[k].size() > 0;
+      if (c != 0.0) sum += c * (constant ? projected_[i].strain_stiffness[k] : *shaped(terms.strain_stiffness[k], p));
+    }
+  }
+  return sum;
+}
+
+ReactionRows ReducedModel::reaction_rows(const Eigen::VectorXd& theta, const ReducedModes& modes) const {
+  const std::vector<Model::Reaction>& reactions = model_.reactions();
+  ReactionRows out;
+  if (reactions.empty()) return out;
+  out.lift = modes.shapes.transpose() * reaction_springs_;
+  for (std::size_t r = 0; r < reactions.size(); ++r) {
+    const Model::Part& part = model_.parts()[reactions[r].part];
+    out.lift.middleCols<3>(3 * static_cast<Eigen::Index>(r)) *=
+        part.terms.stiffness.front().coefficient(part.parameters(theta));
+  }
+  for (Eigen::Index m = 0; m < out.lift.rows(); ++m) {
+    modes.square[m] > 0.0 ? out.lift.row(m) /= modes.square[m] : out.lift.row(m).setZero();
+  }
+  out.elastic = modes.shapes.transpose() * (relaxing_stiffness(theta) * (modes.shapes * out.lift));
+  return out;
 }
 
 std::unique_ptr<ReducedModel> ReducedModel::grown() const {
@@ -394,7 +438,7 @@ Eigen::VectorXd ReducedModel::displacement(const Eigen::VectorXd& coordinates) c
 
 void ReducedModel::displacements(const Eigen::MatrixXd& coordinates, Eigen::MatrixXd& out) const {
   if (output_nodes_.empty()) {
-    multiply(basis_.vectors, coordinates, out.leftCols(coordinates.cols()));
+    multiply(basis_.vectors, coordinates, out.topLeftCorner(basis_.vectors.rows(), coordinates.cols()));
     return;
   }
   VectorPool::Loan scratch(scratch_, basis_at_output_.rows() * coordinates.cols());

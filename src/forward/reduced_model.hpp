@@ -27,6 +27,15 @@ struct ReducedModes {
   }
 };
 
+/// The reaction to a region's prescribed motion is the virtual work of all else on psi, the static response of the body to
+/// a unit motion of the region along an axis:
+///   F = psi . (M u'' + alpha M u' + K (u + beta u' + sum gamma (u - z)) - f),  K without the springs of the region.
+/// Unlike the springs' own force it is no difference of large numbers.
+struct ReactionRows {
+  Eigen::MatrixXd lift;     ///< psi of each axis of each reaction in modal coordinates, modes x 3 for each
+  Eigen::MatrixXd elastic;  ///< K psi, likewise [N/m]
+};
+
 /// A linear model in a basis of load-dependent Ritz vectors. In the basis every step is exact for loads that are linear in
 /// time (modal superposition). So the time step causes no error. Terms whose place or angle is estimated are projected
 /// again for each theta. Thread safe.
@@ -59,6 +68,8 @@ class ReducedModel : public ForwardModel {
   Eigen::MatrixXd basis_at(const std::vector<int>& nodes) const;
   /// Returns the nodal displacement of basis coordinates, 3n. It is zero at nodes that the output does not hold.
   Eigen::VectorXd displacement(const Eigen::VectorXd& coordinates) const;
+  /// Returns how the reactions follow from the motion of the modes at theta.
+  ReactionRows reaction_rows(const Eigen::VectorXd& theta, const ReducedModes& modes) const;
   /// Computes the displacements of several columns of coordinates. They are written to those rows of `out` that belong to
   /// the output; other rows are not changed.
   void displacements(const Eigen::MatrixXd& coordinates, Eigen::MatrixXd& out) const;
@@ -105,10 +116,12 @@ class ReducedModel : public ForwardModel {
   std::shared_ptr<const Eigen::MatrixXd> shaped(const StrainTerm& term, const Eigen::VectorXd& parameters) const;
   void project();
   void project_part(std::size_t part);
+  void project_reactions();
   /// Copies a relative's projections onto the same vectors.
   void adopt_projections(const ReducedModel& relative);
   void adopt_projections(std::size_t part, const ReducedModel& relative);
   Proportions proportions(const Eigen::VectorXd& theta, bool half) const;
+  Eigen::MatrixXd relaxing_stiffness(const Eigen::VectorXd& theta) const;
   std::vector<int> active(const Eigen::VectorXd& theta, bool half) const;
   /// Returns the modes of masses and stiffnesses in these proportions, without inertia of the stiffness.
   std::shared_ptr<const ReducedModes> unit_modes(const Proportions& proportions, const Eigen::VectorXd& theta,
@@ -120,6 +133,7 @@ class ReducedModel : public ForwardModel {
   ReducedBasis basis_;
   std::vector<int> output_nodes_;     ///< nodes of the output; empty: all
   PackedMatrix basis_at_output_;      ///< rows of the basis at these nodes
+  Eigen::MatrixXd reaction_springs_;  ///< for a unit coefficient, basis size x 3 for each reaction
   std::vector<Projected> projected_;  ///< one for each part
   StrainRows strains_;                ///< strains of the basis, if a term needs them for each theta
   mutable std::mutex mutex_;
@@ -132,12 +146,13 @@ template <typename Run>
 void ReducedModel::show_together(Run& run, const std::vector<double>& times, const Show& show) const {
   constexpr std::size_t at_once = 16;
   Eigen::MatrixXd coordinates(basis_.vectors.cols(), at_once);
-  Eigen::MatrixXd u = Eigen::MatrixXd::Zero(basis_.vectors.rows(), at_once);
+  Eigen::MatrixXd u = Eigen::MatrixXd::Zero(model_.output_size(), at_once);
   for (std::size_t first = 0; first < times.size(); first += at_once) {
     const std::size_t count = std::min(at_once, times.size() - first);
     for (std::size_t i = 0; i < count; ++i) {
       run.advance(times[first + i]);
       coordinates.col(static_cast<Eigen::Index>(i)) = run.coordinates();
+      u.col(static_cast<Eigen::Index>(i)).tail(u.rows() - basis_.vectors.rows()) = run.reactions();
     }
     displacements(coordinates.leftCols(static_cast<Eigen::Index>(count)), u);
     for (std::size_t i = 0; i < count; ++i) show(first + i, u.col(static_cast<Eigen::Index>(i)));

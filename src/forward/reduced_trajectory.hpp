@@ -20,6 +20,10 @@ class ReducedTrajectory : public Trajectory {
   void advance(double time) override;
   double time() const override { return time_; }
   Eigen::VectorXd displacement() const override { return reduced_.displacement(coordinates()); }
+  Eigen::VectorXd output() const override;
+  /// Returns the reactions to prescribed motions [N], 3 rows each. `further` is added to the state: columns q, q', z...
+  Eigen::VectorXd reactions() const { return reactions_with({}); }
+  Eigen::VectorXd reactions_with(const Eigen::MatrixXd& further) const;
   Eigen::VectorXd velocity() const override { return reduced_.basis() * (modes_->shapes * state_.col(1)); }
   /// Returns the displacement in coordinates of the reduced basis.
   Eigen::VectorXd coordinates() const { return modes_->shapes * state_.col(0); }
@@ -49,15 +53,41 @@ class ReducedTrajectory : public Trajectory {
     Eigen::VectorXd parameters;
     Eigen::VectorXd modal;  ///< with the coefficient
   };
+  /// A component of a prescribed motion. Modes are damped and relax with the springs that impose it. So the springs' load
+  /// is that of the motion g with the same damping and relaxation, g + beta g' + sum gamma (g - z), tau z' = g - z.
+  struct Prescribed {
+    Load load;
+    double motion = 0.0;               ///< g at the last instant
+    Eigen::VectorXd relaxed = {};      ///< z of each branch
+    double before = 0.0, after = 0.0;  ///< load at both ends of the last step
+  };
   void collect_loads(const Eigen::VectorXd& theta);
+  double value(const Load& load, double time) const {
+    return reduced_.model().loads().value(*load.term, load.parameters, load_factor_, time);
+  }
   Eigen::VectorXd modal_force(double time) const;
+  void begin(Prescribed& motion) const;
+  void follow(Prescribed& motion, double time, double step) const;
+  Eigen::VectorXd stretch(const Eigen::MatrixXd& state) const;
+  bool fast(Eigen::Index mode) const { return modes_->square[mode] * last_.step * last_.step > 1.0; }
+  Eigen::VectorXd inertia() const;
 
   const ReducedModel& reduced_;
   double time_, load_factor_;
   std::shared_ptr<const ReducedModes> modes_;
   Eigen::VectorXd constant_force_;  ///< modal force of gravity
   std::vector<Load> loads_;
+  std::vector<Prescribed> prescribed_;
+  double mass_damping_, stiffness_damping_;  ///< alpha [1/s], beta [s]
+  std::vector<Relaxation> branches_;
   Eigen::VectorXd damping_;  ///< alpha + beta omega^2 [1/s]
+  ReactionRows reaction_rows_;
+  Eigen::VectorXd whole_force_;  ///< modal force at the last instant, with prescribed motions; empty before a step
+  struct Inertia {
+    Eigen::VectorXd mean;  ///< q'' + alpha q' over a step
+    double step = 0.0;     ///< [s]
+  };
+  Inertia last_, before_last_;  ///< of the last two steps
   ModalStep step_;
   Eigen::MatrixXd state_;  ///< columns q, q', z...; a row for each mode
   Eigen::VectorXd force_;
@@ -68,7 +98,7 @@ class ReducedTrajectories : public SeparateTrajectories {
  public:
   ReducedTrajectories(const ReducedModel& reduced, std::vector<std::unique_ptr<Trajectory>> runs)
       : SeparateTrajectories(std::move(runs)), reduced_(reduced) {}
-  void displacements(Eigen::MatrixXd& out) const override { reduced_.displacements(coordinates(), out); }
+  void outputs(Eigen::MatrixXd& out) const override;
   void combine(const Eigen::VectorXd& weights, Eigen::Ref<Eigen::VectorXd> sum) const override {
     reduced_.recover(coordinates() * weights, sum);
   }

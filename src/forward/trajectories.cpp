@@ -37,7 +37,7 @@ std::unique_ptr<Trajectory> ForwardModel::begin(const Eigen::VectorXd& theta, co
 void ForwardModel::advance_through(Trajectory& run, const std::vector<double>& times, const Show& show) const {
   for (std::size_t k = 0; k < times.size(); ++k) {
     run.advance(times[k]);
-    show(k, run.displacement());
+    show(k, run.output());
   }
 }
 
@@ -50,8 +50,8 @@ void SeparateTrajectories::advance(const std::vector<double>& times) {
   for_each_index(runs_.size(), [&](std::size_t i) { runs_[i]->advance(times[i]); });
 }
 
-void SeparateTrajectories::displacements(Eigen::MatrixXd& out) const {
-  for_each_index(runs_.size(), [&](std::size_t i) { out.col(static_cast<Eigen::Index>(i)) = runs_[i]->displacement(); });
+void SeparateTrajectories::outputs(Eigen::MatrixXd& out) const {
+  for_each_index(runs_.size(), [&](std::size_t i) { out.col(static_cast<Eigen::Index>(i)) = runs_[i]->output(); });
 }
 
 void SeparateTrajectories::combine(const Eigen::VectorXd& weights, Eigen::Ref<Eigen::VectorXd> sum) const {

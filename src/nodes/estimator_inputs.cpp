@@ -33,8 +33,11 @@ void EstimatorInputs::listen(std::uint32_t queue_size) {
   for (const LoadInput& input : load_topics(settings_)) listen_load(input, queue_size);
   int contours = 0;
   for (std::size_t i = 0; i < settings_.observations.size(); ++i) {
-    if (traits_of(settings_.observations[i].kind).image) {
+    const ObservationTraits& traits = traits_of(settings_.observations[i].kind);
+    if (traits.image) {
       listen_contour(static_cast<int>(i), ++contours, queue_size);
+    } else if (traits.force) {
+      listen_reaction(static_cast<int>(i), queue_size);
     } else {
       listen_cloud(static_cast<int>(i), queue_size);
     }
@@ -66,6 +69,19 @@ void EstimatorInputs::listen_cloud(int source, std::uint32_t queue_size) {
       topic, queue_size, [this, topic, source, &settings](const sensor_msgs::PointCloud2ConstPtr& cloud) {
         queue_.add_observation(topic, cloud->header.stamp, [this, topic, source, &settings, cloud] {
           return to_observation(*cloud, settings, source, vertex_count_, poses_.model_from(cloud->header, topic));
+        });
+      });
+}
+
+void EstimatorInputs::listen_reaction(int source, std::uint32_t queue_size) {
+  const ObservationSettings& settings = settings_.observations[static_cast<std::size_t>(source)];
+  const std::string topic = settings.topic;
+  const auto limit = std::make_shared<RateLimit>(settings.rate);
+  subscribe<geometry_msgs::WrenchStamped>(
+      topic, 10 * queue_size, [this, topic, source, limit](const geometry_msgs::WrenchStampedConstPtr& wrench) {
+        if (!limit->keep(wrench->header.stamp)) return;
+        queue_.add_observation(topic, wrench->header.stamp, [this, topic, source, wrench] {
+          return to_reaction(*wrench, source, poses_.model_from(wrench->header, topic), topic);
         });
       });
 }
@@ -121,9 +137,15 @@ void EstimatorInputs::listen_load(const LoadInput& input, std::uint32_t queue_si
     });
     return;
   }
-  subscribe<geometry_msgs::WrenchStamped>(topic, deep, [this, topic](const geometry_msgs::WrenchStampedConstPtr& wrench) {
-    queue_.add_load(topic, wrench->header.stamp,
-                    [this, topic, wrench] { return to_load(*wrench, poses_.model_from(wrench->header, topic), topic); });
+  input.kind == LoadInput::Kind::wrench ? listen_posed_load<geometry_msgs::WrenchStamped>(topic, deep)
+                                        : listen_posed_load<geometry_msgs::PoseStamped>(topic, deep);
+}
+
+template <typename Message>
+void EstimatorInputs::listen_posed_load(const std::string& topic, std::uint32_t queue_size) {
+  subscribe<Message>(topic, queue_size, [this, topic](const boost::shared_ptr<const Message>& message) {
+    queue_.add_load(topic, message->header.stamp,
+                    [this, topic, message] { return to_load(*message, poses_.model_from(message->header, topic), topic); });
   });
 }
 

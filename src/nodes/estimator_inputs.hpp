@@ -35,8 +35,11 @@ class EstimatorInputs {
 
  private:
   void listen_cloud(int source, std::uint32_t queue_size);
+  void listen_reaction(int source, std::uint32_t queue_size);
   void listen_contour(int source, int number, std::uint32_t queue_size);
   void listen_load(const LoadInput& input, std::uint32_t queue_size);
+  template <typename Message>
+  void listen_posed_load(const std::string& topic, std::uint32_t queue_size);
   Observation observe_contour(const ContourMessage& message, int source, const std::string& topic) const;
   template <typename Message, typename Add>
   void subscribe(const std::string& topic, std::uint32_t queue_size, Add add);

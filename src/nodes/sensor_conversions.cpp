@@ -18,6 +18,17 @@ void require_finite(const Eigen::Ref<const Eigen::VectorXd>& values, const std::
   }
 }
 
+Eigen::Isometry3d to_isometry(const Eigen::Vector3d& position, const std::string& position_key,
+                              const geometry_msgs::Quaternion& r, const std::string& rotation_key,
+                              const std::string& topic) {
+  const Eigen::Quaterniond rotation(r.w, r.x, r.y, r.z);
+  require_finite(position, topic + ": " + position_key);
+  if (!(std::abs(rotation.norm() - 1.0) < 1e-3)) {
+    throw InputError(topic + ": " + rotation_key, "a quaternion of length " + std::to_string(rotation.norm()), "length 1");
+  }
+  return Eigen::Translation3d(position) * rotation.normalized();
+}
+
 void require_full_image(const sensor_msgs::CameraInfo& info, const std::string& topic) {
   if (info.width == 0 || info.height == 0) {
     throw InputError(topic + ": width x height", std::to_string(info.width) + " x " + std::to_string(info.height),
@@ -51,15 +62,13 @@ void require_stamp(const std_msgs::Header& header, const std::string& topic) {
 }
 
 Eigen::Isometry3d to_isometry(const geometry_msgs::Transform& transform, const std::string& topic) {
-  const auto& r = transform.rotation;
   const auto& t = transform.translation;
-  const Eigen::Quaterniond rotation(r.w, r.x, r.y, r.z);
-  const Eigen::Vector3d translation(t.x, t.y, t.z);
-  require_finite(translation, topic + ": translation");
-  if (!(std::abs(rotation.norm() - 1.0) < 1e-3)) {
-    throw InputError(topic + ": rotation", "a quaternion of length " + std::to_string(rotation.norm()), "length 1");
-  }
-  return Eigen::Translation3d(translation) * rotation.normalized();
+  return to_isometry({t.x, t.y, t.z}, "translation", transform.rotation, "rotation", topic);
+}
+
+Eigen::Isometry3d to_isometry(const geometry_msgs::Pose& pose, const std::string& topic) {
+  const auto& p = pose.position;
+  return to_isometry({p.x, p.y, p.z}, "pose.position", pose.orientation, "pose.orientation", topic);
 }
 
 Camera to_camera(const sensor_msgs::CameraInfo& info, ObservationSettings::Projection projection,
@@ -122,6 +131,22 @@ LoadSample to_load(const geometry_msgs::WrenchStamped& wrench, const Eigen::Isom
       model_from_sensor.linear() * Eigen::Vector3d(torque.x, torque.y, torque.z);
   require_finite(sample.value, topic + ": wrench");
   return sample;
+}
+
+LoadSample to_load(const geometry_msgs::PoseStamped& pose, const Eigen::Isometry3d& model_from_sensor,
+                   const std::string& topic) {
+  return {topic, pose.header.stamp.toSec(), pose_values(model_from_sensor * to_isometry(pose.pose, topic))};
+}
+
+Observation to_reaction(const geometry_msgs::WrenchStamped& wrench, int source, const Eigen::Isometry3d& model_from_sensor,
+                        const std::string& topic) {
+  const LoadSample load = to_load(wrench, model_from_sensor, topic);
+  Observation out;
+  out.source = source;
+  out.kind = ObservationKind::reaction;
+  out.time = load.time;
+  out.points = load.value.head<3>();
+  return out;
 }
 
 }  // namespace tissue_stiffness

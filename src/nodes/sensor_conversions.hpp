@@ -1,5 +1,6 @@
 #pragma once
 
+#include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/Transform.h>
 #include <geometry_msgs/WrenchStamped.h>
 #include <sensor_msgs/CameraInfo.h>
@@ -27,6 +28,7 @@ void require_stamp(const std_msgs::Header& header, const std::string& topic);
 
 /// Throws InputError for a rotation that is no unit quaternion.
 Eigen::Isometry3d to_isometry(const geometry_msgs::Transform& transform, const std::string& topic);
+Eigen::Isometry3d to_isometry(const geometry_msgs::Pose& pose, const std::string& topic);
 
 /// Converts a cloud of entry `source` of the model's observations. It has fields x, y, z (FLOAT32 or FLOAT64, m), little
 /// endian, and for vertices and markers an integer field `vertex` or `marker`. Points that are not finite are left out of a
@@ -47,6 +49,14 @@ LoadSample to_load(const sensor_msgs::FluidPressure& pressure, const std::string
 
 /// Converts force and torque and rotates them into the model frame.
 LoadSample to_load(const geometry_msgs::WrenchStamped& wrench, const Eigen::Isometry3d& model_from_sensor,
+                   const std::string& topic);
+
+/// Converts the force on a body, measured by entry `source` of the model's observations.
+Observation to_reaction(const geometry_msgs::WrenchStamped& wrench, int source, const Eigen::Isometry3d& model_from_sensor,
+                        const std::string& topic);
+
+/// Converts a pose to the model frame.
+LoadSample to_load(const geometry_msgs::PoseStamped& pose, const Eigen::Isometry3d& model_from_sensor,
                    const std::string& topic);
 
 }  // namespace tissue_stiffness

@@ -32,6 +32,25 @@ struct TopicStamps {
   std::string jump_to(const ros::Time& stamp, const std::string& topic) const;
 };
 
+/// Keeps at most `rate` messages a second [Hz] of a topic.
+class RateLimit {
+ public:
+  explicit RateLimit(double rate) : interval_(kSlack / rate) {}
+  /// Returns whether a message with this stamp is kept. After a jump back it is.
+  bool keep(const ros::Time& stamp) {
+    if (any_ && stamp >= last_ && seconds_between(last_, stamp) < interval_) return false;
+    any_ = true;
+    last_ = stamp;
+    return true;
+  }
+
+ private:
+  static constexpr double kSlack = 0.99;  // stamps of a sensor at this very rate jitter
+  double interval_;
+  bool any_ = false;
+  ros::Time last_;
+};
+
 constexpr std::size_t kAgreeingStamps = 3;  ///< messages whose stamps agree that the clock has jumped
 
 }  // namespace tissue_stiffness

@@ -26,18 +26,20 @@ Misfit frame_misfit(double time, const Prediction& p, const Eigen::VectorXd& res
     if (!std::isfinite(e) || !std::isfinite(p.sigma[i])) continue;
     ++misfit.count;
     if (weights[i] < 0.5) ++misfit.outliers;
-    error += e * e;
     relative += std::pow(e / p.sigma[i], 2);
+    if (p.nodes[i] == kForceRow) continue;
+    ++misfit.lengths;
+    error += e * e;
     const double moved = p.measured[i] - rest[i];
     if (std::isfinite(moved)) motion += moved * moved;
     square[p.nodes[i]] += e * e;
     sigmas[p.nodes[i]] += std::pow(e / p.sigma[i], 2);
     count[p.nodes[i]] += 1.0;
   }
-  if (misfit.count > 0) {
-    misfit.rms = std::sqrt(error / misfit.count);
-    misfit.rms_sigma = std::sqrt(relative / misfit.count);
-    misfit.motion_rms = std::sqrt(motion / misfit.count);
+  if (misfit.count > 0) misfit.rms_sigma = std::sqrt(relative / misfit.count);
+  if (misfit.lengths > 0) {
+    misfit.rms = std::sqrt(error / misfit.lengths);
+    misfit.motion_rms = std::sqrt(motion / misfit.lengths);
   }
   square = (square.array() / count.array()).sqrt();  // 0/0: NaN where nothing was measured
   sigmas = (sigmas.array() / count.array()).sqrt();

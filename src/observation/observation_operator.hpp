@@ -35,6 +35,8 @@ std::unique_ptr<ObservationOperator> make_vertex_operator(const Model& model, co
 std::unique_ptr<ObservationOperator> make_marker_operator(const Model& model, const ObservationSettings& settings);
 std::unique_ptr<ObservationOperator> make_point_operator(const Model& model, const ObservationSettings& settings);
 std::unique_ptr<ObservationOperator> make_contour_operator(const Model& model, const ObservationSettings& settings);
+/// Its predictions need a run's whole output, see Model::output_size.
+std::unique_ptr<ObservationOperator> make_reaction_operator(const Model& model, const ObservationSettings& settings);
 
 /// Returns the nodes that predictions of these frames depend on, in ascending order.
 std::vector<int> observed_nodes(const std::vector<std::unique_ptr<ObservationOperator>>& operators,

@@ -13,13 +13,17 @@ constexpr double kProbe = 1e-4;  // of the body's size: displacement at which th
 }  // namespace
 
 bool sees_named_nodes(const Model& model, const Frame& frame) {
-  return !model.sensors().any() && std::all_of(frame.observations.begin(), frame.observations.end(),
-                                               [](const Observation& o) { return traits_of(o.kind).identified; });
+  return !model.sensors().any() &&
+         std::all_of(frame.observations.begin(), frame.observations.end(), [](const Observation& o) {
+           const ObservationTraits& traits = traits_of(o.kind);
+           return traits.identified || traits.force;
+         });
 }
 
 Prediction predict_frame(const Model& model, const std::vector<std::unique_ptr<ObservationOperator>>& operators,
                          const Frame& frame, const Eigen::VectorXd& theta,
-                         const Eigen::Ref<const Eigen::VectorXd>& displacement) {
+                         const Eigen::Ref<const Eigen::VectorXd>& output) {
+  const Eigen::Ref<const Eigen::VectorXd> displacement = output.head(model.fem().dof_count());
   const double since = frame.time - model.loads().first_stamp() - model.settings().time.start;
   const bool observes = model.sensors().any();
   const ObservedMotion seen =
@@ -29,15 +33,16 @@ Prediction predict_frame(const Model& model, const std::vector<std::unique_ptr<O
   std::vector<Prediction> parts;
   for (const Observation& observation : frame.observations) {
     const auto& sensor = *operators[static_cast<std::size_t>(observation.source)];
-    parts.push_back(sensor.predict(observation, u));
-    if (!traits_of(observation.kind).identified) parts.back().predicted.array() += seen.outward;
+    const ObservationTraits& traits = traits_of(observation.kind);
+    parts.push_back(sensor.predict(observation, traits.force ? output : u));
+    if (!traits.identified && !traits.force) parts.back().predicted.array() += seen.outward;
   }
   return concatenate_predictions(std::move(parts));
 }
 
 Eigen::MatrixXd predict_along(const Model& model, const std::vector<std::unique_ptr<ObservationOperator>>& operators,
                               const Frame& frame, const Eigen::VectorXd& theta,
-                              const Eigen::Ref<const Eigen::VectorXd>& displacement, const Prediction& there,
+                              const Eigen::Ref<const Eigen::VectorXd>& output, const Prediction& there,
                               const Eigen::MatrixXd& shapes) {
   const Eigen::Matrix3Xd& nodes = model.mesh().nodes;
   const double size = (nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff()).norm();
@@ -49,21 +54,22 @@ Eigen::MatrixXd predict_along(const Model& model, const std::vector<std::unique_
   };
   if (sees_named_nodes(model, frame)) {  // cheap: only those nodes are moved, one column after the other
     const std::vector<int> nodes = observed_nodes(operators, {frame});
-    Eigen::VectorXd u = displacement;
+    Eigen::VectorXd u = output;
     for (Eigen::Index i = 0; i < shapes.cols(); ++i) {
       double largest = 0.0;
       for (const int node : nodes) largest = std::max(largest, shapes.col(i).segment<3>(3 * node).cwiseAbs().maxCoeff());
       fill(i, largest, u, [&](double probe) {
         for (const int node : nodes)
-          u.segment<3>(3 * node) = displacement.segment<3>(3 * node) + probe * shapes.col(i).segment<3>(3 * node);
+          u.segment<3>(3 * node) = output.segment<3>(3 * node) + probe * shapes.col(i).segment<3>(3 * node);
       });
     }
     return out;
   }
   for_each_index(static_cast<std::size_t>(shapes.cols()), [&](std::size_t index) {
     const auto i = static_cast<Eigen::Index>(index);
-    Eigen::VectorXd u;
-    fill(i, shapes.col(i).cwiseAbs().maxCoeff(), u, [&](double probe) { u = displacement + probe * shapes.col(i); });
+    Eigen::VectorXd u = output;
+    fill(i, shapes.col(i).cwiseAbs().maxCoeff(), u,
+         [&](double probe) { u.head(shapes.rows()) = output.head(shapes.rows()) + probe * shapes.col(i); });
   });
   return out;
 }

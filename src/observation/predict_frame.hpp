@@ -10,20 +10,20 @@
 
 namespace tissue_stiffness {
 
-/// Predicts the rows of a frame's observations at one displacement (3n). The sensors' effects act on it with the parameters
-/// theta.
+/// Predicts the rows of a frame's observations from a run's output (see Model::output_size). The sensors' effects act on
+/// its displacement with the parameters theta.
 Prediction predict_frame(const Model& model, const std::vector<std::unique_ptr<ObservationOperator>>& operators,
-                         const Frame& frame, const Eigen::VectorXd& theta,
-                         const Eigen::Ref<const Eigen::VectorXd>& displacement);
+                         const Frame& frame, const Eigen::VectorXd& theta, const Eigen::Ref<const Eigen::VectorXd>& output);
 
-/// Returns true if the frame holds displacements of named nodes or markers only, and no parameter of a sensor changes them.
+/// Returns true if the frame holds only forces and displacements of named nodes or markers, and no parameter of a sensor
+/// changes them.
 bool sees_named_nodes(const Model& model, const Frame& frame);
 
-/// Returns d predicted rows / d amplitude of each of `shapes` (3n x count) about a displacement, as rows x count. `there`
-/// is the prediction at the displacement itself.
+/// Returns d predicted rows / d amplitude of each of `shapes` (3n x count) about a run's output, as rows x count. `there`
+/// is the prediction at the output itself. Rows of a force do not depend on displacements alone, so theirs are 0.
 Eigen::MatrixXd predict_along(const Model& model, const std::vector<std::unique_ptr<ObservationOperator>>& operators,
                               const Frame& frame, const Eigen::VectorXd& theta,
-                              const Eigen::Ref<const Eigen::VectorXd>& displacement, const Prediction& there,
+                              const Eigen::Ref<const Eigen::VectorXd>& output, const Prediction& there,
                               const Eigen::MatrixXd& shapes);
 
 /// Returns the frame's prediction for a body that has not moved.

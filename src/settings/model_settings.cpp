@@ -74,14 +74,14 @@ MapSettings read_map(const Value& map) {
   return out;
 }
 
-/// A contour can only belong to a region that exists.
+/// A sensor can only belong to a region that exists.
 void check_regions(const ModelSettings& model, const Value& observations) {
   std::vector<std::string> names;
   for (const RegionSettings& region : model.regions) names.push_back(region.name);
   for (std::size_t i = 0; i < model.observations.size(); ++i) {
     const std::string& region = model.observations[i].region;
     if (region.empty() || std::find(names.begin(), names.end(), region) != names.end()) continue;
-    throw InputError(observations.items()[i].at("contour").at("region").path(),
+    throw InputError(observations.items()[i].at(traits_of(model.observations[i].kind).name).at("region").path(),
                      "`" + region + "`" + did_you_mean(region, names), "the regions of this model: " + join_words(names));
   }
 }
@@ -106,6 +106,12 @@ ModelSettings read_model(const Value& root, const std::string& directory) {
   model.stale_after = read_number(root, find_key(model_keys(), "stale_after"));
   model.window = read_integer(root, find_key(model_keys(), "window"));
   if (root.has("map")) model.map = read_map(root.at("map"));
+  const bool forces = std::any_of(model.observations.begin(), model.observations.end(),
+                                  [](const ObservationSettings& o) { return traits_of(o.kind).force; });
+  if (forces && model.initial.kind == InitialSettings::Kind::from_frames) {
+    throw InputError(root.at("initial").at("velocity").path(), "from_frames",
+                     "a velocity, beside an observation `reaction`");
+  }
   root.require_all_read();
   check_regions(model, root.at("observations"));
   return model;

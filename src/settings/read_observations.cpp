@@ -11,6 +11,7 @@ namespace {
 
 using Kind = ObservationSettings::Kind;
 constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double kShareOfLargest = -0.1;  // a force sensor's bias that is not stated
 
 const KeySpec& key(const std::string& path) {
   return find_key(model_keys(), path);
@@ -47,6 +48,14 @@ void read_contour(const Value& map, ObservationSettings& observation) {
   observation.region = read_text(map, key("observations[].contour.region"));
 }
 
+void read_reaction(const Value& map, ObservationSettings& observation) {
+  observation.region = read_text(map, key("observations[].reaction.region"));
+  observation.gain = read_number(map, key("observations[].reaction.gain"));
+  const double bias = read_number(map, key("observations[].reaction.bias"));
+  observation.bias = std::isnan(bias) ? kShareOfLargest : bias;
+  observation.rate = read_number(map, key("observations[].reaction.rate"));
+}
+
 ObservationSettings read_observation(const Value& entry) {
   const std::vector<std::string> keys = entry.keys();
   std::vector<std::string> names;
@@ -70,6 +79,10 @@ ObservationSettings read_observation(const Value& entry) {
   const std::string path = "observations[]." + keys.front();
   observation.noise = read_number(map, key(path + ".noise"));
   observation.rotation = read_number(map, key(path + ".rotation_tolerance"));
+  if (observation.kind == Kind::reaction) {
+    read_reaction(map, observation);
+    return observation;
+  }
   const double offset = read_number(map, key(path + ".offset_tolerance"));
   observation.offset = std::isnan(offset) ? observation.noise : offset;
   return observation;

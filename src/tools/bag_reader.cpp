@@ -78,16 +78,13 @@ void BagReader::open() {
 
 void BagReader::check_topics() {
   for (const ObservationSettings& observation : settings_.observations) {
-    const bool image = traits_of(observation.kind).image;
-    require_topic(observation.topic, image ? "sensor_msgs/Image" : "sensor_msgs/PointCloud2");
-    if (image) require_topic(observation.camera_info, "sensor_msgs/CameraInfo");
+    const ObservationTraits& traits = traits_of(observation.kind);
+    require_topic(observation.topic, traits.message);
+    if (traits.image) require_topic(observation.camera_info, "sensor_msgs/CameraInfo");
     rosbag::View messages(bag_, rosbag::TopicQuery(observation.topic));
     frame_count_ = std::max<std::size_t>(frame_count_, messages.size());
   }
-  for (const LoadInput& input : load_inputs_) {
-    require_topic(input.topic,
-                  input.kind == LoadInput::Kind::pressure ? "sensor_msgs/FluidPressure" : "geometry_msgs/WrenchStamped");
-  }
+  for (const LoadInput& input : load_inputs_) require_topic(input.topic, message_type(input.kind));
 }
 
 void BagReader::require_topic(const std::string& topic, const std::string& type) {
@@ -142,11 +139,13 @@ bool BagReader::read_message() {
     if (topic == observation.topic && traits_of(observation.kind).image) {
       const auto image = read_as<sensor_msgs::Image>(message, file_);
       require_stamp(image->header, topic);
-      add_measurement(topic, image->header.stamp, {source, nullptr, image});
+      add_measurement(topic, image->header.stamp, {source, nullptr, image, nullptr});
+    } else if (topic == observation.topic && traits_of(observation.kind).force) {
+      add_force(message, source);
     } else if (topic == observation.topic) {
       const auto cloud = read_as<sensor_msgs::PointCloud2>(message, file_);
       require_stamp(cloud->header, topic);
-      add_measurement(topic, cloud->header.stamp, {source, cloud, nullptr});
+      add_measurement(topic, cloud->header.stamp, {source, cloud, nullptr, nullptr});
     } else if (topic == observation.camera_info) {
       const auto info = read_as<sensor_msgs::CameraInfo>(message, file_);
       cameras_[topic][info->header.stamp] = info;
@@ -181,6 +180,15 @@ void BagReader::leave_out(const std::string& name, Topic& topic) {
   topic.held.clear();
 }
 
+void BagReader::add_force(const rosbag::MessageInstance& message, int source) {
+  const std::string& topic = message.getTopic();
+  const auto wrench = read_as<geometry_msgs::WrenchStamped>(message, file_);
+  require_stamp(wrench->header, topic);
+  const double rate = settings_.observations[static_cast<std::size_t>(source)].rate;
+  if (limits_.try_emplace(source, rate).first->second.keep(wrench->header.stamp))
+    add_measurement(topic, wrench->header.stamp, {source, nullptr, nullptr, wrench});
+}
+
 void BagReader::add_measurement(const std::string& topic, const ros::Time& stamp, Measurement measurement) {
   accept(topic, stamp, [this, stamp, measurement = std::move(measurement)] {
     note_stamp(stamp);
@@ -199,12 +207,18 @@ void BagReader::add_load(const rosbag::MessageInstance& message, const LoadInput
     add_load(input.topic, pressure->header.stamp, to_load(*pressure, input.topic));
     return;
   }
-  const auto wrench = read_as<geometry_msgs::WrenchStamped>(message, file_);
-  require_stamp(wrench->header, input.topic);
+  input.kind == LoadInput::Kind::wrench ? add_posed_load<geometry_msgs::WrenchStamped>(message, input.topic)
+                                        : add_posed_load<geometry_msgs::PoseStamped>(message, input.topic);
+}
+
+template <typename Message>
+void BagReader::add_posed_load(const rosbag::MessageInstance& message, const std::string& topic) {
+  const auto read = read_as<Message>(message, file_);
+  require_stamp(read->header, topic);
   std::string reason;
-  const auto model_from_sensor = pose(wrench->header, reason);
-  if (!model_from_sensor) throw InputError(file_ + ": " + input.topic, reason, "a frame with a pose in " + model_frame_);
-  add_load(input.topic, wrench->header.stamp, to_load(*wrench, *model_from_sensor, input.topic));
+  const auto model_from_sensor = pose(read->header, reason);
+  if (!model_from_sensor) throw InputError(file_ + ": " + topic, reason, "a frame with a pose in " + model_frame_);
+  add_load(topic, read->header.stamp, to_load(*read, *model_from_sensor, topic));
 }
 
 void BagReader::add_load(const std::string& topic, const ros::Time& stamp, const LoadSample& sample) {
@@ -245,9 +259,15 @@ std::optional<Instant> BagReader::next() {
 
 void BagReader::convert(const Measurement& measurement, Instant& instant) {
   if (measurement.image) return segment(measurement, instant);
-  const auto model_from_sensor = pose(measurement.cloud->header, instant.reason);
+  const std_msgs::Header& header = measurement.wrench ? measurement.wrench->header : measurement.cloud->header;
+  const auto model_from_sensor = pose(header, instant.reason);
   if (!model_from_sensor) return;
   const ObservationSettings& settings = settings_.observations[static_cast<std::size_t>(measurement.source)];
+  if (measurement.wrench) {
+    instant.frame.observations.push_back(
+        to_reaction(*measurement.wrench, measurement.source, *model_from_sensor, settings.topic));
+    return;
+  }
   instant.frame.observations.push_back(
       to_observation(*measurement.cloud, settings, measurement.source, vertex_count_, *model_from_sensor));
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
@@ -72,6 +73,7 @@ class BagReader {
     int source;
     sensor_msgs::PointCloud2ConstPtr cloud;
     sensor_msgs::ImageConstPtr image;
+    geometry_msgs::WrenchStampedConstPtr wrench;
   };
 
   void open();
@@ -93,8 +95,11 @@ class BagReader {
   /// Calls `put` once the stamp is believed.
   void accept(const std::string& topic, const ros::Time& stamp, std::function<void()> put);
   void leave_out(const std::string& name, Topic& topic);
+  void add_force(const rosbag::MessageInstance& message, int source);
   void add_measurement(const std::string& topic, const ros::Time& stamp, Measurement measurement);
   void add_load(const rosbag::MessageInstance& message, const LoadInput& input);
+  template <typename Message>
+  void add_posed_load(const rosbag::MessageInstance& message, const std::string& topic);
   void add_load(const std::string& topic, const ros::Time& stamp, const LoadSample& sample);
   void add_poses(const rosbag::MessageInstance& message, bool is_static);
   void note_stamp(const ros::Time& stamp);
@@ -122,6 +127,7 @@ class BagReader {
   tf2::BufferCore poses_;
   std::map<int, std::unique_ptr<Segmenter>> segmenters_;  ///< by index of the observation
   std::map<int, std::size_t> images_;                     ///< images that were segmented, by index of the observation
+  std::map<int, RateLimit> limits_;                       ///< of forces, by index of the observation
   std::map<int, std::size_t> come_;                       ///< all images, by index of the observation
   std::vector<Picture> pictures_;
   std::map<std::string, std::map<ros::Time, sensor_msgs::CameraInfoConstPtr>> cameras_;

@@ -53,6 +53,7 @@ struct NoiseSum {
   double rows = 0.0;
   void add(const Frame& frame, const ModelSettings& settings) {
     for (const Observation& observation : frame.observations) {
+      if (traits_of(observation.kind).force) continue;
       const double noise = settings.observations[static_cast<std::size_t>(observation.source)].noise;
       const double count =
           static_cast<double>(observation.contour ? observation.contour->size() : observation.points.cols());
@@ -150,9 +151,9 @@ class Run {
       recorder.add(frame);
     };
     for (const Misfit& misfit : estimator_.free_run(record)) {
-      error += misfit.count * misfit.rms * misfit.rms;
-      motion += misfit.count * misfit.motion_rms * misfit.motion_rms;
-      count += misfit.count;
+      error += misfit.lengths * misfit.rms * misfit.rms;
+      motion += misfit.lengths * misfit.motion_rms * misfit.motion_rms;
+      count += misfit.lengths;
     }
     run_.results.rms_error = std::sqrt(error / count);
     run_.results.relative_error = std::sqrt(error / motion);

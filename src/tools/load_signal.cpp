@@ -60,7 +60,7 @@ Signal read_steps(const Value& map) {
 Signal read_csv(const Value& map, const std::string& directory) {
   std::string file = read_text(map, key("csv.file"));
   if (!file.empty() && file[0] != '/') file = directory + "/" + file;
-  const auto course = std::make_shared<const Course>(Course::from_csv(file, 1));
+  const auto course = std::make_shared<const Course>(Course::from_csv(file, LoadInput::Kind::pressure));
   return [course](double t) { return course->value(t, 0); };
 }
 

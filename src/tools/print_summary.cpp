@@ -103,9 +103,11 @@ void print_summary(const EstimationRun& run, const Paint& paint, std::ostream& o
     out << paint.warning("left out") << "      " << run.broken_stamps << " messages with broken stamps; the last one is on "
         << run.last_broken_stamp << "\n";
   }
-  print_line(out, "rms error     %s mm, %.3g of the noise; %.3g %% of the motion",
-             short_number(1e3 * results.rms_error, 4).c_str(), results.rms_error / results.noise_rms,
-             100.0 * results.relative_error);
+  if (std::isfinite(results.rms_error)) {  // forces alone have none
+    print_line(out, "rms error     %s mm, %.3g of the noise; %.3g %% of the motion",
+               short_number(1e3 * results.rms_error, 4).c_str(), results.rms_error / results.noise_rms,
+               100.0 * results.relative_error);
+  }
   print_line(out, "NIS           %.3g a degree of freedom, p = %.2g", results.nis_mean_per_dof, results.nis_p_value);
   if (results.map) print_map(*results.map, out);
   print_stages(run, paint, out);

@@ -1,6 +1,7 @@
 #include "tools/recording_writer.hpp"
 
 #include <cv_bridge/cv_bridge.h>
+#include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/FluidPressure.h>
@@ -83,6 +84,20 @@ void RecordingWriter::write_load(const LoadInput& input, const ros::Time& stamp,
     pressure.header = header_of(stamp, "model");
     pressure.fluid_pressure = value[0];
     bag_.write(input.topic, stamp, pressure);
+    return;
+  }
+  if (input.kind == LoadInput::Kind::pose) {
+    geometry_msgs::PoseStamped pose;
+    pose.header = header_of(stamp, "model");
+    pose.pose.position.x = value[0];
+    pose.pose.position.y = value[1];
+    pose.pose.position.z = value[2];
+    const Eigen::Quaterniond rotation(Eigen::Matrix3d(Eigen::Map<const Eigen::Matrix3d>(value.data() + 3)));
+    pose.pose.orientation.x = rotation.x();
+    pose.pose.orientation.y = rotation.y();
+    pose.pose.orientation.z = rotation.z();
+    pose.pose.orientation.w = rotation.w();
+    bag_.write(input.topic, stamp, pose);
     return;
   }
   geometry_msgs::WrenchStamped wrench;

@@ -16,9 +16,13 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Eigen::VectorXd read_direction(const Value& term, LoadInput::Kind kind) {
   if (kind == LoadInput::Kind::pressure) return Eigen::VectorXd::Ones(1);
-  Eigen::VectorXd wrench = Eigen::VectorXd::Zero(6);
-  wrench.head<3>() = term.at("direction").as_vector3("");
-  return wrench;
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(6);
+  if (kind == LoadInput::Kind::pose && term.has("axis")) {
+    out.tail<3>() = term.at("axis").as_vector3("").normalized();
+  } else {
+    out.head<3>() = term.at("direction").as_vector3("");
+  }
+  return out;
 }
 
 LoadScene read_load(const Value& map, const LoadInput& input, const std::string& directory) {
@@ -26,6 +30,7 @@ LoadScene read_load(const Value& map, const LoadInput& input, const std::string&
   load.input = input;
   load.rate = read_number(map, scene_key("loads.*.rate"));
   load.noise = read_number(map, scene_key("loads.*.noise"));
+  if (map.has("position")) load.position = map.at("position").as_vector3("m");
   for (const Value& term : map.at("terms").items()) {
     load.terms.push_back({read_direction(term, input.kind), read_signal(term, directory)});
   }
@@ -62,7 +67,12 @@ SensorScene read_sensor(const Value* map, const ObservationSettings& observation
 Eigen::VectorXd LoadScene::value(double time) const {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(terms.front().direction.size());
   for (const Term& term : terms) sum += term.signal(time) * term.direction;
-  return sum;
+  if (input.kind != LoadInput::Kind::pose) return sum;
+  const double angle = sum.tail<3>().norm();
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation() = position + sum.head<3>();
+  if (angle > 0.0) pose.linear() = Eigen::AngleAxisd(angle, sum.tail<3>() / angle).toRotationMatrix();
+  return pose_values(pose);
 }
 
 Scene load_scene(const std::string& file) {

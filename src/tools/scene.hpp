@@ -15,7 +15,8 @@
 namespace tissue_stiffness {
 
 /// A measured load, which is a sum of terms and is published at a rate. `direction` times a term's magnitude is the value.
-/// It is 1 for a pressure, and force and torque in the model frame for a wrench.
+/// It is 1 for a pressure, and force and torque in the model frame for a wrench. For a pose it is a displacement [m] and a
+/// rotation vector [rad], and the value is that of pose_values.
 struct LoadScene {
   struct Term {
     Eigen::VectorXd direction;
@@ -23,8 +24,9 @@ struct LoadScene {
   };
   LoadInput input;
   std::vector<Term> terms;
-  double rate = 0.0;   ///< [Hz]
-  double noise = 0.0;  ///< 1 sigma of the published load; the acting load has none [N or Pa]
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< of a pose before it moves [m]
+  double rate = 0.0;                                   ///< [Hz]
+  double noise = 0.0;  ///< 1 sigma of the published load; the acting load has none [N, Pa or m]
 
   Eigen::VectorXd value(double time) const;
 };
@@ -43,7 +45,7 @@ struct ImageScene {
 
 /// How one entry of `observations` is recorded.
 struct SensorScene {
-  double noise = 0.0;         ///< for clouds, 1 sigma of a coordinate [m]
+  double noise = 0.0;         ///< for clouds, 1 sigma of a coordinate [m]; for a reaction [N]
   double memory = 0.0;        ///< correlation of a tracked point's noise from one frame to the next
   int every = 1;              ///< each `every`-th vertex of the surface is recorded, in ascending order
   std::vector<int> vertices;  ///< vertices of the file's mesh; used instead of `every` if not empty

@@ -99,6 +99,8 @@ class Sensor {
     } else if (observation_.kind == Kind::markers) {
       ids_ = Eigen::VectorXi::LinSpaced(observation_.rest.cols(), 0, static_cast<int>(observation_.rest.cols()) - 1);
       operator_ = make_marker_operator(model, observation_);
+    } else if (observation_.kind == Kind::reaction) {
+      operator_ = make_reaction_operator(model, observation_);
     }
     if (operator_) operator_->check(seen());
   }
@@ -107,7 +109,10 @@ class Sensor {
     if (scene_.image) writer.write_pose(frame_, kFirstStamp, scene_.image->camera.model_from_sensor);
   }
 
-  void record(const ObservedMotion& motion, int frame, const ros::Time& stamp, RecordingWriter& writer) {
+  /// `output` is that of the run, whose motion the sensors see as `motion`.
+  void record(const Eigen::VectorXd& output, const ObservedMotion& motion, int frame, const ros::Time& stamp,
+              RecordingWriter& writer) {
+    if (traits_of(observation_.kind).force) return record_force(output, stamp, writer);
     const bool named = observation_.kind == Kind::vertices || observation_.kind == Kind::markers;
     const Eigen::VectorXd u = named ? motion.displacement : swollen(motion);
     if (scene_.image) {
@@ -125,6 +130,12 @@ class Sensor {
   }
 
  private:
+  void record_force(const Eigen::VectorXd& output, const ros::Time& stamp, RecordingWriter& writer) {
+    Eigen::VectorXd wrench = Eigen::VectorXd::Zero(6);
+    wrench.head<3>() = operator_->predict(seen(), output).predicted + noise(1).col(0);
+    writer.write_load({observation_.topic, LoadInput::Kind::wrench}, stamp, wrench);
+  }
+
   /// Returns the noise of this frame. In time it is an autoregression with coefficient `memory` and a constant variance.
   Eigen::Matrix3Xd noise(Eigen::Index count) {
     Eigen::Matrix3Xd fresh(3, count);
@@ -140,7 +151,7 @@ class Sensor {
   Observation seen() const {
     Observation observation;
     observation.kind = observation_.kind;
-    observation.points = Eigen::Matrix3Xd::Zero(3, ids_.size());
+    observation.points = Eigen::Matrix3Xd::Zero(3, traits_of(observation_.kind).force ? 1 : ids_.size());
     observation.ids = ids_;
     return observation;
   }
@@ -193,6 +204,7 @@ void require_known(const Scene& scene, const Model& model) {
 void drive(const Scene& scene, Model& model) {
   model.loads().set_first_stamp(kFirstStamp.toSec());
   for (const LoadScene& load : scene.loads) {
+    model.loads().courses().at(load.input.topic)->set_smoothing(0.0);
     const auto count = static_cast<int>(std::ceil(scene.duration / scene.step)) + 1;
     for (int k = 0; k <= count; ++k) {
       const double time = k * scene.step;
@@ -208,7 +220,7 @@ void publish_loads(const Scene& scene, RecordingWriter& writer) {
     std::normal_distribution<double> normal;
     const auto count = static_cast<int>(std::ceil(scene.duration * load.rate));
     for (int k = 0; k <= count; ++k) {
-      Eigen::VectorXd value = load.value(k / load.rate);
+      Eigen::VectorXd value = load.value(k / load.rate);  // of a pose, the position comes first
       for (Eigen::Index c = 0; c < std::min<Eigen::Index>(value.size(), 3); ++c) value[c] += load.noise * normal(random);
       writer.write_load(load.input, kFirstStamp + ros::Duration(k / load.rate), value);
     }
@@ -250,9 +262,9 @@ SimulationSummary simulate_scene(const Scene& scene, const std::string& recordin
   for (int k = 0; k < total; ++k) {
     const ros::Time stamp = kFirstStamp + ros::Duration(k / scene.rate);
     trajectory->advance(stamp.toSec() - model.sensors().delay(theta));
-    const Eigen::VectorXd u = trajectory->displacement();
+    const Eigen::VectorXd output = trajectory->output(), u = output.head(model.fem().dof_count());
     const ObservedMotion seen = model.sensors().observe(theta, stamp.toSec() - start, u);
-    for (const auto& sensor : sensors) sensor->record(seen, k, stamp, writer);
+    for (const auto& sensor : sensors) sensor->record(output, seen, k, stamp, writer);
     square += u.squaredNorm() / summary.nodes;
     const Eigen::Map<const Eigen::Matrix3Xd> moved(u.data(), 3, u.size() / 3);
     summary.motion_max = std::max(summary.motion_max, moved.colwise().norm().maxCoeff());

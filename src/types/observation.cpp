@@ -5,8 +5,11 @@
 namespace tissue_stiffness {
 
 const ObservationTraits& traits_of(ObservationKind kind) {
-  static const ObservationTraits vertices{"vertices", true, false}, markers{"markers", true, false},
-      points{"points", false, false}, contour{"contour", false, true};
+  static const char* const cloud = "sensor_msgs/PointCloud2";
+  static const ObservationTraits vertices{"vertices", true, false, false, cloud},
+      markers{"markers", true, false, false, cloud}, points{"points", false, false, false, cloud},
+      contour{"contour", false, true, false, "sensor_msgs/Image"},
+      reaction{"reaction", false, false, true, "geometry_msgs/WrenchStamped"};
   switch (kind) {
     case ObservationKind::vertices:
       return vertices;
@@ -15,14 +18,17 @@ const ObservationTraits& traits_of(ObservationKind kind) {
     case ObservationKind::points:
       return points;
     case ObservationKind::contour:
+      return contour;
+    case ObservationKind::reaction:
       break;
   }
-  return contour;
+  return reaction;
 }
 
 Eigen::Index Observation::row_count() const {
   const ObservationTraits& traits = traits_of(kind);
-  return traits.image ? contour->size() : traits.identified ? 3 * ids.size() : points.cols();
+  if (traits.image) return contour->size();
+  return traits.identified || traits.force ? points.size() : points.cols();
 }
 
 bool Observation::holds_anything() const {

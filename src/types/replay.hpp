@@ -10,7 +10,7 @@ namespace tissue_stiffness {
 /// outline.
 struct ReplayTrack {
   std::string name;                     ///< "vertex 12", "outline 1"
-  std::string unit;                     ///< m or pixel
+  std::string unit;                     ///< m, N or pixel
   std::vector<std::string> components;  ///< x, y, z of a point; left, right, top, bottom of an outline; distance
   Eigen::MatrixXd measured, predicted;  ///< components x frames; NaN where there is no value
 };

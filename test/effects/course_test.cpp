@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <random>
 
 #include "../box_model.hpp"
 
@@ -15,7 +17,7 @@ Eigen::VectorXd one(double value) {
 }
 
 TEST(Course, IsLinearBetweenSamplesAndHeldOutside) {
-  Course course(1);
+  Course course(LoadInput::Kind::pressure);
   EXPECT_EQ(course.value(3.0, 0), 0.0);
   course.add(1.0, one(10.0));
   EXPECT_EQ(course.value(-5.0, 0), 10.0);
@@ -30,14 +32,14 @@ TEST(Course, IsLinearBetweenSamplesAndHeldOutside) {
 }
 
 TEST(Course, KeepsTheLaterOfTwoSamplesAtOneTime) {
-  Course course(1);
+  Course course(LoadInput::Kind::pressure);
   course.add(1.0, one(10.0));
   course.add(1.0, one(20.0));
   EXPECT_EQ(course.value(1.0, 0), 20.0);
 }
 
 TEST(Course, InterpolatesEachComponent) {
-  Course course(6);
+  Course course(LoadInput::Kind::wrench);
   Eigen::VectorXd wrench(6);
   wrench << 1, 2, 3, 4, 5, 6;
   course.add(0.0, wrench);
@@ -46,7 +48,7 @@ TEST(Course, InterpolatesEachComponent) {
 }
 
 TEST(Course, ForgetsWhatItWasFed) {
-  Course course(1);
+  Course course(LoadInput::Kind::pressure);
   course.add(1.0, one(10.0));
   course.clear();
   EXPECT_TRUE(course.empty());
@@ -56,12 +58,12 @@ TEST(Course, ForgetsWhatItWasFed) {
 class CsvCourse : public testing::Test {
  protected:
   ~CsvCourse() override { std::remove(file_.c_str()); }
-  Course read(const std::string& content, int components = 1) {
+  Course read(const std::string& content, LoadInput::Kind kind = LoadInput::Kind::pressure) {
     std::ofstream(file_) << content;
-    return Course::from_csv(file_, components);
+    return Course::from_csv(file_, kind);
   }
-  std::string refused(const std::string& content, int components = 1) {
-    return refusal([&] { read(content, components); });
+  std::string refused(const std::string& content, LoadInput::Kind kind = LoadInput::Kind::pressure) {
+    return refusal([&] { read(content, kind); });
   }
   const std::string file_ = testing::TempDir() + "course_test.csv";
 };
@@ -69,7 +71,7 @@ class CsvCourse : public testing::Test {
 TEST_F(CsvCourse, ReadsRowsAndCountsFromTheFirstStamp) {
   Course course = read("time,pressure\n# at rest\n0, 0\n\n0.5,100\r\n1.0,300\n");
   EXPECT_DOUBLE_EQ(course.value(0.75, 0), 200.0);
-  course.shift(1000.0);
+  course.start(1000.0, 1000.0);
   EXPECT_DOUBLE_EQ(course.value(1000.75, 0), 200.0);
   course.clear();  // of measured samples, not of the file's
   EXPECT_DOUBLE_EQ(course.value(1000.75, 0), 200.0);
@@ -78,9 +80,87 @@ TEST_F(CsvCourse, ReadsRowsAndCountsFromTheFirstStamp) {
 TEST_F(CsvCourse, NamesTheLineThatDoesNotFit) {
   EXPECT_NE(refused("0,1\n0.5,soft\n").find("course_test.csv:2"), std::string::npos);
   EXPECT_NE(refused("0,1\nsoft,2\n").find("course_test.csv:2"), std::string::npos);
-  EXPECT_NE(refused("0,1,2,3,4,5,6\n0.5,1,2\n", 6).find("course_test.csv:2"), std::string::npos);
+  EXPECT_NE(refused("0,1,2,3,4,5,6\n0.5,1,2\n", LoadInput::Kind::wrench).find("course_test.csv:2"), std::string::npos);
   EXPECT_NE(refused("time,pressure\n").find("no rows"), std::string::npos);
-  EXPECT_NE(refusal([] { Course::from_csv("/nowhere/p.csv", 1); }).find("/nowhere/p.csv"), std::string::npos);
+  EXPECT_NE(refusal([] { Course::from_csv("/nowhere/p.csv", LoadInput::Kind::pressure); }).find("/nowhere/p.csv"),
+            std::string::npos);
+}
+
+// A tool that starts anywhere, turned, and turns on by 0.3 rad about its own axis while it moves.
+TEST(Course, GivesTheMotionOfAPoseSinceRest) {
+  const Eigen::Matrix3d before = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix(),
+                        turn = Eigen::AngleAxisd(0.3, Eigen::Vector3d(0, 1, 2).normalized()).toRotationMatrix();
+  const Eigen::Vector3d at(0.5, -0.2, 0.3), moved(0.51, -0.2, 0.29);
+  Course course(LoadInput::Kind::pose);
+  course.set_smoothing(0.0);
+  course.start(10.0, 11.0);
+  course.add(10.0, pose_values(Eigen::Translation3d(9, 9, 9) * Eigen::Quaterniond::Identity()));  // before rest
+  course.add(11.0, pose_values(Eigen::Translation3d(at) * Eigen::Quaterniond(before)));
+  course.add(12.0, pose_values(Eigen::Translation3d(moved) * Eigen::Quaterniond(turn * before)));
+  const auto place = [&](double time, const Eigen::Vector3d& x) {
+    Eigen::Vector3d out = x;
+    for (int i = 0; i < 3; ++i) {
+      out[i] += course.value(time, i);
+      for (int j = 0; j < 3; ++j) out[i] += course.value(time, 3 + 3 * j + i) * x[j];
+    }
+    return out;
+  };
+  const Eigen::Vector3d x(0.48, -0.25, 0.31);
+  EXPECT_LT((place(11.0, x) - x).norm(), 1e-15);
+  EXPECT_LT((place(12.0, x) - (moved + turn * (x - at))).norm(), 1e-15);
+  EXPECT_LT((place(11.5, at) - 0.5 * (at + moved)).norm(), 1e-15);
+}
+
+// An arm at 200 Hz whose encoders are noisy: the path is near its true one, and its accelerations are.
+TEST(Course, SmoothesThePosesOfAnArm) {
+  const auto truth = [](double t) { return 0.003 * (1.0 - std::cos(2.0 * M_PI * t)); };
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0.0, 2e-5);
+  Course smooth(LoadInput::Kind::pose), rough(LoadInput::Kind::pose);
+  rough.set_smoothing(0.0);
+  for (int k = 0; k <= 400; ++k) {
+    const double t = 0.005 * k;
+    const Eigen::VectorXd pose =
+        pose_values(Eigen::Translation3d(truth(t) + noise(random), 0, 0) * Eigen::AngleAxisd::Identity());
+    smooth.add(t, pose);
+    rough.add(t, pose);
+  }
+  const auto errors = [&](const Course& course) {
+    const double h = 0.004;
+    double place = 0.0, acceleration = 0.0;
+    for (double t = 0.1; t < 1.9; t += h) {
+      const double off = course.value(0.1, 0) - truth(0.1);
+      place = std::max(place, std::abs(course.value(t, 0) - truth(t) - off));
+      const double second = course.value(t + h, 0) - 2.0 * course.value(t, 0) + course.value(t - h, 0);
+      acceleration =
+          std::max(acceleration, std::abs(second / (h * h) - 0.003 * 4.0 * M_PI * M_PI * std::cos(2.0 * M_PI * t)));
+    }
+    return Eigen::Vector2d(place, acceleration);
+  };
+  const Eigen::Vector2d of_smooth = errors(smooth), of_rough = errors(rough);
+  std::printf("smooth: %.1e m, %.2f m/s^2; rough: %.1e m, %.2f m/s^2\n", of_smooth[0], of_smooth[1], of_rough[0],
+              of_rough[1]);
+  EXPECT_LT(of_smooth[0], 0.75 * of_rough[0]);
+  EXPECT_LT(of_smooth[1], 0.35 * of_rough[1]);
+}
+
+TEST(Course, OrderDoesNotMatterToAPath) {
+  Course one(LoadInput::Kind::pose), other(LoadInput::Kind::pose);
+  const auto pose = [](int k) {
+    return pose_values(Eigen::Translation3d(0.001 * k * k, 0, 0) * Eigen::AngleAxisd(0.01 * k, Eigen::Vector3d::UnitZ()));
+  };
+  for (int k = 0; k < 20; ++k) one.add(0.01 * k, pose(k));
+  for (int k = 19; k >= 0; --k) other.add(0.01 * k, pose(k));
+  for (int i = 0; i < 12; ++i) {
+    for (double t = -0.05; t < 0.25; t += 0.003) EXPECT_DOUBLE_EQ(one.value(t, i), other.value(t, i)) << t;
+  }
+}
+
+TEST_F(CsvCourse, ReadsPosesAndRefusesAQuaternionThatIsNone) {
+  const Course course = read("time,x,y,z,qx,qy,qz,qw\n0,0,0,0.1,0,0,0,1\n1,0,0,0.09,0,0,0,1\n", LoadInput::Kind::pose);
+  EXPECT_NEAR(course.value(1.0, 2), -0.01, 1e-15);
+  EXPECT_NEAR(course.value(1.0, 4), 0.0, 1e-15);
+  EXPECT_NE(refused("0,0,0,0.1,0,0,0,2\n", LoadInput::Kind::pose).find("course_test.csv:1"), std::string::npos);
 }
 
 }  // namespace

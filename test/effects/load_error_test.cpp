@@ -48,7 +48,7 @@ TEST(LoadErrorBasis, SharesAreOfTheLargestLoad) {
 }
 
 TEST(Course, TakesAnErrorOffTheSamplesAndThoseToCome) {
-  Course course(6);
+  Course course(LoadInput::Kind::wrench);
   const auto sample = [](double time) {
     Eigen::VectorXd value = Eigen::VectorXd::Zero(6);
     value.head<3>() = ramp(time);

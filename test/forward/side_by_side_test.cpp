@@ -86,7 +86,7 @@ TEST_P(SideBySide, AgreesWithNewtonsMethod) {
   Eigen::MatrixXd u = Eigen::MatrixXd::Zero(model.fem().dof_count(), 3);
   for (int k = 1; k <= 40; ++k) {
     together->advance(std::vector<double>(3, kStep * k));
-    together->displacements(u);
+    together->outputs(u);
     for (std::size_t i = 0; i < exact.size(); ++i) {
       exact[i].step(kStep);
       largest = std::max(largest, exact[i].displacement().cwiseAbs().maxCoeff());
@@ -110,7 +110,7 @@ TEST(SideBySide, LeavesRunsAsTheyAreAlone) {
   const auto together = full.start_all(thetas, 0.0);
   Eigen::MatrixXd u = Eigen::MatrixXd::Zero(model.fem().dof_count(), 3);
   for (int k = 1; k <= 10; ++k) together->advance(std::vector<double>(3, 0.03 * k));
-  together->displacements(u);
+  together->outputs(u);
   for (std::size_t i = 0; i < thetas.size(); ++i) {
     const auto alone = full.start(thetas[i], 0.0);
     for (int k = 1; k <= 10; ++k) alone->advance(0.03 * k);
@@ -136,7 +136,7 @@ TEST(SideBySide, StepsAsTheMassOfEachAllows) {
     alone->advance(0.001 * k);
   }
   Eigen::MatrixXd u = Eigen::MatrixXd::Zero(model.fem().dof_count(), 2);
-  together->displacements(u);
+  together->outputs(u);
   EXPECT_LT((alone->displacement() - u.col(1)).cwiseAbs().maxCoeff(), 1e-6) << "m";
 }
 

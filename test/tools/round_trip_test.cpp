@@ -59,6 +59,44 @@ TEST_F(RoundTrip, FindsTheModulusFromImages) {
   EXPECT_LT((outline.measured - outline.predicted).cwiseAbs().maxCoeff(), 3.0);  // pixels
 }
 
+// A jaw holds the free end, retracts it and turns it. Only the jaw's pose and the force on it are known.
+TEST_F(RoundTrip, FindsTheModulusFromAPoseAndAForce) {
+  const auto model = [&](const std::string& name, const std::string& modulus, const std::string& more) {
+    return write(name,
+                 "mesh: {file: bar.vtk, discretisation_error: false}\n"
+                 "regions:\n"
+                 "  clamp: {box: {min: [-1.0e-6, -1, -1], max: [1.0e-6, 1, 1]}}\n"
+                 "  jaw: {box: {min: [0.099999, -1, -1], max: [1, 1, 1]}}\n"
+                 "effects:\n"
+                 "- inertia: {density: 1060}\n"
+                 "- elasticity: {law: linear, young_modulus: " +
+                     modulus +
+                     ", poisson_ratio: 0.45}\n"
+                     "- fixed: {region: clamp}\n"
+                     "- moved: {region: jaw, topic: /jaw/pose, noise: 0, delay: 0}\n"
+                     "- viscous_damping: {beta: 0.01}\n"
+                     "observations:\n"
+                     "- reaction: {topic: /jaw/wrench, region: jaw, noise: 2e-3, gain: 0, bias: 0}\n" +
+                     more);
+  };
+  const std::string scene =
+      model("scene.yaml", "2.0e4",
+            "simulation:\n"
+            "  {duration: 1.2, rate: 40, step: 0.001, loads: {/jaw/pose: {rate: 200, position: [0.1, 0, 0],\n"
+            "   terms: [{direction: [0.8, 0, 0.6], raised_cosine: {amplitude: 0.004, frequency: 1}},\n"
+            "           {axis: [0, 1, 0], raised_cosine: {amplitude: 0.1, frequency: 1}}]}}}\n");
+  simulate_scene(load_scene(scene), path("recording.bag"), nothing);
+  const EstimationRun run =
+      estimate_recording(model("model.yaml", "{prior: 5.0e4, factor: 3}", ""), path("recording.bag"), 0, nothing, {});
+  ASSERT_EQ(run.results.parameters.size(), 1U);
+  EXPECT_NEAR(run.results.parameters[0].mean, 2e4, 0.01 * 2e4);
+  EXPECT_EQ(run.results.identifiable.at("elasticity.young_modulus").verdict, "absolute");
+  const ReplayTrack& force = run.showing.replays.at(0).tracks.at(0);
+  EXPECT_EQ(force.unit, "N");
+  EXPECT_GT(force.measured.cwiseAbs().maxCoeff(), 0.1);
+  EXPECT_LT((force.measured - force.predicted).cwiseAbs().maxCoeff(), 0.02);
+}
+
 TEST_F(RoundTrip, GivesTheSameBytesForTheSameInput) {
   const EstimationRun first = run(4e5, vertices(), "simulation: {duration: 0.2, rate: 60, step: 0.001}\n");
   const EstimationRun second = estimate_recording(model_, path("recording.bag"), 0, nothing, {});

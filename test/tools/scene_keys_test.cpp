@@ -13,6 +13,7 @@ const char* const kSimulation = R"(effects:
 - inertia: {density: 1060}
 - elasticity: {law: linear, young_modulus: 1e4, poisson_ratio: 0.45}
 - traction: {region: all, topic: /w}
+- moved: {region: all, topic: /m}
 observations:
 - vertices: {topic: /v, noise: 1e-4}
 - points: {topic: /p, noise: 1e-4}
@@ -36,6 +37,11 @@ simulation:
       - {direction: [0, 0, 1], raised_cosine: {amplitude: 1, frequency: 1}}
       - {direction: [0, 0, 1], steps: {times: [0, 1], values: [1, 2]}}
       - {direction: [0, 0, 1], csv: {file: course.csv}}
+    /m:
+      rate: 100
+      position: [0, 0, 1]
+      terms:
+      - {axis: [0, 0, 1], sine: {amplitude: 0.1, frequency: 1}}
   sensors:
     /v: {noise: 1e-4, memory: 0.5, every: 2}
     /p: {count: 100}

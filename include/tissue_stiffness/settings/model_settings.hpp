@@ -67,13 +67,16 @@ struct ObservationSettings {
   Kind kind = Kind::vertices;
   std::string topic;        ///< topic of the point cloud, or of the images for a contour
   std::string camera_info;  ///< topic of the calibration; only for a contour
-  double noise = 0.0;       ///< 1 sigma [m]
+  double noise = 0.0;       ///< 1 sigma [m]; of a reaction [N]
   double rotation = 0.0;    ///< tolerance of the sensor's orientation, 1 sigma about each axis [rad]
   double offset = 0.0;      ///< tolerance of the sensor's position, 1 sigma along each axis [m]
   Eigen::Matrix3Xd rest;    ///< only for markers: their positions at rest [m]
   SegmentationSettings segmentation;
   Projection projection = Projection::silhouette;
-  std::string region;  ///< only for a contour: part of the surface it belongs to; empty: all
+  std::string region;  ///< contour: part of the surface it belongs to, empty: all; reaction: the region that is pushed
+  double gain = 0.0;   ///< only for a reaction: relative error of the force's scale, 1 sigma
+  double bias = 0.0;   ///< the same: constant offset of each component, 1 sigma [N]; negative: a share of the largest force
+  double rate = 0.0;   ///< the same: most measurements a second [Hz]
 };
 
 struct TimeSettings {

@@ -8,8 +8,9 @@ namespace tissue_stiffness {
 struct Misfit {
   double time = 0.0;            ///< [s]
   int count = 0;                ///< number of rows that were compared
+  int lengths = 0;              ///< those of them that are lengths, and no forces
   int outliers = 0;             ///< number of rows whose weight is below one half
-  double rms = 0.0;             ///< rms of the error [m]
+  double rms = 0.0;             ///< rms of the lengths' error [m]
   double rms_sigma = 0.0;       ///< rms of the error over sigma [-]
   double motion_rms = 0.0;      ///< rms of the measured motion since rest [m]
   double nis = 0.0;             ///< normalised innovation squared, e^T S^-1 e

@@ -9,15 +9,18 @@
 
 namespace tissue_stiffness {
 
-enum class ObservationKind { vertices, markers, points, contour };
+enum class ObservationKind { vertices, markers, points, contour, reaction };
 constexpr ObservationKind kObservationKinds[] = {ObservationKind::vertices, ObservationKind::markers,
-                                                 ObservationKind::points, ObservationKind::contour};
+                                                 ObservationKind::points, ObservationKind::contour,
+                                                 ObservationKind::reaction};
 
 /// What all observations of a kind have in common.
 struct ObservationTraits {
-  const char* name;  ///< its key in the model file
-  bool identified;   ///< its points have numbers: each is a point of the body, and gives three rows
-  bool image;        ///< it is a contour in an image, seen by a camera
+  const char* name;     ///< its key in the model file
+  bool identified;      ///< its points have numbers: each is a point of the body, and gives three rows
+  bool image;           ///< it is a contour in an image, seen by a camera
+  bool force;           ///< it is a force [N], of three rows; what is said of positions and lengths leaves it out
+  const char* message;  ///< type of its ROS messages
 };
 const ObservationTraits& traits_of(ObservationKind kind);
 
@@ -26,9 +29,9 @@ const ObservationTraits& traits_of(ObservationKind kind);
 struct Observation {
   int source = 0;
   ObservationKind kind = ObservationKind::vertices;
-  double time = 0.0;                       ///< [s] on the recording's clock
-  Eigen::Matrix3Xd points;                 ///< positions in the model frame [m]; empty for a contour
-  Eigen::VectorXi ids;                     ///< mesh vertex (vertices) or index in `rest` (markers); empty otherwise
+  double time = 0.0;        ///< [s] on the recording's clock
+  Eigen::Matrix3Xd points;  ///< positions in the model frame [m]; a reaction: its force [N]; empty for a contour
+  Eigen::VectorXi ids;      ///< mesh vertex (vertices) or index in `rest` (markers); empty otherwise
   std::shared_ptr<const Contour> contour;  ///< only for contour
   std::shared_ptr<const Camera> camera;    ///< only for contour
 
