@@ -24,6 +24,9 @@ bool is_scale(const std::string& name) {
 // Returns the names of the scales whose numbers the model file gives.
 std::vector<std::string> known_scales(const Model& model) {
   std::vector<std::string> known;
+  for (const ObservationSettings& observation : model.settings().observations) {
+    if (traits_of(observation.kind).force) known.push_back("force on " + observation.topic);
+  }
   for (const EffectSettings& effect : model.settings().effects) {
     for (const ParameterSpec& spec : effect_spec(effect).parameters) {
       const std::string name = effect.label + "." + spec.name;
@@ -31,9 +34,6 @@ std::vector<std::string> known_scales(const Model& model) {
       for (const FreeParameter& parameter : model.parameters().free()) free = free || parameter.name == name;
       if (is_scale(name) && !free && effect.name != "contact_plane") known.push_back(name);
     }
-  }
-  for (const ObservationSettings& observation : model.settings().observations) {
-    if (traits_of(observation.kind).force) known.push_back("force on " + observation.topic);
   }
   return known;
 }

@@ -30,7 +30,7 @@ function startMotion() {
   components.value = best.component;
   const chart = addChart(host, () => {
     const track = player.replay.tracks[Number(tracks.value)], c = track.components[Number(components.value)];
-    const scale = track.unit === "m" ? 1e3 : 1, unit = track.unit === "m" ? "mm" : "pixel";
+    const scale = track.unit === "m" ? 1e3 : 1, unit = track.unit === "m" ? "mm" : track.unit;
     const values = (list) => Array.from(list, (v) => (Number.isFinite(v) ? scale * v : null));
     return {
       title: track.name + ", " + c.name + " [" + unit + "]",
