@@ -21,8 +21,8 @@ LoadErrorResponse::LoadErrorResponse(const ReducedModel& reduced, const Eigen::V
       patterns_(Eigen::MatrixXd::Zero(modes_->square.size(), basis.components())),
       reaction_rows_(reduced.reaction_rows(theta, *modes_)),
       stiffness_damping_(reduced.model().stiffness_damping(theta)),
-      branches_(reduced.model().relaxations(theta)),
-      step_(modes_->square, modes_->damping(reduced.model().mass_damping(theta), stiffness_damping_), branches_) {
+      step_(modes_->square, modes_->damping(reduced.model().mass_damping(theta), stiffness_damping_),
+            reduced.model().relaxations(theta)) {
   const auto& parts = reduced.model().parts();
   const double factor = reduced.model().load_factor(theta);
   for (std::size_t p = 0; p < parts.size(); ++p) {
@@ -81,10 +81,8 @@ Eigen::MatrixXd LoadErrorResponse::further_reactions() const {
   for (std::size_t j = 0; j < states_.size(); ++j) {
     const auto column = static_cast<Eigen::Index>(j);
     const Eigen::MatrixXd& state = states_[j];
-    Eigen::VectorXd stretched = state.col(0) + stiffness_damping_ * state.col(1);
-    for (std::size_t b = 0; b < branches_.size(); ++b)
-      stretched += branches_[b].modulus * (state.col(0) - state.col(2 + static_cast<Eigen::Index>(b)));
-    stretched = fast.select(forces_.col(column).cwiseQuotient(square), stretched);
+    const Eigen::VectorXd stretched =
+        fast.select(forces_.col(column).cwiseQuotient(square), step_.stretch(state, stiffness_damping_));
     Eigen::VectorXd beyond = fast.select(0.0, forces_.col(column) - square.cwiseProduct(stretched));
     if (!prescribed_) beyond -= forces_.col(column);
     out.col(column) = lift.transpose() * beyond + elastic.transpose() * (stretched - state.col(0));

@@ -38,7 +38,6 @@ class LoadErrorResponse {
   ReactionRows reaction_rows_;
   bool prescribed_ = false;   ///< the load is a motion, and its force acts on no other region
   double stiffness_damping_;  ///< [s]
-  std::vector<Relaxation> branches_;
   ModalStep step_;
   Eigen::MatrixXd forces_;               ///< modes x columns
   std::vector<Eigen::MatrixXd> states_;  ///< displacement, velocity and branches, for each column

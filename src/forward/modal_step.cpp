@@ -103,4 +103,11 @@ void ModalStep::advance(double step, const Eigen::VectorXd& before, const Eigen:
   state = next;
 }
 
+Eigen::VectorXd ModalStep::stretch(const Eigen::MatrixXd& state, double stiffness_damping) const {
+  Eigen::VectorXd out = state.col(0) + stiffness_damping * state.col(1);
+  for (std::size_t i = 0; i < branches_.size(); ++i)
+    out += branches_[i].modulus * (state.col(0) - state.col(2 + static_cast<Eigen::Index>(i)));
+  return out;
+}
+
 }  // namespace tissue_stiffness

@@ -16,6 +16,8 @@ class ModalStep {
   ModalStep(Eigen::VectorXd square, Eigen::VectorXd damping, std::vector<Relaxation> branches);
 
   int states() const { return 2 + static_cast<int>(branches_.size()); }
+  /// Returns q + beta q' + sum gamma_i (q - z_i), with which the stiffness is multiplied; beta is `stiffness_damping` [s].
+  Eigen::VectorXd stretch(const Eigen::MatrixXd& state, double stiffness_damping) const;
   /// Advances the state (columns q, q', z...; a row for each mode) while f changes from `before` to `after`.
   void advance(double step, const Eigen::VectorXd& before, const Eigen::VectorXd& after, Eigen::MatrixXd& state);
 

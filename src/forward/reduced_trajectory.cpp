@@ -90,14 +90,6 @@ void ReducedTrajectory::follow(Prescribed& motion, double time, double step) con
   motion.motion = to;
 }
 
-// Returns q + beta q' + sum gamma (q - z), with which the stiffness is multiplied.
-Eigen::VectorXd ReducedTrajectory::stretch(const Eigen::MatrixXd& state) const {
-  Eigen::VectorXd out = state.col(0) + stiffness_damping_ * state.col(1);
-  for (std::size_t b = 0; b < branches_.size(); ++b)
-    out += branches_[b].modulus * (state.col(0) - state.col(2 + static_cast<Eigen::Index>(b)));
-  return out;
-}
-
 // A motion that is linear between samples jolts the body at each of them. So the mean inertia of a step counts. That of
 // slow modes is extrapolated from the middle of the last two steps to the end of the last.
 Eigen::VectorXd ReducedTrajectory::inertia() const {
@@ -116,13 +108,14 @@ Eigen::VectorXd ReducedTrajectory::inertia() const {
 Eigen::VectorXd ReducedTrajectory::reactions_with(const Eigen::MatrixXd& further) const {
   if (reaction_rows_.lift.size() == 0) return {};
   const Eigen::VectorXd inert = inertia();
-  Eigen::VectorXd stretched = stretch(state_);
+  Eigen::VectorXd stretched = step_.stretch(state_, stiffness_damping_);
   for (Eigen::Index m = 0; m < inert.size(); ++m) {
     if (fast(m)) stretched[m] = (whole_force_[m] - inert[m]) / modes_->square[m];
   }
   Eigen::VectorXd out = reaction_rows_.lift.transpose() * (inert - force_) + reaction_rows_.elastic.transpose() * stretched;
   // An extra force is internal: what it changes shows in the region's springs.
-  if (further.size() > 0) out -= reaction_rows_.lift.transpose() * modes_->square.cwiseProduct(stretch(further));
+  if (further.size() > 0)
+    out -= reaction_rows_.lift.transpose() * modes_->square.cwiseProduct(step_.stretch(further, stiffness_damping_));
   return out;
 }
 

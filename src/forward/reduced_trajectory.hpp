@@ -68,7 +68,6 @@ class ReducedTrajectory : public Trajectory {
   Eigen::VectorXd modal_force(double time) const;
   void begin(Prescribed& motion) const;
   void follow(Prescribed& motion, double time, double step) const;
-  Eigen::VectorXd stretch(const Eigen::MatrixXd& state) const;
   bool fast(Eigen::Index mode) const { return modes_->square[mode] * last_.step * last_.step > 1.0; }
   Eigen::VectorXd inertia() const;
 
