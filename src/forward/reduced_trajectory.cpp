@@ -168,15 +168,15 @@ void ReducedTrajectory::advance(double time) {
   for (int k = 1; k <= steps; ++k) {
     const double now = k == steps ? time : start + step * k;
     const Eigen::VectorXd force = modal_force(now);
-    Eigen::VectorXd before = force_, after = force;
-    for (Prescribed& motion : prescribed_) {
-      follow(motion, now, step);
-      before += motion.before * motion.load.modal;
-      after += motion.after * motion.load.modal;
-    }
     if (prescribed_.empty()) {
-      step_.advance(step, before, after, state_);
+      step_.advance(step, force_, force, state_);
     } else {
+      Eigen::VectorXd before = force_, after = force;
+      for (Prescribed& motion : prescribed_) {
+        follow(motion, now, step);
+        before += motion.before * motion.load.modal;
+        after += motion.after * motion.load.modal;
+      }
       const Eigen::VectorXd momentum = state_.col(1) + mass_damping_ * state_.col(0);
       step_.advance(step, before, after, state_);
       before_last_ = std::move(last_);
