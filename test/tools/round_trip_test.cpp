@@ -62,22 +62,10 @@ TEST_F(RoundTrip, FindsTheModulusFromImages) {
 // A jaw holds the free end, retracts it and turns it. Only the jaw's pose and the force on it are known.
 TEST_F(RoundTrip, FindsTheModulusFromAPoseAndAForce) {
   const auto model = [&](const std::string& name, const std::string& modulus, const std::string& more) {
-    return write(name,
-                 "mesh: {file: bar.vtk, discretisation_error: false}\n"
-                 "regions:\n"
-                 "  clamp: {box: {min: [-1.0e-6, -1, -1], max: [1.0e-6, 1, 1]}}\n"
-                 "  jaw: {box: {min: [0.099999, -1, -1], max: [1, 1, 1]}}\n"
-                 "effects:\n"
-                 "- inertia: {density: 1060}\n"
-                 "- elasticity: {law: linear, young_modulus: " +
-                     modulus +
-                     ", poisson_ratio: 0.45}\n"
-                     "- fixed: {region: clamp}\n"
+    return write_bar(name, modulus, ", jaw: {box: {min: [0.099999, -1, -1], max: [1, 1, 1]}}",
                      "- moved: {region: jaw, topic: /jaw/pose, noise: 0, delay: 0}\n"
-                     "- viscous_damping: {beta: 0.01}\n"
-                     "observations:\n"
-                     "- reaction: {topic: /jaw/wrench, region: jaw, noise: 2e-3, gain: 0, bias: 0}\n" +
-                     more);
+                     "- viscous_damping: {beta: 0.01}\n",
+                     "- reaction: {topic: /jaw/wrench, region: jaw, noise: 2e-3, gain: 0, bias: 0}\n" + more);
   };
   const std::string scene =
       model("scene.yaml", "2.0e4",

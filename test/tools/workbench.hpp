@@ -38,21 +38,28 @@ class Workbench : public ::testing::Test {
     return {std::istreambuf_iterator<char>(stream), {}};
   }
 
+  /// Model of the clamped bar; `regions` and `effects` stand behind those of every bar, `rest` holds the observations
+  /// and what follows them.
+  std::string write_bar(const std::string& name, const std::string& modulus, const std::string& regions,
+                        const std::string& effects, const std::string& rest) const {
+    return write(name,
+                 "mesh: {file: bar.vtk, discretisation_error: false}\n"  // the recordings come from this very mesh
+                 "regions: {clamp: {box: {min: [-1.0e-6, -1, -1], max: [1.0e-6, 1, 1]}}" +
+                     regions +
+                     "}\n"
+                     "effects:\n"
+                     "- inertia: {density: 1060}\n"
+                     "- elasticity: {law: linear, young_modulus: " +
+                     modulus +
+                     ", poisson_ratio: 0.45}\n"
+                     "- fixed: {region: clamp}\n" +
+                     effects + "observations:\n" + rest);
+  }
+
   /// Model of the bar under gravity; `modulus` and `observations` as in a model file, `more` further keys.
   std::string write_model(const std::string& name, const std::string& modulus, const std::string& observations,
                           const std::string& more = "") const {
-    return write(name,
-                 "mesh: {file: bar.vtk, discretisation_error: false}\n"  // the recordings come from this very mesh
-                 "regions: {clamp: {box: {min: [-1.0e-6, -1, -1], max: [1.0e-6, 1, 1]}}}\n"
-                 "effects:\n"
-                 "- inertia: {density: 1060}\n"
-                 "- elasticity: {law: linear, young_modulus: " +
-                     modulus +
-                     ", poisson_ratio: 0.45}\n"
-                     "- fixed: {region: clamp}\n"
-                     "- gravity: {acceleration: [0, 0, -9.81]}\n"
-                     "observations:\n" +
-                     observations + more);
+    return write_bar(name, modulus, "", "- gravity: {acceleration: [0, 0, -9.81]}\n", observations + more);
   }
 
   static std::string vertices() { return "- vertices: {topic: /tissue/vertices, noise: 2e-4}\n"; }
