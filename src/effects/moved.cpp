@@ -79,9 +79,8 @@ EffectSpec moved_spec() {
   spec.keys = {
       {"region", "facets that follow"},
       {"topic", "geometry_msgs/PoseStamped"},
-      {"course", "{file: f.csv} with rows of time [s], x, y, z [m] and a quaternion qx, qy, qz, qw; instead of topic"}};
-  spec.keys.emplace_back("smoothing",
-                         "half width of the quadratic that smoothes the poses [s]; 0.04 when absent, 0: as measured");
+      {"course", "{file: f.csv} with rows of time [s], x, y, z [m] and a quaternion qx, qy, qz, qw; instead of topic"},
+      {"smoothing", "half width of the quadratic that smoothes the poses [s]; 0.04 when absent, 0: as measured"}};
   spec.load = LoadInput::Kind::pose;
   for (auto& key : motion_error_keys()) spec.keys.push_back(std::move(key));
   return spec;
