@@ -221,6 +221,17 @@ void ReducedModel::project_reactions() {
     reaction_springs_.middleCols<3>(3 * static_cast<Eigen::Index>(r)) = basis_.vectors.transpose() * reactions[r].springs;
 }
 
+void ReducedModel::add_strain_stiffness(std::size_t part, std::size_t term, double coefficient,
+                                        const Eigen::VectorXd& parameters, Eigen::MatrixXd& sum) const {
+  if (coefficient == 0.0) return;
+  const Eigen::MatrixXd& constant = projected_[part].strain_stiffness[term];
+  if (constant.size() > 0) {
+    sum += coefficient * constant;
+  } else {
+    sum += coefficient * *shaped(model_.parts()[part].terms.strain_stiffness[term], parameters);
+  }
+}
+
 // Returns the stiffness in the basis without springs that do not relax.
 Eigen::MatrixXd ReducedModel::relaxing_stiffness(const Eigen::VectorXd& theta) const {
   const Eigen::Index m = basis_.vectors.cols();
@@ -232,9 +243,7 @@ Eigen::MatrixXd ReducedModel::relaxing_stiffness(const Eigen::VectorXd& theta) c
       if (terms.stiffness[k].relaxes) sum += terms.stiffness[k].coefficient(p) * projected_[i].stiffness[k];
     }
     for (std::size_t k = 0; k < terms.strain_stiffness.size(); ++k) {
-      const double c = terms.strain_stiffness[k].coefficient(p);
-      const bool constant = projected_[i].strain_stiffness[k].size() > 0;
-      if (c != 0.0) sum += c * (constant ? projected_[i].strain_stiffness[k] : *shaped(terms.strain_stiffness[k], p));
+      add_strain_stiffness(i, k, terms.strain_stiffness[k].coefficient(p), p, sum);
     }
   }
   return sum;
@@ -352,7 +361,6 @@ ReducedModes ReducedModel::solve(const Proportions& proportions, const Eigen::Ve
   modes.weight = modes.momentum = Eigen::MatrixX3d::Zero(m, 3);
   auto next_mass = proportions.masses.begin(), next_stiffness = proportions.stiffnesses.begin();
   for (std::size_t i = 0; i < projected_.size(); ++i) {
-    const LinearTerms& terms = model_.parts()[i].terms;
     const Projected& part = projected_[i];
     const Eigen::VectorXd p = model_.parts()[i].parameters(theta);
     for (std::size_t k = 0; k < part.mass.size(); ++k) {
@@ -367,10 +375,7 @@ ReducedModes ReducedModel::solve(const Proportions& proportions, const Eigen::Ve
       if (c != 0.0) stiffness += c * part.stiffness[k];
     }
     for (std::size_t k = 0; k < part.strain_stiffness.size(); ++k) {
-      const double c = *next_stiffness++;
-      if (c == 0.0) continue;
-      const bool constant = part.strain_stiffness[k].size() > 0;
-      stiffness += c * (constant ? part.strain_stiffness[k] : *shaped(terms.strain_stiffness[k], p));
+      add_strain_stiffness(i, k, *next_stiffness++, p, stiffness);
     }
   }
   const std::vector<int> columns = active(theta, half);

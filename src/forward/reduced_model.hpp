@@ -121,6 +121,9 @@ class ReducedModel : public ForwardModel {
   void adopt_projections(const ReducedModel& relative);
   void adopt_projections(std::size_t part, const ReducedModel& relative);
   Proportions proportions(const Eigen::VectorXd& theta, bool half) const;
+  /// Adds one strain term's stiffness times its coefficient; its shape may depend on the part's parameters.
+  void add_strain_stiffness(std::size_t part, std::size_t term, double coefficient, const Eigen::VectorXd& parameters,
+                            Eigen::MatrixXd& sum) const;
   Eigen::MatrixXd relaxing_stiffness(const Eigen::VectorXd& theta) const;
   std::vector<int> active(const Eigen::VectorXd& theta, bool half) const;
   /// Returns the modes of masses and stiffnesses in these proportions, without inertia of the stiffness.
