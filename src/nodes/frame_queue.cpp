@@ -5,9 +5,12 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kJumpAhead = 60.0;  // [s]
 constexpr std::chrono::seconds kIdle{1};
 constexpr std::size_t kMostLoads = 100000;  // a load at 1 kHz without a frame for 100 s
+
+double seconds(std::chrono::steady_clock::time_point time) {
+  return std::chrono::duration<double>(time.time_since_epoch()).count();
+}
 
 }  // namespace
 
@@ -16,7 +19,11 @@ FrameQueue::FrameQueue(std::chrono::duration<double> patience, std::size_t capac
 
 void FrameQueue::expect(const std::string& topic) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  topics_[topic];
+  find_topic(topic);
+}
+
+FrameQueue::Topic& FrameQueue::find_topic(const std::string& name) {
+  return topics_.try_emplace(name, Topic{0, Filter(std::chrono::duration<double>(patience_).count())}).first->second;
 }
 
 void FrameQueue::add_observation(const std::string& topic, const ros::Time& stamp, MakeObservation make) {
@@ -48,73 +55,87 @@ void FrameQueue::add_load(const std::string& topic, const ros::Time& stamp, Make
 }
 
 void FrameQueue::accept(const std::string& name, const ros::Time& stamp, Put put) {
-  Topic& topic = topics_[name];
-  if (!topic.stamps.seen) {
-    topic.epoch = newest_epoch_;
-  } else if (jumps(topic, stamp)) {
-    if (!topic.held.empty() && goes_back(topic.held.back().stamp, stamp)) leave_out(name, topic);
-    topic.held.push_back({stamp, Clock::now(), std::move(put)});
-    if (topic.held.size() >= kAgreeingStamps) release(topic);
-    return;
-  }
-  leave_out(name, topic);
-  put(place(topic, stamp));
+  Topic& topic = find_topic(name);
+  const std::size_t left_out = topic.filter.left_out();
+  const bool restarts = topic.filter.stamps().seen && starts_over(topic, stamp);
+  this->put(topic, topic.filter.add(stamp, std::move(put), seconds(Clock::now()), restarts));
+  if (topic.filter.left_out() > left_out) last_broken_ = name + ": " + topic.filter.last_left_out();
 }
 
 // Returns whether the topic's stamps begin anew with this one.
 bool FrameQueue::starts_over(const Topic& topic, const ros::Time& stamp) const {
+  const TopicStamps& stamps = topic.filter.stamps();
   const ros::Time newest = epochs_.at(topic.epoch).last;
-  return topic.stamps.back(stamp) || (stamp <= topic.stamps.first && newest > stamp) ||
+  return goes_back(stamps.last, stamp) || (stamp <= stamps.first && newest > stamp) ||
          seconds_between(newest, stamp) > kJumpAhead;
 }
 
-bool FrameQueue::jumps(const Topic& topic, const ros::Time& stamp) const {
-  return starts_over(topic, stamp) || topic.stamps.ahead(stamp);
+void FrameQueue::put(Topic& topic, const Filter::Believed& believed) {
+  if (believed.messages.empty()) return;
+  const ros::Time& first = believed.messages.front().stamp;
+  if (!topic.filter.stamps().seen) {
+    topic.epoch = newest_epoch_;
+  } else if (believed.held && starts_over(topic, first)) {
+    move(topic, first);
+    topic.filter.start_over();
+  }
+  for (const Filter::Stamped& message : believed.messages) message.message(place(topic, message.stamp));
 }
 
 FrameQueue::Place FrameQueue::place(Topic& topic, const ros::Time& stamp) {
-  topic.stamps.advance(stamp);
+  topic.filter.advance(stamp);
   const auto [span, is_new] = epochs_.try_emplace(topic.epoch, Span{stamp, stamp});
   span->second.first = std::min(span->second.first, stamp);
   span->second.last = std::max(span->second.last, stamp);
   return {topic.epoch, stamp};
 }
 
-void FrameQueue::release(Topic& topic) {
-  const std::vector<Held> held = std::exchange(topic.held, {});
-  if (starts_over(topic, held.front().stamp)) {
-    if (topic.epoch == newest_epoch_) ++newest_epoch_;
-    topic = {newest_epoch_, {false, {}, {}, topic.stamps.interval}, {}};
+void FrameQueue::move(Topic& moved, const ros::Time& stamp) {
+  const double now = seconds(Clock::now());
+  for (const auto& [name, topic] : topics_) {
+    const TopicStamps& stamps = topic.filter.stamps();
+    if (&topic == &moved || !stamps.seen || topic.filter.silent_from() < now || !stamps.go_on_with(stamp)) continue;
+    if (topic.epoch < taken_epoch_) renew(topic.epoch);
+    moved.epoch = topic.epoch;
+    return;
   }
-  for (const Held& message : held) message.put(place(topic, message.stamp));
+  if (moved.epoch == newest_epoch_) ++newest_epoch_;
+  moved.epoch = newest_epoch_;
 }
 
-void FrameQueue::leave_out(const std::string& name, Topic& topic) {
-  for (const Held& message : topic.held) {
-    last_broken_ = topic.stamps.jump_to(message.stamp, name);
-    ++broken_;
+void FrameQueue::renew(int epoch) {
+  ++newest_epoch_;
+  for (auto& [name, topic] : topics_) {
+    if (topic.epoch == epoch) topic.epoch = newest_epoch_;
   }
-  topic.held.clear();
+  epochs_[newest_epoch_] = epochs_.at(epoch);
+  const auto from = loads_.lower_bound(Place(epoch, ros::Time())), to = loads_.lower_bound(Place(epoch + 1, ros::Time()));
+  std::vector<std::pair<Place, MakeLoad>> kept;
+  for (auto load = from; load != to; ++load) {
+    kept.emplace_back(Place(newest_epoch_, load->first.second), std::move(load->second));
+  }
+  loads_.erase(from, to);
+  for (auto& load : kept) loads_.insert(std::move(load));
 }
 
 FrameQueue::Clock::time_point FrameQueue::release_overdue() {
-  Clock::time_point next = Clock::now() + kIdle;
+  const Clock::time_point now = Clock::now();
+  double next = seconds(now + kIdle);
   for (auto& [name, topic] : topics_) {
-    if (topic.held.empty()) continue;
-    const Clock::time_point due = topic.held.back().arrival + patience_;
-    if (due <= Clock::now()) {
-      release(topic);
+    if (!topic.filter.holds()) continue;
+    if (topic.filter.silent_from() <= seconds(now)) {
+      put(topic, topic.filter.release());
     } else {
-      next = std::min(next, due);
+      next = std::min(next, topic.filter.silent_from());
     }
   }
-  return next;
+  return now + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(next - seconds(now)));
 }
 
 bool FrameQueue::complete(const Place& frame) const {
   return std::all_of(topics_.begin(), topics_.end(), [&](const auto& entry) {
     const Topic& topic = entry.second;
-    return topic.stamps.seen && Place(topic.epoch, topic.stamps.last) >= frame;
+    return topic.filter.stamps().seen && Place(topic.epoch, topic.filter.stamps().last) >= frame;
   });
 }
 
@@ -160,7 +181,7 @@ FrameQueue::Work FrameQueue::take_front() {
 int FrameQueue::oldest_epoch() const {
   int oldest = newest_epoch_;
   for (const auto& [name, topic] : topics_) {
-    if (topic.stamps.seen) oldest = std::min(oldest, topic.epoch);
+    if (topic.filter.stamps().seen) oldest = std::min(oldest, topic.epoch);
   }
   return oldest;
 }
@@ -170,7 +191,7 @@ void FrameQueue::restart() {
   dropped_ += frames_.size();
   frames_.clear();
   loads_.clear();
-  for (auto& [name, topic] : topics_) topic = {};
+  for (auto& [name, topic] : topics_) topic.filter.forget();
   ++newest_epoch_;
 }
 
@@ -198,7 +219,9 @@ std::size_t FrameQueue::dropped() const {
 
 std::size_t FrameQueue::broken_stamps() const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  return broken_;
+  std::size_t out = 0;
+  for (const auto& [name, topic] : topics_) out += topic.filter.left_out();
+  return out;
 }
 
 std::string FrameQueue::last_broken_stamp() const {

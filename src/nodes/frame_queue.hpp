@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "nodes/topic_stamps.hpp"
+#include "nodes/stamp_filter.hpp"
 #include "tissue_stiffness/types/load_sample.hpp"
 #include "tissue_stiffness/types/observation.hpp"
 
@@ -26,10 +26,10 @@ namespace tissue_stiffness {
 ///
 /// An epoch is one run of the experiment. A topic starts a new epoch when its stamps go back by more than 0.5 s, or to the
 /// topic's first stamp (a bag that loops), or ahead by more than a minute. Topics may notice this at different times, so
-/// each message is kept in the epoch of its topic.
+/// each message is kept in the epoch of its topic. A topic whose stamps had jumped alone joins the others again when its
+/// stamps go on from theirs.
 ///
-/// A message whose stamp jumps is held back until two more of its topic agree, or until `patience` has passed without any
-/// (see TopicStamps). Broken ones are left out.
+/// A message whose stamp jumps is held back until it is believed (see StampFilter). Broken ones are left out.
 class FrameQueue {
  public:
   /// Conversions run in the worker, because they may wait for a transform. They may throw InputError.
@@ -74,15 +74,10 @@ class FrameQueue {
   using Clock = std::chrono::steady_clock;
   using Place = std::pair<int, ros::Time>;  ///< epoch and stamp
   using Put = std::function<void(const Place&)>;
-  struct Held {
-    ros::Time stamp;
-    Clock::time_point arrival;
-    Put put;
-  };
+  using Filter = StampFilter<Put>;
   struct Topic {
     int epoch = 0;
-    TopicStamps stamps;
-    std::vector<Held> held;  ///< messages whose stamps have jumped
+    Filter filter;
   };
   struct Span {
     ros::Time first, last;
@@ -92,12 +87,15 @@ class FrameQueue {
     std::vector<MakeObservation> observations;
   };
 
+  Topic& find_topic(const std::string& name);
   void accept(const std::string& name, const ros::Time& stamp, Put put);
   bool starts_over(const Topic& topic, const ros::Time& stamp) const;
-  bool jumps(const Topic& topic, const ros::Time& stamp) const;
+  void put(Topic& topic, const Filter::Believed& believed);
   Place place(Topic& topic, const ros::Time& stamp);
-  void release(Topic& topic);
-  void leave_out(const std::string& name, Topic& topic);
+  /// Moves a topic whose stamps start over to the epoch that they belong to.
+  void move(Topic& topic, const ros::Time& stamp);
+  /// Gives an epoch that was left the number of a new one.
+  void renew(int epoch);
   /// Releases what no message has contradicted in time. Returns when that has to be asked next.
   Clock::time_point release_overdue();
   bool complete(const Place& place) const;
@@ -114,7 +112,7 @@ class FrameQueue {
   std::multimap<Place, MakeLoad> loads_;
   int newest_epoch_ = 0;
   int taken_epoch_ = -1;
-  std::size_t dropped_ = 0, broken_ = 0;
+  std::size_t dropped_ = 0;
   std::string last_broken_;
   bool stopped_ = false, woken_ = false;
 };

@@ -7,9 +7,8 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kJumpBack = 0.5, kPause = 1.0;  // [s]
-constexpr double kPauses = 5.0;                  // intervals
-constexpr double kSmooth = 0.8;                  // of the interval so far, in its running mean
+constexpr double kJumpBack = 0.5;  // [s]
+constexpr double kSmooth = 0.8;    // of the interval so far, in its running mean
 
 }  // namespace
 
@@ -17,8 +16,20 @@ bool goes_back(const ros::Time& before, const ros::Time& stamp) {
   return seconds_between(stamp, before) > kJumpBack;
 }
 
-bool TopicStamps::ahead(const ros::Time& stamp) const {
-  return interval > 0.0 && seconds_between(last, stamp) > std::max(kPause, kPauses * interval);
+bool goes_on(const ros::Time& before, const ros::Time& stamp, double interval) {
+  const double longest = interval > 0.0 ? std::max(kPause, kPauses * interval) : kJumpAhead;
+  return !goes_back(before, stamp) && seconds_between(before, stamp) <= longest;
+}
+
+double smooth_interval(double mean, double interval) {
+  return mean > 0.0 ? kSmooth * mean + (1.0 - kSmooth) * interval : interval;
+}
+
+std::string jump(const ros::Time& from, const ros::Time& to) {
+  const double seconds = seconds_between(from, to);
+  std::ostringstream text;
+  text << std::abs(seconds) << (seconds < 0.0 ? " s back" : " s ahead");
+  return text.str();
 }
 
 void TopicStamps::advance(const ros::Time& stamp) {
@@ -27,16 +38,8 @@ void TopicStamps::advance(const ros::Time& stamp) {
     return;
   }
   if (stamp <= last) return;
-  const double since = seconds_between(last, stamp);
-  interval = interval > 0.0 ? kSmooth * interval + (1.0 - kSmooth) * since : since;
+  interval = smooth_interval(interval, seconds_between(last, stamp));
   last = stamp;
-}
-
-std::string TopicStamps::jump_to(const ros::Time& stamp, const std::string& topic) const {
-  const double jump = seconds_between(last, stamp);
-  std::ostringstream text;
-  text << topic << ": " << std::abs(jump) << (jump < 0.0 ? " s back" : " s ahead");
-  return text.str();
 }
 
 }  // namespace tissue_stiffness

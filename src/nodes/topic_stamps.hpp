@@ -7,29 +7,30 @@
 
 namespace tissue_stiffness {
 
-/// Returns whether a stamp is earlier than the one before by more than messages are that overtake each other: 0.5 s.
-bool goes_back(const ros::Time& before, const ros::Time& stamp);
-
 /// Returns the seconds from one stamp to another. ros::Duration holds 68 years only, and a broken stamp may be farther off.
 inline double seconds_between(const ros::Time& from, const ros::Time& to) {
   return to.toSec() - from.toSec();
 }
 
-/// The stamps of one topic. A clock that jumps stamps many messages, and a broken message is alone. So a message whose
-/// stamp jumps is held back until more of its topic agree. A message that goes on where the topic was before shows that the
-/// held ones are broken.
+/// Returns whether a stamp is earlier than the one before by more than messages are that overtake each other: 0.5 s.
+bool goes_back(const ros::Time& before, const ros::Time& stamp);
+/// Returns whether a stamp follows another of a topic with this interval [s; 0: not known]. It does not when it goes back,
+/// and not when it is ahead by more than a pause: a second or five intervals, or a minute where no interval is known.
+bool goes_on(const ros::Time& before, const ros::Time& stamp, double interval);
+/// Returns the running mean of a topic's intervals [s; 0: not known] with one more.
+double smooth_interval(double mean, double interval);
+/// Returns "3 s ahead" or "3 s back".
+std::string jump(const ros::Time& from, const ros::Time& to);
+
+/// The stamps of one topic that are believed (see StampFilter).
 struct TopicStamps {
   bool seen = false;
   ros::Time first, last;
   double interval = 0.0;  ///< between its messages [s], a running mean; 0: not known yet
 
-  bool back(const ros::Time& stamp) const { return goes_back(last, stamp); }
-  /// Returns whether the stamp is ahead by more than a pause would be: a second, or five of the topic's intervals.
-  bool ahead(const ros::Time& stamp) const;
+  bool go_on_with(const ros::Time& stamp) const { return goes_on(last, stamp, interval); }
   /// Goes on with a stamp that is believed.
   void advance(const ros::Time& stamp);
-  /// Returns "TOPIC: 3 s ahead".
-  std::string jump_to(const ros::Time& stamp, const std::string& topic) const;
 };
 
 /// Keeps at most `rate` messages a second [Hz] of a topic.
@@ -51,6 +52,9 @@ class RateLimit {
   ros::Time last_;
 };
 
-constexpr std::size_t kAgreeingStamps = 3;  ///< messages whose stamps agree that the clock has jumped
+constexpr std::size_t kAgreeingStamps = 3;  ///< held messages that are believed because their stamps agree
+constexpr double kPause = 1.0;              ///< a shorter silence is none [s]
+constexpr double kPauses = 5.0;             ///< nor is one of fewer intervals of the topic
+constexpr double kJumpAhead = 60.0;         ///< a silence that ends an experiment [s]
 
 }  // namespace tissue_stiffness

@@ -1,5 +1,6 @@
 #include "tools/bag_overview.hpp"
 
+#include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
@@ -12,6 +13,7 @@
 
 #include "nodes/sensor_conversions.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "tools/read_message.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -33,26 +35,28 @@ void open(rosbag::Bag& bag, const std::string& file) {
 }
 
 template <typename Message>
-bool add_header(const rosbag::MessageInstance& message, TopicTimes& times, BagOverview& out) {
-  const auto read = message.instantiate<Message>();
-  if (!read) return false;
+bool add_header(const rosbag::MessageInstance& message, const std::string& file, TopicTimes& times, BagOverview& out) {
+  if (!message.isType<Message>()) return false;
+  const auto read = read_as<Message>(message, file);
   times.stamps.push_back(read->header.stamp.toSec());
   times.arrivals.push_back(message.getTime().toSec());
   out.frames.emplace(times.topic, plain(read->header.frame_id));
   return true;
 }
 
-void add_times(const rosbag::MessageInstance& message, BagOverview& out) {
+void add_times(const rosbag::MessageInstance& message, const std::string& file, BagOverview& out) {
   const auto same = [&](const TopicTimes& times) { return times.topic == message.getTopic(); };
   const auto times = std::find_if(out.times.begin(), out.times.end(), same);
-  add_header<sensor_msgs::PointCloud2>(message, *times, out) || add_header<sensor_msgs::Image>(message, *times, out) ||
-      add_header<geometry_msgs::WrenchStamped>(message, *times, out) ||
-      add_header<sensor_msgs::FluidPressure>(message, *times, out);
+  add_header<sensor_msgs::PointCloud2>(message, file, *times, out) ||
+      add_header<sensor_msgs::Image>(message, file, *times, out) ||
+      add_header<geometry_msgs::WrenchStamped>(message, file, *times, out) ||
+      add_header<geometry_msgs::PoseStamped>(message, file, *times, out) ||
+      add_header<sensor_msgs::FluidPressure>(message, file, *times, out);
 }
 
-void add_transforms(const rosbag::MessageInstance& message, BagOverview& out) {
-  const auto read = message.instantiate<tf2_msgs::TFMessage>();
-  if (!read) return;
+void add_transforms(const rosbag::MessageInstance& message, const std::string& file, BagOverview& out) {
+  if (!message.isType<tf2_msgs::TFMessage>()) return;
+  const auto read = read_as<tf2_msgs::TFMessage>(message, file);
   for (const geometry_msgs::TransformStamped& pose : read->transforms) {
     const std::pair<std::string, std::string> joint{plain(pose.header.frame_id), plain(pose.child_frame_id)};
     const auto known = std::find(out.transforms.begin(), out.transforms.end(), joint);
@@ -61,7 +65,7 @@ void add_transforms(const rosbag::MessageInstance& message, BagOverview& out) {
 }
 
 /// Reads all topics in one pass, because a compressed bag is slow to read.
-void read(const rosbag::Bag& bag, const std::vector<std::string>& topics, BagOverview& out) {
+void read(const rosbag::Bag& bag, const std::string& file, const std::vector<std::string>& topics, BagOverview& out) {
   std::map<std::string, std::size_t> strides, come;
   for (const std::string& topic : topics) {
     strides[topic] = std::max<std::size_t>(1, rosbag::View(bag, rosbag::TopicQuery(topic)).size() / kImages);
@@ -70,14 +74,13 @@ void read(const rosbag::Bag& bag, const std::vector<std::string>& topics, BagOve
   for (const rosbag::MessageInstance& message : messages) {
     const std::string& topic = message.getTopic();
     if (topic == "/tf" || topic == "/tf_static") {
-      add_transforms(message, out);
+      add_transforms(message, file, out);
       continue;
     }
-    add_times(message, out);
+    add_times(message, file, out);
     if (come[topic]++ % strides[topic] != 0 || message.getDataType() != "sensor_msgs/Image") continue;
-    if (const auto image = message.instantiate<sensor_msgs::Image>()) {
-      if (out.images[topic].size() < kImages) out.images[topic].push_back(to_image(image, topic).clone());
-    }
+    if (out.images[topic].size() >= kImages) continue;
+    out.images[topic].push_back(to_image(read_as<sensor_msgs::Image>(message, file), topic).clone());
   }
 }
 
@@ -100,7 +103,7 @@ BagOverview overview(const std::string& file, const std::vector<NeededTopic>& ne
       topics.push_back(need.topic.name);
       out.times.push_back({need.topic.name, {}, {}});  // in the model file's order, observations first
     }
-    read(bag, topics, out);
+    read(bag, file, topics, out);
     const auto silent = [](const TopicTimes& times) { return times.stamps.empty(); };
     out.times.erase(std::remove_if(out.times.begin(), out.times.end(), silent), out.times.end());
   } catch (const rosbag::BagException& error) {

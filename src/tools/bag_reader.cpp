@@ -11,11 +11,13 @@
 #include "nodes/estimator_inputs.hpp"
 #include "nodes/sensor_conversions.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "tools/read_message.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
 constexpr double kReorderSpan = 0.5;         // [s] a message may lag behind the newest stamp
+constexpr double kPatience = 0.25;           // [s] least silence that makes a stamp believed; less than the lag
 constexpr std::size_t kReorderFrames = 256;  // the same, in frames: bounds the memory
 constexpr std::size_t kMostPictures = 40;    // of each sensor, in the report
 constexpr double kPictureWidth = 480.0;      // [pixel]
@@ -24,22 +26,6 @@ constexpr double kPoseMemory = 60.0;         // [s] of /tf kept; more than any f
 
 std::string plain(const std::string& frame) {
   return !frame.empty() && frame[0] == '/' ? frame.substr(1) : frame;
-}
-
-template <typename Message>
-boost::shared_ptr<const Message> read_as(const rosbag::MessageInstance& message, const std::string& file) {
-  boost::shared_ptr<const Message> read;
-  try {
-    read = message.instantiate<Message>();
-  } catch (const rosbag::BagException&) {
-    throw;
-  } catch (const std::exception& error) {  // its content does not fit its type
-    throw InputError(file + ": topic " + message.getTopic(), std::string("a broken message (") + error.what() + ")",
-                     std::string("a whole ") + ros::message_traits::datatype<Message>());
-  }
-  if (read) return read;
-  throw InputError(file + ": topic " + message.getTopic(), message.getDataType() + " of another version",
-                   std::string(ros::message_traits::datatype<Message>()) + " " + ros::message_traits::md5sum<Message>());
 }
 
 }  // namespace
@@ -127,10 +113,12 @@ void BagReader::add_poses(const rosbag::MessageInstance& message, bool is_static
 
 bool BagReader::read_message() {
   if (next_message_ == view_.end()) {
-    for (auto& [name, topic] : topics_) leave_out(name, topic);
+    release_last();
     return false;
   }
   const rosbag::MessageInstance message = *next_message_++;
+  now_ = message.getTime().toSec();
+  release_overdue();
   const std::string& topic = message.getTopic();
   if (topic == "/tf") add_poses(message, false);
   for (std::size_t i = 0; i < settings_.observations.size(); ++i) {
@@ -157,27 +145,43 @@ bool BagReader::read_message() {
   return true;
 }
 
-void BagReader::accept(const std::string& name, const ros::Time& stamp, std::function<void()> put) {
-  Topic& topic = topics_[name];
-  if (topic.stamps.seen && (topic.stamps.back(stamp) || topic.stamps.ahead(stamp))) {
-    if (!topic.held.empty() && goes_back(topic.held.back().stamp, stamp)) leave_out(name, topic);
-    topic.held.push_back({stamp, std::move(put)});
-    if (topic.held.size() < kAgreeingStamps) return;
-    for (const Held& message : std::exchange(topic.held, {})) {
-      topic.stamps.advance(message.stamp);
-      message.put();
-    }
-    return;
-  }
-  leave_out(name, topic);
-  topic.stamps.advance(stamp);
-  put();
+void BagReader::accept(const std::string& name, const ros::Time& stamp, Put put) {
+  Filter& filter = filters_.try_emplace(name, kPatience).first->second;
+  const std::size_t left_out = filter.left_out();
+  believe(filter, filter.add(stamp, std::move(put), now_));
+  if (filter.left_out() > left_out) last_broken_ = name + ": " + filter.last_left_out();
 }
 
-void BagReader::leave_out(const std::string& name, Topic& topic) {
-  for (const Held& message : topic.held) last_broken_ = topic.stamps.jump_to(message.stamp, name);
-  broken_ += static_cast<int>(topic.held.size());
-  topic.held.clear();
+void BagReader::believe(Filter& filter, const Filter::Believed& believed) {
+  for (const Filter::Stamped& message : believed.messages) {
+    filter.advance(message.stamp);
+    message.message();
+  }
+}
+
+void BagReader::release_overdue() {
+  for (auto& [name, filter] : filters_) {
+    if (filter.holds() && filter.silent_from() <= now_) believe(filter, filter.release());
+  }
+}
+
+// A topic's only messages have none to be judged by; a jump at the end has none that agree.
+void BagReader::release_last() {
+  for (auto& [name, filter] : filters_) {
+    if (!filter.holds()) continue;
+    if (!filter.stamps().seen) {
+      believe(filter, filter.release());
+      continue;
+    }
+    filter.leave_out_held();
+    last_broken_ = name + ": " + filter.last_left_out();
+  }
+}
+
+int BagReader::broken_stamps() const {
+  std::size_t out = 0;
+  for (const auto& [name, filter] : filters_) out += filter.left_out();
+  return static_cast<int>(out);
 }
 
 void BagReader::add_force(const rosbag::MessageInstance& message, int source) {

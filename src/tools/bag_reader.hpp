@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "nodes/topic_stamps.hpp"
+#include "nodes/stamp_filter.hpp"
 #include "tissue_stiffness/segmentation/segmenter.hpp"
 #include "tissue_stiffness/settings/model_settings.hpp"
 #include "tissue_stiffness/types/load_sample.hpp"
@@ -41,7 +41,7 @@ struct Instant {
 /// Throws InputError for a file that is missing or not a bag, a topic that is absent or of another type, and a message
 /// whose content is wrong. An image without an outline, or a sensor without a pose at the stamp, costs only this
 /// observation. A message is late when its stamp has already passed (0.5 s or 256 frames behind the newest). Late messages,
-/// and those whose stamps are broken (see TopicStamps), are counted and left out.
+/// and those whose stamps are broken (see StampFilter), are counted and left out.
 class BagReader {
  public:
   BagReader(const std::string& file, const ModelSettings& settings, std::string model_frame = "model");
@@ -60,7 +60,7 @@ class BagReader {
   std::optional<Instant> next();
 
   int late() const { return late_; }
-  int broken_stamps() const { return broken_; }
+  int broken_stamps() const;
   /// Names topic and jump of the last one of them; empty: none.
   const std::string& last_broken_stamp() const { return last_broken_; }
 
@@ -82,19 +82,15 @@ class BagReader {
   std::vector<std::string> topics() const;
   void read_static_poses();
 
-  struct Held {
-    ros::Time stamp;
-    std::function<void()> put;
-  };
-  struct Topic {
-    TopicStamps stamps;
-    std::vector<Held> held;  ///< messages whose stamps have jumped
-  };
+  using Put = std::function<void()>;
+  using Filter = StampFilter<Put>;
 
   bool read_message();
   /// Calls `put` once the stamp is believed.
-  void accept(const std::string& topic, const ros::Time& stamp, std::function<void()> put);
-  void leave_out(const std::string& name, Topic& topic);
+  void accept(const std::string& topic, const ros::Time& stamp, Put put);
+  void believe(Filter& filter, const Filter::Believed& believed);
+  void release_overdue();
+  void release_last();
   void add_force(const rosbag::MessageInstance& message, int source);
   void add_measurement(const std::string& topic, const ros::Time& stamp, Measurement measurement);
   void add_load(const rosbag::MessageInstance& message, const LoadInput& input);
@@ -120,9 +116,10 @@ class BagReader {
   rosbag::View::iterator next_message_;
   std::size_t frame_count_ = 0, image_stride_ = 1;
   int vertex_count_ = std::numeric_limits<int>::max();
-  int late_ = 0, broken_ = 0;
+  int late_ = 0;
+  double now_ = 0.0;  ///< when the recorder received the last message [s]
   std::string last_broken_;
-  std::map<std::string, Topic> topics_;
+  std::map<std::string, Filter> filters_;
 
   tf2::BufferCore poses_;
   std::map<int, std::unique_ptr<Segmenter>> segmenters_;  ///< by index of the observation
