@@ -24,7 +24,7 @@ std::vector<LoadInput> load_topics(const ModelSettings& settings) {
   return inputs;
 }
 
-EstimatorInputs::EstimatorInputs(const ros::NodeHandle& node, const ModelSettings& settings, const SensorPoses& poses,
+EstimatorInputs::EstimatorInputs(const ros::NodeHandle& node, const ModelSettings& settings, SensorPoses& poses,
                                  FrameQueue& queue, Diagnostics& diagnostics)
     : node_(node), settings_(settings), poses_(poses), queue_(queue), diagnostics_(diagnostics) {}
 

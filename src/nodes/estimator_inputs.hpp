@@ -24,7 +24,7 @@ std::vector<LoadInput> load_topics(const ModelSettings& settings);
 /// The first contour of the model comes on `contour`, further ones on `contour_2`, `contour_3`, ...
 class EstimatorInputs {
  public:
-  EstimatorInputs(const ros::NodeHandle& node, const ModelSettings& settings, const SensorPoses& poses, FrameQueue& queue,
+  EstimatorInputs(const ros::NodeHandle& node, const ModelSettings& settings, SensorPoses& poses, FrameQueue& queue,
                   Diagnostics& diagnostics);
 
   /// Subscribes to observations and loads, the first time it is called.
@@ -46,7 +46,7 @@ class EstimatorInputs {
 
   ros::NodeHandle node_;
   const ModelSettings& settings_;
-  const SensorPoses& poses_;
+  SensorPoses& poses_;
   FrameQueue& queue_;
   Diagnostics& diagnostics_;
   std::atomic<int> vertex_count_{0};

@@ -18,20 +18,22 @@ std::string plain(const std::string& frame) {
 }  // namespace
 
 SensorPoses::SensorPoses(std::string model_frame, double patience)
-    : model_frame_(std::move(model_frame)), patience_(patience), listener_(buffer_) {}
+    : model_frame_(std::move(model_frame)),
+      waits_(std::chrono::duration_cast<BoundedWaits::Clock::duration>(std::chrono::duration<double>(patience))),
+      listener_(buffer_) {}
 
-Eigen::Isometry3d SensorPoses::model_from(const std_msgs::Header& header, const std::string& topic) const {
+Eigen::Isometry3d SensorPoses::model_from(const std_msgs::Header& header, const std::string& topic) {
   const std::string frame = plain(header.frame_id);
   if (frame == model_frame_) return Eigen::Isometry3d::Identity();
   if (frame.empty()) {
     throw InputError(topic + ": header.frame_id", "''", model_frame_ + ", or a frame with a pose on /tf or /tf_static");
   }
-  using Clock = std::chrono::steady_clock;
-  const auto deadline =
-      Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(patience_));
+  using Clock = BoundedWaits::Clock;
+  const Clock::time_point begun = Clock::now(), until = waits_.until(frame, begun);
   std::string reason;
   while (!buffer_.canTransform(model_frame_, frame, header.stamp, ros::Duration(0), &reason)) {
-    if (Clock::now() >= deadline || !ros::ok()) {
+    if (Clock::now() >= until || !ros::ok()) {
+      waits_.in_vain(frame, begun, Clock::now());
       throw InputError(topic + ": header.frame_id", frame + " without a pose in " + model_frame_ + " (" + reason + ")",
                        "a pose on /tf or /tf_static at the stamp");
     }
