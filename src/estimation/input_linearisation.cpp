@@ -333,6 +333,7 @@ void InputLinearisation::each_row(const Eigen::VectorXd& z, const Visitor& visit
   const Eigen::Index own = modes.shapes.cols(), forces = u.rows() - models_.base.fem().dof_count();
   Eigen::MatrixXd amplitudes(own + forces, load_columns());
   for (const std::size_t index : frames_) {
+    q_.checkpoint();
     std::vector<double> times;
     for (const Eigen::VectorXd& theta : thetas)
       times.push_back(q_.frames[index].time - models_.base.sensors().delay(theta));

@@ -146,6 +146,7 @@ struct MeshError::Studies {
     const auto run = runs.start(theta, q.start);
     std::vector<Prediction> out;
     for (const Frame& frame : q.frames) {
+      q.checkpoint();
       run->advance(frame.time - coarse.sensors().delay(theta));
       const Eigen::VectorXd fine = run->output();
       const Eigen::Index own = coarse.fem().dof_count(), forces = coarse.output_size() - own;
@@ -233,6 +234,7 @@ MeshError::Answer MeshError::study(const Question& q) {
     Ensemble ensemble(s.coarse, *s.coarse_runs, s.operators);
     ensemble.restart(filter.sigma_points(), {q.start});
     for (std::size_t k = 0; k < q.frames.size(); ++k) {
+      q.checkpoint();
       ensemble.advance(q.frames[k].time);
       const Eigen::MatrixXd rows = ensemble.predict(q.frames[k]).rows;
       const Eigen::VectorXd& sigma = truth[k].sigma;

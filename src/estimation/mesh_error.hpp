@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -59,6 +60,7 @@ class MeshError {
     std::map<std::string, Course> courses;
     /// What a finer mesh changes in the rows of each frame (see `changes`); empty: not known.
     std::vector<Eigen::VectorXd> mesh_changes;
+    std::function<void()> checkpoint = [] {};  ///< called before every frame of a run; what it throws ends the study
 
     /// Asks about a model that has its loads.
     Question(const Model& model, std::vector<Frame> seen, Eigen::VectorXd at, Eigen::VectorXd around,

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "estimation/low_priority.hpp"
+#include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -18,6 +19,10 @@ constexpr double kInputGrowth = 1.5;
 
 Studies::Studies(const Model& model, const ReuseSources& relatives)
     : model_(model), relatives_(relatives), why_not_(MeshError::why_not(model)) {}
+
+Studies::~Studies() {
+  give_up();
+}
 
 Studies::Subjects Studies::due(std::size_t frames, bool anew, bool replaying, bool background) {
   const bool kept = job_.mesh_error != nullptr || replaying;
@@ -38,6 +43,9 @@ Studies::Subjects Studies::due(std::size_t frames, bool anew, bool replaying, bo
 }
 
 void Studies::begin(Question question, Subjects subjects, bool replaying, bool beside) {
+  question.checkpoint = [this] {
+    if (given_up_) throw NumericalError("given up");
+  };
   const auto work = [this, subjects, replaying, asked = std::make_shared<Question>(std::move(question))] {
     if (subjects.mesh || job_.mesh_error) study_mesh(*asked, subjects, replaying);
     if (subjects.inputs) study_inputs(*asked);
@@ -85,9 +93,17 @@ Studies::Answers Studies::take() {
   return out;
 }
 
-void Studies::reset() {
-  if (work_.valid()) work_.wait();
+// What is under way takes seconds, and a node that starts over has none.
+void Studies::give_up() {
+  if (!work_.valid()) return;
+  given_up_ = true;
+  if (work_.wait_for(std::chrono::seconds(0)) != std::future_status::deferred) work_.wait();
   work_ = {};
+  given_up_ = false;
+}
+
+void Studies::reset() {
+  give_up();
   job_.answers = {};
   job_.failure.clear();
   failure_.clear();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <future>
 #include <memory>
@@ -18,6 +19,9 @@ class Studies {
  public:
   /// The model has to outlive this.
   Studies(const Model& model, const ReuseSources& relatives);
+  ~Studies();
+  Studies(const Studies&) = delete;
+  Studies& operator=(const Studies&) = delete;
 
   struct Subjects {
     bool mesh = false, inputs = false;
@@ -40,13 +44,14 @@ class Studies {
   };
   /// Waits for the end.
   Answers take();
-  /// Waits for the end, and starts again as if there had been no frame.
+  /// Gives up what is under way, and starts again as if there had been no frame.
   void reset();
 
   /// Says why the mesh's error is not known; empty: it is, or will be.
   std::string mesh_unknown() const { return why_not_ + failure_; }
 
  private:
+  void give_up();
   void study_mesh(Question& question, Subjects subjects, bool once);
   void study_inputs(const Question& question);
 
@@ -64,6 +69,7 @@ class Studies {
     Answers answers;
     std::string failure;
   } job_;
+  std::atomic<bool> given_up_{false};
   std::future<void> work_;  ///< declared last, because it uses the members above
 };
 

@@ -198,9 +198,10 @@ void EstimatorNode::run_again() {
   const Recording recording = services_->check().recording();
   estimator_->set_first_stamp(recording.first_stamp);
   for (const LoadSample& load : recording.loads) estimator_->add_load(load);
+  if (recording.frames.empty()) return;
   const StepResult result = estimator_->replay(recording.frames);
-  if (!result.used) return;
   report(result);
+  if (!result.used) return outputs_.publish(estimator_->estimate(), ros::Time(recording.frames.back().time));
   const auto last = std::find_if(recording.frames.begin(), recording.frames.end(),
                                  [&](const Frame& frame) { return frame.time == result.misfit.time; });
   outputs_.publish(*estimator_, result, *last, ros::Time(last->time));
@@ -261,8 +262,9 @@ bool EstimatorNode::process(const FrameQueue::Work& work) {
 // When a recording has ended, its last reprocessing may still be running.
 void EstimatorNode::catch_up() {
   if (!last_) return;
-  const auto result = estimator_->catch_up();
+  auto result = estimator_->catch_up();
   if (!result) return;
+  if (stale_) result->estimate = stale(std::move(result->estimate));
   diagnostics_.set("estimate", shown(result->estimate));
   outputs_.publish(*estimator_, *result, *last_, last_stamp_);
   show_state(result->estimate);
@@ -273,16 +275,20 @@ void EstimatorNode::catch_up() {
 void EstimatorNode::mark_stale() {
   if (!last_ || stale_) return;
   const double since = std::chrono::duration<double>(std::chrono::steady_clock::now() - arrival_).count();
-  if (since < running_.stale_after || estimator_->reprocesses()) return;
+  if (since < running_.stale_after) return;
   stale_ = true;
-  Estimate estimate = estimator_->estimate();
+  const Estimate estimate = stale(estimator_->estimate());
+  outputs_.publish(estimate, last_stamp_);
+  show_state(estimate);
+}
+
+Estimate EstimatorNode::stale(Estimate estimate) const {
   std::ostringstream why;
   why << "no measurement could be used for " << running_.stale_after << " s; the state was " << to_string(estimate.state);
   if (!estimate.state_reason.empty()) why << " (" << estimate.state_reason << ")";
   estimate.state = EstimateState::stale;
   estimate.state_reason = why.str();
-  outputs_.publish(estimate, last_stamp_);
-  show_state(estimate);
+  return estimate;
 }
 
 void EstimatorNode::show_state(const Estimate& estimate) {

@@ -67,6 +67,7 @@ class EstimatorNode {
   bool process(const FrameQueue::Work& work);
   void catch_up();
   void mark_stale();
+  Estimate stale(Estimate estimate) const;
   void show_state(const Estimate& estimate);
   void report(const StepResult& result);
 
