@@ -2,16 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <mutex>
 #include <sstream>
 
 #include "tissue_stiffness/types/error.hpp"
+#include "types/read_file.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kUnitLength = 1e-3;  // by which the length of a quaternion may be off
+constexpr std::uintmax_t kLargestFile = 500000000;  // [byte]
+constexpr double kUnitLength = 1e-3;                // by which the length of a quaternion may be off
 
 // Returns the pose that seven numbers of a file give: position and quaternion.
 Eigen::VectorXd read_pose(const Eigen::VectorXd& numbers, const std::string& where) {
@@ -25,8 +26,7 @@ Eigen::VectorXd read_pose(const Eigen::VectorXd& numbers, const std::string& whe
 }  // namespace
 
 Course Course::from_csv(const std::string& file, LoadInput::Kind kind) {
-  std::ifstream stream(file);
-  if (!stream) throw InputError(file, "no readable file", "a CSV file with rows of time [s] and value(s)");
+  std::istringstream stream(read_file(file, file, "a CSV file with rows of time [s] and value(s)", kLargestFile));
   Course course(kind);
   const bool poses = kind == LoadInput::Kind::pose;
   const int columns = poses ? 7 : course.components();

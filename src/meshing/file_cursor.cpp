@@ -4,10 +4,10 @@
 #include <cctype>
 #include <cerrno>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 
+#include "meshing/mesh_limits.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "types/read_file.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -26,11 +26,9 @@ std::string printable(const std::string& text) {
 
 }  // namespace
 
-FileCursor::FileCursor(const std::string& file) : file_(file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError("mesh file " + file, "no readable file", "an existing mesh file");
-  bytes_.assign(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
-  if (in.bad() || bytes_.empty()) throw InputError("mesh file " + file, "an empty file", "a mesh");
+FileCursor::FileCursor(const std::string& file)
+    : file_(file), bytes_(read_file(file, "mesh file " + file, "an existing mesh file", kLargestMeshFile)) {
+  if (bytes_.empty()) throw InputError("mesh file " + file, "an empty file", "a mesh");
 }
 
 void FileCursor::skip_space() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <string>
 
 namespace tissue_stiffness {
@@ -9,8 +10,9 @@ namespace tissue_stiffness {
 /// and cubes leave the range of the numbers that the mesh is computed with.
 constexpr double kSmallestBody = 1e-6, kLargestBody = 1e3;
 constexpr double kFarthestPoint = 1e6;        ///< from the origin [m]
-constexpr double kMostTetrahedra = 1e7;       ///< that can be worked with
+constexpr double kMostTetrahedra = 2e6;       ///< that can be worked with: TetGen needs minutes and gigabytes for them
 constexpr double kFinestEdge = 1.0 / 1000.0;  ///< of the body's longest side
+constexpr std::uintmax_t kLargestMeshFile = 1000000000;  ///< [byte]
 
 /// Throws InputError, naming `where`, for points [m] that are not finite, too far away, or span a body outside these
 /// limits.

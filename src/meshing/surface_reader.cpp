@@ -5,13 +5,13 @@
 
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 
 #include "meshing/file_cursor.hpp"
 #include "meshing/file_ending.hpp"
 #include "meshing/mesh_limits.hpp"
 #include "meshing/triangle_surface.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "types/read_file.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -133,7 +133,7 @@ class QuietPcl {
 };
 
 TriangleSurface read_with_pcl(const std::string& file, const std::string& where) {
-  if (!std::ifstream(file)) throw InputError(where, "no readable file", "an existing surface file");
+  check_file(file, where, "an existing surface file", kLargestMeshFile);
   const QuietPcl quiet;
   pcl::PolygonMesh mesh;
   const bool ply = file_ending(file) == ".ply";

@@ -1,6 +1,5 @@
 #include <yaml-cpp/yaml.h>
 
-#include <fstream>
 #include <locale>
 #include <regex>
 #include <set>
@@ -8,6 +7,7 @@
 
 #include "tissue_stiffness/settings/value.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "types/read_file.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -15,6 +15,7 @@ namespace {
 // YAML aliases can make a short file endlessly deep or exponentially large.
 constexpr int deepest = 50;
 constexpr int most_values = 1000000;
+constexpr std::uintmax_t kLargestFile = 16000000;  // [byte]
 
 class Converter {
  public:
@@ -89,10 +90,7 @@ Value parse_yaml(const std::string& text, const std::string& name) {
 }
 
 Value load_yaml(const std::string& file) {
-  std::ifstream stream(file);
-  std::stringstream text;
-  if (!stream || !(text << stream.rdbuf())) throw InputError(file, "no readable file", "a YAML file");
-  return parse_yaml(text.str(), file);
+  return parse_yaml(read_file(file, file, "a YAML file", kLargestFile), file);
 }
 
 }  // namespace tissue_stiffness

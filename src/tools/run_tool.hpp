@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <iostream>
+#include <new>
 #include <type_traits>
 
 #include "tissue_stiffness/types/error.hpp"
@@ -32,6 +33,9 @@ int run_tool(CLI::App& app, int argc, char** argv, const Tool& tool) {
   } catch (const InputError& error) {
     std::cerr << app.get_name() << ": " << error.what() << "\n";
     return static_cast<int>(ExitCode::wrong_input);
+  } catch (const std::bad_alloc&) {
+    std::cerr << app.get_name() << ": the memory is too small for this model or recording\n";
+    return static_cast<int>(ExitCode::failed);
   } catch (const std::exception& error) {
     std::cerr << app.get_name() << ": " << error.what() << "\n";
     return static_cast<int>(ExitCode::failed);

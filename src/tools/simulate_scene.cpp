@@ -213,19 +213,29 @@ void drive(const Scene& scene, Model& model) {
   }
 }
 
-void publish_loads(const Scene& scene, RecordingWriter& writer) {
-  for (std::size_t i = 0; i < scene.loads.size(); ++i) {
-    const LoadScene& load = scene.loads[i];
-    std::mt19937_64 random(scene.seed + 104729 * (i + 1));
-    std::normal_distribution<double> normal;
-    const auto count = static_cast<int>(std::ceil(scene.duration * load.rate));
-    for (int k = 0; k <= count; ++k) {
-      Eigen::VectorXd value = load.value(k / load.rate);  // of a pose, the position comes first
-      for (Eigen::Index c = 0; c < std::min<Eigen::Index>(value.size(), 3); ++c) value[c] += load.noise * normal(random);
-      writer.write_load(load.input, kFirstStamp + ros::Duration(k / load.rate), value);
+/// The measured values of one load.
+class LoadMessages {
+ public:
+  LoadMessages(const Scene& scene, std::size_t index)
+      : load_(scene.loads[index]),
+        count_(static_cast<int>(std::ceil(scene.duration * load_.rate)) + 1),
+        random_(scene.seed + 104729 * (index + 1)) {}
+
+  /// Writes those up to this time [s], so that a bag holds all topics in the order of time, which is quick to read.
+  void write_until(double time, RecordingWriter& writer) {
+    for (; next_ < count_ && next_ / load_.rate <= time; ++next_) {
+      Eigen::VectorXd value = load_.value(next_ / load_.rate);  // of a pose, the position comes first
+      for (Eigen::Index c = 0; c < std::min<Eigen::Index>(value.size(), 3); ++c) value[c] += load_.noise * normal_(random_);
+      writer.write_load(load_.input, kFirstStamp + ros::Duration(next_ / load_.rate), value);
     }
   }
-}
+
+ private:
+  const LoadScene& load_;
+  int count_, next_ = 0;
+  std::mt19937_64 random_;
+  std::normal_distribution<double> normal_;
+};
 
 }  // namespace
 
@@ -250,7 +260,11 @@ SimulationSummary simulate_scene(const Scene& scene, const std::string& recordin
   for (std::size_t i = 0; i < scene.sensors.size(); ++i) sensors.push_back(std::make_unique<Sensor>(scene, model, i));
   RecordingWriter writer(recording);
   for (const auto& sensor : sensors) sensor->start(writer);
-  publish_loads(scene, writer);
+  std::vector<LoadMessages> loads;
+  for (std::size_t i = 0; i < scene.loads.size(); ++i) loads.emplace_back(scene, i);
+  const auto write_loads = [&](double time) {
+    for (LoadMessages& load : loads) load.write_until(time, writer);
+  };
   const FullModel forward(model, options);
   const Eigen::VectorXd theta = model.parameters().theta(Eigen::VectorXd(0));
   const double start = kFirstStamp.toSec() + scene.model.time.start;
@@ -261,6 +275,7 @@ SimulationSummary simulate_scene(const Scene& scene, const std::string& recordin
   double square = 0.0;
   for (int k = 0; k < total; ++k) {
     const ros::Time stamp = kFirstStamp + ros::Duration(k / scene.rate);
+    write_loads(k / scene.rate);
     trajectory->advance(stamp.toSec() - model.sensors().delay(theta));
     const Eigen::VectorXd output = trajectory->output(), u = output.head(model.fem().dof_count());
     const ObservedMotion seen = model.sensors().observe(theta, stamp.toSec() - start, u);
@@ -271,6 +286,7 @@ SimulationSummary simulate_scene(const Scene& scene, const std::string& recordin
     summary.frames = k + 1;
     progress(static_cast<std::size_t>(k) + 1, static_cast<std::size_t>(total));
   }
+  write_loads(std::numeric_limits<double>::infinity());
   writer.close();
   summary.motion_rms = std::sqrt(square / std::max(1, total));
   return summary;
