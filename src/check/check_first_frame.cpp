@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "check/rigid_fit.hpp"
+#include "check/starts_in_motion.hpp"
 #include "check/words.hpp"
 #include "meshing/surface.hpp"
 
@@ -90,7 +91,8 @@ double motion_since_rest(const FirstFrames& frames, const Observation& seen) {
 std::string rigid_words(const Cloud& cloud, const RigidFit& fit, double distance) {
   if (fit.rms > kFits * distance) {
     return "no rigid motion makes it fit (" + millimetres(fit.rms) +
-           " stay), so look for another body's mesh, or for a `time.start` at which the body was not at rest.";
+           " stay), so look for another body's mesh, or for a `time.start` at which the body was not at rest "
+           "(a body that moves then needs the effect `initial_motion`).";
   }
   const Eigen::Vector3d middle = cloud.points.rowwise().mean();
   const Eigen::AngleAxisd turn(fit.motion.linear());
@@ -147,7 +149,11 @@ SetupFindings check_first_frame(const ModelSettings& settings, const TetMesh& me
     if (seen.contour || traits_of(seen.kind).force || seen.points.cols() == 0) continue;
     const Cloud cloud = make_cloud(settings.observations[static_cast<std::size_t>(seen.source)], mesh, seen);
     const SetupFindings unit = check_unit(cloud);
-    append(findings, unit.empty() ? check_place(cloud, settings.mesh, motion_since_rest(frames, seen)) : unit);
+    if (!unit.empty()) {
+      append(findings, unit);
+    } else if (!starts_in_motion(settings)) {
+      append(findings, check_place(cloud, settings.mesh, motion_since_rest(frames, seen)));
+    }
   }
   return findings;
 }

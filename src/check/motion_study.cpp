@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "check/starts_in_motion.hpp"
 #include "fit/ensemble.hpp"
 #include "forward/reduced_model.hpp"
 
@@ -55,7 +56,7 @@ BasisOptions linear_form() {
 }  // namespace
 
 bool MotionStudy::applies(const ModelSettings& settings) {
-  return settings.initial.kind != InitialSettings::Kind::from_frames &&
+  return settings.initial.kind != InitialSettings::Kind::from_frames && !starts_in_motion(settings) &&
          std::any_of(settings.observations.begin(), settings.observations.end(),
                      [](const ObservationSettings& sensor) { return !traits_of(sensor.kind).force; }) &&
          std::none_of(settings.effects.begin(), settings.effects.end(),

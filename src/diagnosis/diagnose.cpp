@@ -28,14 +28,25 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr std::size_t kFewestFrames = 18;
-constexpr double kBaseSpread = 0.1;    // prior standard deviations, of the sigma points of the first fit
-constexpr int kMostBases = 3;          // rounds that are repeated because the model fits better elsewhere
-constexpr std::size_t kGrown = 2;      // leaders that are tried as one of several effects
-constexpr double kAddedSpread = 0.02;  // prior standard deviations, of those of a model that starts from a refit
+constexpr double kBaseSpread = 0.1;            // prior standard deviations, of the sigma points of the first fit
+constexpr double kShares[] = {0.1, 0.2, 0.4};  // of the training frames
+constexpr int kMostBases = 3;                  // rounds that are repeated because the model fits better elsewhere
+constexpr std::size_t kGrown = 2;              // leaders that are tried as one of several effects
+constexpr double kAddedSpread = 0.02;          // prior standard deviations, of those of a model that starts from a refit
+
+// A scan of the modulus over all frames says nothing while it is not known how the body starts. The first frames tell both,
+// whatever the prior, so such a model is fitted to more and more of them.
+Eigen::VectorXd starting_point(const RecordingFit& recording_fit) {
+  const ParameterSpace& parameters = recording_fit.model().parameters();
+  Eigen::VectorXd w = parameters.prior_mean();
+  if (!recording_fit.model().starts_in_motion()) return recording_fit.scan(w);
+  for (const double share : kShares) w = recording_fit.quick_fit(w, kBaseSpread * parameters.prior_std(), share).w;
+  return w;
+}
 
 FittedModel fit_model(const ModelSettings& settings, const TetMesh& mesh, const Recording& recording) {
   auto recording_fit = std::make_unique<RecordingFit>(settings, mesh, recording);
-  const Eigen::VectorXd start = recording_fit->scan(recording_fit->model().parameters().prior_mean());
+  const Eigen::VectorXd start = starting_point(*recording_fit);
   return fit_recording(std::move(recording_fit), start, kBaseSpread);
 }
 

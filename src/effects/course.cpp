@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
-#include <sstream>
 
 #include "tissue_stiffness/types/error.hpp"
-#include "types/read_file.hpp"
+#include "types/read_table.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
-constexpr std::uintmax_t kLargestFile = 500000000;  // [byte]
-constexpr double kUnitLength = 1e-3;                // by which the length of a quaternion may be off
+constexpr double kUnitLength = 1e-3;  // by which the length of a quaternion may be off
 
 // Returns the pose that seven numbers of a file give: position and quaternion.
 Eigen::VectorXd read_pose(const Eigen::VectorXd& numbers, const std::string& where) {
@@ -26,28 +24,14 @@ Eigen::VectorXd read_pose(const Eigen::VectorXd& numbers, const std::string& whe
 }  // namespace
 
 Course Course::from_csv(const std::string& file, LoadInput::Kind kind) {
-  std::istringstream stream(read_file(file, file, "a CSV file with rows of time [s] and value(s)", kLargestFile));
   Course course(kind);
   const bool poses = kind == LoadInput::Kind::pose;
-  const int columns = poses ? 7 : course.components();
-  std::string line;
-  for (int number = 1; std::getline(stream, line); ++number) {
-    std::replace(line.begin(), line.end(), ',', ' ');
-    std::istringstream row(line);
-    const std::string where = file + ":" + std::to_string(number);
-    double time = 0.0;
-    if (!(row >> time)) {
-      if (number == 1 || line.find_first_not_of(" \t\r") == std::string::npos || line[0] == '#') continue;
-      throw InputError(where, "'" + line + "'", "time [s] and value(s), numbers");
-    }
-    Eigen::VectorXd value(columns);
-    for (int i = 0; i < columns; ++i) {
-      if (!(row >> value[i]))
-        throw InputError(where, "'" + line + "'", "time [s] and " + std::to_string(columns) + " value(s)");
-    }
-    course.add(time, poses ? read_pose(value, where) : value);
+  const auto columns = static_cast<Eigen::Index>(poses ? 7 : course.components());
+  const std::string what = "time [s] and " + std::to_string(columns) + " value(s)";
+  for (const TableRow& row : read_table(file, static_cast<std::size_t>(columns) + 1, what)) {
+    const Eigen::VectorXd value = Eigen::Map<const Eigen::VectorXd>(row.numbers.data() + 1, columns);
+    course.add(row.numbers[0], poses ? read_pose(value, row.where) : value);
   }
-  if (course.empty()) throw InputError(file, "no rows", "at least one row of time [s] and value(s)");
   course.from_file_ = true;
   return course;
 }

@@ -60,6 +60,16 @@ struct RelaxationTerm {
   Coefficient time_constant;
 };
 
+/// How the body starts: the share of its static equilibrium under the first loads, and the amplitudes of six smooth motions
+/// (ReducedModel::start_shapes).
+struct InitialMotion {
+  double equilibrium = 0.0;                                                        ///< [-]
+  Eigen::Matrix<double, 6, 1> displacement = Eigen::Matrix<double, 6, 1>::Zero();  ///< [m]
+  Eigen::Matrix<double, 6, 1> velocity = Eigen::Matrix<double, 6, 1>::Zero();      ///< [m/s]
+
+  bool none() const { return equilibrium == 0.0 && displacement.isZero(0.0) && velocity.isZero(0.0); }
+};
+
 struct LinearTerms {
   std::vector<MatrixTerm> mass;                ///< [kg]
   std::vector<MatrixTerm> stiffness;           ///< [N/m], symmetric
@@ -76,6 +86,7 @@ struct LinearTerms {
   /// Region whose motion is prescribed; empty: none. Its stiffness terms do not relax and pull it to where its prescribed
   /// loads want it. Together they are the whole force on it.
   std::string guided_region;
+  std::function<InitialMotion(const Parameters&)> initial_motion;  ///< null: undeformed and at rest
 };
 
 }  // namespace tissue_stiffness

@@ -102,7 +102,7 @@ Eigen::MatrixXd acting_loads(const Model& model, const PriorView& prior, const S
       if (term.coefficient(p) != 0.0) append(loads, term.shaped ? term.shaped(p) : term.pattern);
     }
   }
-  if (model.settings().initial.kind == InitialSettings::Kind::rest) return loads;
+  if (model.settings().initial.kind == InitialSettings::Kind::rest && !model.starts_in_motion()) return loads;
   for (int i = 0; i < 3; ++i) {
     Eigen::VectorXd push = along(model, i);
     for (Eigen::Index k = 0; k < push.size(); ++k) {

@@ -9,6 +9,7 @@
 #include "fem/products.hpp"
 #include "fem/strain.hpp"
 #include "forward/for_each_index.hpp"
+#include "forward/reduced_model.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -25,7 +26,7 @@ double tolerance_of(const Model& model, double share) {
   return (model.reactions().empty() ? share : kForReactions * share) * size;
 }
 
-DynamicState at_start(const Model& model, const Eigen::VectorXd& theta, double start) {
+DynamicState at_start(const Model& model, const Eigen::VectorXd& theta, double start, const ReducedModel* linear_form) {
   const Eigen::Index n = model.fem().dof_count();
   DynamicState state;
   state.time = start;
@@ -33,6 +34,11 @@ DynamicState at_start(const Model& model, const Eigen::VectorXd& theta, double s
   state.velocity = model.initial_velocity(theta).replicate(n / 3, 1);
   for (Eigen::Index i = 0; i < n; ++i) {
     if (model.fixed()[static_cast<std::size_t>(i)] != 0) state.velocity[i] = 0.0;
+  }
+  if (linear_form != nullptr) {
+    const auto run = linear_form->start(theta, start);
+    state.displacement = run->displacement();
+    state.velocity = run->velocity();
   }
   return state;
 }
@@ -166,8 +172,18 @@ class FullTrajectory : public Trajectory {
 
 }  // namespace
 
+// The linear form finds the static equilibrium and the smooth motions of the start.
+FullModel::FullModel(const Model& model, const Options& options) : model_(model), options_(options) {
+  if (!model.starts_in_motion()) return;
+  BasisOptions basis;
+  basis.nonlinear = BasisOptions::Nonlinear::left_out;
+  linear_form_ = std::make_unique<ReducedModel>(model, basis);
+}
+
+FullModel::~FullModel() = default;
+
 std::unique_ptr<Trajectory> FullModel::start(const Eigen::VectorXd& theta, double start) const {
-  return std::make_unique<FullTrajectory>(model_, theta, at_start(model_, theta, start), options_);
+  return std::make_unique<FullTrajectory>(model_, theta, at_start(model_, theta, start, linear_form_.get()), options_);
 }
 
 std::unique_ptr<Trajectory> FullModel::resume(const Eigen::VectorXd& theta, const Trajectory& from) const {
@@ -189,7 +205,7 @@ std::unique_ptr<Trajectories> FullModel::resume_all(const std::vector<Eigen::Vec
 std::unique_ptr<Trajectories> FullModel::start_all(const std::vector<Eigen::VectorXd>& thetas, double start) const {
   if (!hold_the_same(thetas)) return ForwardModel::start_all(thetas, start);
   std::vector<DynamicState> states;
-  for (const Eigen::VectorXd& theta : thetas) states.push_back(at_start(model_, theta, start));
+  for (const Eigen::VectorXd& theta : thetas) states.push_back(at_start(model_, theta, start, linear_form_.get()));
   return std::make_unique<FullTrajectories>(model_, thetas, std::move(states), options_);
 }
 

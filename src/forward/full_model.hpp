@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 
 #include "fem/generalized_alpha.hpp"
@@ -8,6 +9,8 @@
 #include "forward/forward_model.hpp"
 
 namespace tissue_stiffness {
+
+class ReducedModel;
 
 /// All degrees of freedom of the mesh, integrated with implicit Newmark or generalised-alpha steps.
 class FullModel : public ForwardModel {
@@ -18,7 +21,8 @@ class FullModel : public ForwardModel {
     double spectral_radius = 0.9;  ///< of generalised-alpha at infinite frequency; 1 is Newmark's average acceleration
     double tolerance = 3e-6;  ///< neglected corrections over the body's size; small, as the filter uses differences of runs
   };
-  FullModel(const Model& model, const Options& options) : model_(model), options_(options) {}
+  FullModel(const Model& model, const Options& options);
+  ~FullModel() override;
 
   std::unique_ptr<Trajectory> start(const Eigen::VectorXd& theta, double start) const override;
   /// Runs that hold the same nodes are stepped together with one factor.
@@ -33,6 +37,7 @@ class FullModel : public ForwardModel {
 
   const Model& model_;
   Options options_;
+  std::unique_ptr<ReducedModel> linear_form_;  ///< for a start in motion; null: from rest
 };
 
 /// The model at one theta, in the form that the integrator needs.

@@ -57,6 +57,7 @@ Model::Model(const ModelSettings& settings, std::shared_ptr<const Body> body, co
     if (constraint_count_[node] > 0) std::fill_n(fixed_.begin() + static_cast<std::ptrdiff_t>(3 * node), 3, char{1});
   }
   parameters_.add_initial_velocity(settings_.initial);
+  prior_theta_ = parameters_.known();
   sensors_ = Sensors(mesh(), parts_);
   loads_.set_rest(settings_.time.start);
   find_guided_regions();

@@ -64,6 +64,11 @@ class Model {
   void know(const Eigen::VectorXd& theta);
 
   Eigen::Vector3d initial_velocity(const Eigen::VectorXd& theta) const { return theta.tail<3>(); }
+  /// Returns whether the body starts, or may start, loaded or in motion, and the sum of what the effects say of it at theta.
+  bool starts_in_motion() const;
+  InitialMotion initial_motion(const Eigen::VectorXd& theta) const;
+  /// Returns theta at the prior of the model file. It stays the same where `know` changes what is known.
+  const Eigen::VectorXd& prior_theta() const { return prior_theta_; }
 
   /// These return the matrices at theta. `stiffness` holds the linear part, `rest_stiffness` that of the body at rest,
   /// `reference_stiffness` the same without springs that do not relax.
@@ -145,6 +150,7 @@ class Model {
   std::shared_ptr<const Body> body_;
   Eigen::VectorXd rest_;
   ParameterSpace parameters_;
+  Eigen::VectorXd prior_theta_;
   Loads loads_;
   Sensors sensors_;
   std::vector<Part> parts_;

@@ -54,6 +54,25 @@ std::vector<char> Model::fixed(const Eigen::VectorXd& theta) const {
   return flags;
 }
 
+bool Model::starts_in_motion() const {
+  return std::any_of(parts_.begin(), parts_.end(), [this](const Part& part) {
+    return part.terms.initial_motion &&
+           (estimated(part) || !part.terms.initial_motion(part.parameters(prior_theta_)).none());
+  });
+}
+
+InitialMotion Model::initial_motion(const Eigen::VectorXd& theta) const {
+  InitialMotion sum;
+  for (const Part& part : parts_) {
+    if (!part.terms.initial_motion) continue;
+    const InitialMotion own = part.terms.initial_motion(part.parameters(theta));
+    sum.equilibrium += own.equilibrium;
+    sum.displacement += own.displacement;
+    sum.velocity += own.velocity;
+  }
+  return sum;
+}
+
 SparseMatrix Model::mass(const Eigen::VectorXd& theta) const {
   SparseMatrix m = fem().pattern();
   const double factor = mass_factor(theta);

@@ -430,6 +430,27 @@ Eigen::MatrixXd ReducedModel::basis_at(const std::vector<int>& nodes) const {
   return rows;
 }
 
+const Eigen::MatrixXd& ReducedModel::start_shapes() const {
+  std::call_once(start_shapes_found_, [this] {
+    const std::shared_ptr<const ReducedModes> at_prior = modes(model_.prior_theta());
+    const Eigen::VectorXd flexibility = at_prior->flexibility();
+    Eigen::MatrixXd modal(flexibility.size(), 6);
+    for (int axis = 0; axis < 3; ++axis) {
+      const Eigen::VectorXd first = flexibility.cwiseProduct(at_prior->weight.col(axis));
+      const Eigen::VectorXd second = flexibility.cwiseProduct(first);
+      modal.col(axis) = first;
+      modal.col(3 + axis) = second - first.dot(second) / first.squaredNorm() * first;
+    }
+    start_shapes_ = at_prior->shapes * modal;
+    for (Eigen::Index k = 0; k < start_shapes_.cols(); ++k) {
+      const Eigen::VectorXd u = basis_.vectors * start_shapes_.col(k);
+      start_shapes_.col(k) /=
+          std::sqrt(Eigen::Map<const Eigen::Matrix3Xd>(u.data(), 3, u.size() / 3).colwise().squaredNorm().maxCoeff());
+    }
+  });
+  return start_shapes_;
+}
+
 void ReducedModel::restrict_output_to(const std::vector<int>& nodes) {
   output_nodes_ = nodes;
   basis_at_output_ = PackedMatrix(basis_at(nodes));

@@ -21,6 +21,12 @@ struct ReducedModes {
   Eigen::MatrixX3d momentum;       ///< modal velocity of a unit initial velocity of the nodes that are not held
   double stiffness_inertia = 0.0;  ///< gamma, if M is that of the body plus gamma K [s^2]
 
+  /// Returns 1 / omega^2 of the modes that deform the body, and 0 for those that move it as a whole.
+  Eigen::VectorXd flexibility() const {
+    return (square.array() > kRigid * square.maxCoeff()).select(square.cwiseInverse(), 0.0);
+  }
+  static constexpr double kRigid = 1e-12;
+
   /// Returns the modal value of alpha M_body + beta K [1/s].
   Eigen::ArrayXd damping(double alpha, double beta) const {
     return alpha + (beta - alpha * stiffness_inertia) * square.array();
@@ -68,6 +74,10 @@ class ReducedModel : public ForwardModel {
   Eigen::MatrixXd basis_at(const std::vector<int>& nodes) const;
   /// Returns the nodal displacement of basis coordinates, 3n. It is zero at nodes that the output does not hold.
   Eigen::VectorXd displacement(const Eigen::VectorXd& coordinates) const;
+  /// Returns six smooth motions in basis coordinates, basis size x 6, that the body may have at the start: a_i ~ K^-1 M 1_i
+  /// for the three axes i, and b_i, what of K^-1 M a_i is M-orthogonal to a_i. K and M are those of the prior. The largest
+  /// displacement of each is 1.
+  const Eigen::MatrixXd& start_shapes() const;
   /// Returns how the reactions follow from the motion of the modes at theta.
   ReactionRows reaction_rows(const Eigen::VectorXd& theta, const ReducedModes& modes) const;
   /// Computes the displacements of several columns of coordinates. They are written to those rows of `out` that belong to
@@ -139,6 +149,8 @@ class ReducedModel : public ForwardModel {
   Eigen::MatrixXd reaction_springs_;  ///< for a unit coefficient, basis size x 3 for each reaction
   std::vector<Projected> projected_;  ///< one for each part
   StrainRows strains_;                ///< strains of the basis, if a term needs them for each theta
+  mutable std::once_flag start_shapes_found_;
+  mutable Eigen::MatrixXd start_shapes_;
   mutable std::mutex mutex_;
   mutable std::vector<Known> known_;
   mutable std::vector<Shaped> shaped_;  ///< the last few projections of terms whose place or angle is estimated

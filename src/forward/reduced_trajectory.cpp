@@ -8,6 +8,8 @@
 namespace tissue_stiffness {
 namespace {
 
+constexpr int kSlopeSamples = 6;
+constexpr double kSlopeStep = 0.01;  // [s] between the samples of a load's rate
 constexpr double kLoadStep = 0.004;  // [s] at most between two evaluations of a load
 
 }  // namespace
@@ -28,6 +30,7 @@ ReducedTrajectory::ReducedTrajectory(const ReducedModel& reduced, const Eigen::V
   state_.col(1) = modes_->momentum * reduced.model().initial_velocity(theta);
   collect_loads(theta);
   force_ = modal_force(start);
+  if (reduced.model().starts_in_motion()) set_in_motion(reduced.model().initial_motion(theta));
   for (Prescribed& motion : prescribed_) begin(motion);
 }
 
@@ -39,6 +42,13 @@ ReducedTrajectory::ReducedTrajectory(const ReducedModel& reduced, const Eigen::V
   for (Eigen::Index branch = shared; branch < state_.cols(); ++branch) state_.col(branch) = state_.col(0);  // relaxed
   if (branches_.size() != from.branches_.size() || prescribed_.size() != from.prescribed_.size()) return;
   for (std::size_t i = 0; i < prescribed_.size(); ++i) prescribed_[i].relaxed = from.prescribed_[i].relaxed;
+}
+
+void ReducedTrajectory::set_in_motion(const InitialMotion& initial) {
+  const Eigen::MatrixXd shapes = modes_->to_modal * reduced_.start_shapes();
+  state_.col(0) += initial.equilibrium * modes_->flexibility().cwiseProduct(force_) + shapes * initial.displacement;
+  state_.col(1) += initial.equilibrium * modes_->flexibility().cwiseProduct(modal_force_rate()) + shapes * initial.velocity;
+  for (Eigen::Index branch = 2; branch < state_.cols(); ++branch) state_.col(branch) = state_.col(0);  // relaxed
 }
 
 void ReducedTrajectory::collect_loads(const Eigen::VectorXd& theta) {
@@ -67,6 +77,18 @@ Eigen::VectorXd ReducedTrajectory::modal_force(double time) const {
     if (const double now = value(load, time); now != 0.0) f += now * load.modal;
   }
   return f;
+}
+
+// The slope of a line through the first forces, because measured loads are noisy.
+Eigen::VectorXd ReducedTrajectory::modal_force_rate() const {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(force_.size());
+  double squares = 0.0;
+  for (int k = 0; k < kSlopeSamples; ++k) {
+    const double from_middle = kSlopeStep * (k - 0.5 * (kSlopeSamples - 1));
+    sum += from_middle * modal_force(time_ + kSlopeStep * k);
+    squares += from_middle * from_middle;
+  }
+  return sum / squares;
 }
 
 void ReducedTrajectory::begin(Prescribed& motion) const {

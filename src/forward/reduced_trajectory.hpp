@@ -61,11 +61,13 @@ class ReducedTrajectory : public Trajectory {
     Eigen::VectorXd relaxed = {};      ///< z of each branch
     double before = 0.0, after = 0.0;  ///< load at both ends of the last step
   };
+  void set_in_motion(const InitialMotion& initial);
   void collect_loads(const Eigen::VectorXd& theta);
   double value(const Load& load, double time) const {
     return reduced_.model().loads().value(*load.term, load.parameters, load_factor_, time);
   }
   Eigen::VectorXd modal_force(double time) const;
+  Eigen::VectorXd modal_force_rate() const;
   void begin(Prescribed& motion) const;
   void follow(Prescribed& motion, double time, double step) const;
   bool fast(Eigen::Index mode) const { return modes_->square[mode] * last_.step * last_.step > 1.0; }

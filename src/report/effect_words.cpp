@@ -12,6 +12,7 @@ std::string effect_title(const std::string& effect) {
 
 std::string effect_sign(const std::string& effect) {
   static const std::map<std::string, std::string> signs{
+      {"initial_motion", "the body was loaded or moved already when the recording began"},
       {"gravity", "the body hangs or sags as if its weight had been left out"},
       {"pressure", "the wall moves as if a fluid pressed on it that the model does not have"},
       {"traction", "the body moves as if a force pulled on it that the model does not have"},

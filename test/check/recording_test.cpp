@@ -121,6 +121,14 @@ TEST_F(CheckRecording, SaysSoWhereNoRigidMotionFits) {
   EXPECT_TRUE(says(first_frame(pushed_bar(kPrior)), {"/vertices", "off the mesh", "no rigid motion"}));
 }
 
+TEST_F(CheckRecording, SaysNothingOfABodyThatStartsInMotion) {
+  for (Frame& frame : recorded_.frames) frame.observations.front().points.row(0) *= 2.0;
+  ModelSettings model = pushed_bar(kPrior);
+  model.effects.emplace_back().name = "initial_motion";
+  EXPECT_TRUE(nothing(first_frame(model)));
+  EXPECT_TRUE(nothing(check_motion(model, mesh_, recorded_)));
+}
+
 TEST_F(CheckRecording, NamesAForceOfTheWrongSign) {
   scale_force(-1.0);
   EXPECT_TRUE(says(check_motion(pushed_bar(kPrior), mesh_, recorded_),

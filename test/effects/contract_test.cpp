@@ -35,6 +35,11 @@ std::string text(const ParameterSpec& parameter, double value) {
 // A value that does something on the bar, or one inside the bounds and away from their ends.
 std::string example(const EffectSpec& spec, const ParameterSpec& parameter) {
   static const Arguments typical{
+      {"initial_motion.equilibrium", "0.5"},
+      {"initial_motion.displacement", "[0.001, -0.002, 0.001]"},
+      {"initial_motion.velocity", "[0.02, 0.05, -0.03]"},
+      {"initial_motion.second_displacement", "[0.0002, 0.0004, -0.0003]"},
+      {"initial_motion.second_velocity", "[0.01, 0.02, -0.01]"},
       {"viscoelasticity.gamma", "0.5"},
       {"viscoelasticity.tau", "0.01"},
       {"elastic_support.compliance", "1.0e-6"},
