@@ -116,7 +116,7 @@ def print_live(names, options, done):
 
 
 def print_speed(names, done):
-    """Rows for the README."""
+    """Rows for doc/results.md."""
     print('\n| recording | frames/s | %s |' % ' | '.join('%s, median / p99 [ms]' % stage for stage in STAGES[1:]))
     print('|---' * (len(STAGES) + 1) + '|')
     for name in names:
