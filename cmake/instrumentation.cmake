@@ -1,6 +1,7 @@
-# Builds that watch themselves, each in a folder of its own: scripts/test --sanitize and --coverage.
+# Builds that watch themselves, each in a folder of its own: scripts/test --sanitize and --coverage, and scripts/fuzz.
 option(TISSUE_STIFFNESS_SANITIZE "Stop at wrong memory accesses, leaks and undefined behaviour" OFF)
 option(TISSUE_STIFFNESS_COVERAGE "Count which lines run" OFF)
+option(TISSUE_STIFFNESS_FUZZ "Build the fuzzers of test/fuzz, which clang links" OFF)
 
 if(TISSUE_STIFFNESS_SANITIZE OR TISSUE_STIFFNESS_COVERAGE)
   # Without NDEBUG: Eigen's assertions see a wrong index that still hits memory of the same matrix.
@@ -28,4 +29,13 @@ if(TISSUE_STIFFNESS_COVERAGE)
   # Threads count too, and what other libraries' headers compute is not our coverage.
   add_compile_options(--coverage -fprofile-update=atomic "-fprofile-filter-files=${PROJECT_SOURCE_DIR}/(src|include)/.*")
   add_link_options(--coverage)
+endif()
+
+if(TISSUE_STIFFNESS_FUZZ)
+  set(CMAKE_CXX_FLAGS_RELEASE "-O1 -g")
+  # Warnings are GCC's business. Signed overflow and the like in other libraries' headers are not ours.
+  add_compile_options(-w -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=address,undefined)
+  set(CMAKE_DISABLE_FIND_PACKAGE_nodelet TRUE)
+  set(CMAKE_DISABLE_FIND_PACKAGE_rviz TRUE)
 endif()

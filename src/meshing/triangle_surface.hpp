@@ -18,7 +18,7 @@ struct TriangleSurface {
 /// Returns whether load_surface knows the file's ending: .stl, .ply or .obj.
 bool is_surface_file(const std::string& file);
 
-/// Reads a surface file (STL ASCII or binary, PLY and OBJ through PCL; polygons are cut into fans). Coordinates are
+/// Reads a surface file (STL, PLY, OBJ; ASCII or binary; polygons are cut into fans). Coordinates are
 /// multiplied by `scale` [m per file unit]. The surface is welded, checked to be closed, and oriented. Throws InputError
 /// naming file and place.
 TriangleSurface load_surface(const std::string& file, double scale);
