@@ -15,6 +15,10 @@ std::string plain(const std::string& frame) {
   return !frame.empty() && frame[0] == '/' ? frame.substr(1) : frame;
 }
 
+InputError no_pose(const std::string& topic, const std::string& found, const std::string& reason) {
+  return {topic + ": header.frame_id", found + " (" + reason + ")", "a pose on /tf or /tf_static at the stamp"};
+}
+
 }  // namespace
 
 SensorPoses::SensorPoses(std::string model_frame, double patience)
@@ -34,15 +38,14 @@ Eigen::Isometry3d SensorPoses::model_from(const std_msgs::Header& header, const 
   while (!buffer_.canTransform(model_frame_, frame, header.stamp, ros::Duration(0), &reason)) {
     if (Clock::now() >= until || !ros::ok()) {
       waits_.in_vain(frame, begun, Clock::now());
-      throw InputError(topic + ": header.frame_id", frame + " without a pose in " + model_frame_ + " (" + reason + ")",
-                       "a pose on /tf or /tf_static at the stamp");
+      throw no_pose(topic, frame + " without a pose in " + model_frame_, reason);
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   try {
     return to_isometry(buffer_.lookupTransform(model_frame_, frame, header.stamp).transform, "/tf: " + frame);
   } catch (const tf2::TransformException& error) {
-    throw InputError(topic + ": header.frame_id", frame + " (" + error.what() + ")", "a pose on /tf or /tf_static");
+    throw no_pose(topic, frame, error.what());
   }
 }
 

@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
       "Example: pack model.yaml --data /tissue/vertices=points.csv /tool/wrench=force.csv --output recording.bag");
   return run_tool(app, argc, argv, [&] {
     std::vector<PackedTopic> topics;
+    topics.reserve(data.size());
     for (const std::string& text : data) topics.push_back(read_packed_topic(text));
     for (const PackedSummary& topic : pack_recording(load_model(model), topics, scale, output)) {
       std::cout << topic.topic << ": " << topic.messages << " messages over " << topic.duration << " s\n";
