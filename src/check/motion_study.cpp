@@ -47,12 +47,6 @@ bool ends_with(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-BasisOptions linear_form() {
-  BasisOptions options;
-  options.nonlinear = BasisOptions::Nonlinear::left_out;
-  return options;
-}
-
 }  // namespace
 
 bool MotionStudy::applies(const ModelSettings& settings) {
@@ -68,7 +62,7 @@ MotionStudy::MotionStudy(const ModelSettings& settings, const TetMesh& mesh, con
       operators_(make_observation_operators(model_)),
       shown_(thinned(without_forces(recorded.frames))) {
   model_.loads().drive(recorded.first_stamp, recorded.loads);
-  forward_ = make_forward_model(model_, linear_form());
+  forward_ = make_forward_model(model_, BasisOptions().linear_form());
   start_ = recorded.first_stamp + settings.time.start;
   std::vector<double> all;
   for (std::size_t k = 0; k < shown_.size(); ++k) {

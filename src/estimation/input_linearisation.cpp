@@ -80,9 +80,7 @@ InputModels::InputModels(const Model& model)
       operators(make_observation_operators(base)),
       constants(model.parameters().uncertain_constants()),
       rigid(rigid_motions(base.mesh())) {
-  BasisOptions basis;
-  basis.nonlinear = BasisOptions::Nonlinear::left_out;
-  runs = std::make_unique<ReducedModel>(uncertain, basis);
+  runs = std::make_unique<ReducedModel>(uncertain, BasisOptions().linear_form());
 }
 
 NormalEquations::NormalEquations(Eigen::Index size, Eigen::Index constant_count)

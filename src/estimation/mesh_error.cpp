@@ -43,11 +43,6 @@ double available_memory() {
   return std::numeric_limits<double>::infinity();
 }
 
-BasisOptions of_linear_part(BasisOptions basis) {
-  basis.nonlinear = BasisOptions::Nonlinear::left_out;
-  return basis;
-}
-
 void drive(const MeshError::Question& question, Model& model) {
   for (const auto& [topic, course] : question.courses) *model.loads().courses().at(topic) = course;
   model.loads().set_first_stamp(question.first_stamp);
@@ -119,7 +114,7 @@ struct MeshError::Studies {
   // The finer model has theta fixed, if one is given.
   Studies(const Model& model, const BasisOptions& basis, const Eigen::VectorXd* theta, const ReuseSources& known)
       : coarse(model.settings(), model), operators(make_observation_operators(coarse)) {
-    coarse_runs = std::make_unique<ReducedModel>(coarse, of_linear_part(basis), known.own);
+    coarse_runs = std::make_unique<ReducedModel>(coarse, basis.linear_form(), known.own);
     if (known.finer != nullptr) {
       fine = std::make_unique<Model>(coarse.settings(), known.finer->model());
     } else {
@@ -128,8 +123,7 @@ struct MeshError::Studies {
                                      refine_regions(coarse.body().regions, coarse.mesh(), refined));
     }
     if (theta != nullptr) fine->know(*theta);
-    fine_runs =
-        std::make_unique<ReducedModel>(*fine, of_linear_part(basis_beside(coarse.mesh(), fine->mesh())), known.finer);
+    fine_runs = std::make_unique<ReducedModel>(*fine, basis_beside(coarse.mesh(), fine->mesh()).linear_form(), known.finer);
   }
 
   void prepare(const Question& q) {

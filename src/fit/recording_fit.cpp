@@ -167,9 +167,7 @@ Eigen::MatrixXd RecordingFit::rows_along(const Eigen::VectorXd& w, const Eigen::
 
 std::shared_ptr<const ReducedModel> RecordingFit::reduced() const {
   if (auto linear = std::dynamic_pointer_cast<const ReducedModel>(forward_)) return linear;
-  BasisOptions options;
-  options.nonlinear = BasisOptions::Nonlinear::left_out;
-  return std::make_shared<ReducedModel>(model_, options);
+  return std::make_shared<ReducedModel>(model_, BasisOptions().linear_form());
 }
 
 BatchFit RecordingFit::fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread, double rival) {

@@ -174,10 +174,7 @@ class FullTrajectory : public Trajectory {
 
 // The linear form finds the static equilibrium and the smooth motions of the start.
 FullModel::FullModel(const Model& model, const Options& options) : model_(model), options_(options) {
-  if (!model.starts_in_motion()) return;
-  BasisOptions basis;
-  basis.nonlinear = BasisOptions::Nonlinear::left_out;
-  linear_form_ = std::make_unique<ReducedModel>(model, basis);
+  if (model.starts_in_motion()) linear_form_ = std::make_unique<ReducedModel>(model, BasisOptions().linear_form());
 }
 
 FullModel::~FullModel() = default;

@@ -38,6 +38,13 @@ struct BasisOptions {
   /// these are all of its vectors, its projections onto them are taken, too.
   bool adopt = false;
   bool keep_root = false;  ///< for later models of the same body; it holds the stiffness's factor
+
+  /// Returns these options with nonlinear effects left out.
+  BasisOptions linear_form() const {
+    BasisOptions out = *this;
+    out.nonlinear = Nonlinear::left_out;
+    return out;
+  }
 };
 
 /// Builds load-dependent Ritz vectors (Wilson, Yuan & Dickens 1982): repeated K^-1 M solves from the static responses to
