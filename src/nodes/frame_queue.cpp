@@ -70,16 +70,16 @@ bool FrameQueue::starts_over(const Topic& topic, const ros::Time& stamp) const {
          seconds_between(newest, stamp) > kJumpAhead;
 }
 
-void FrameQueue::put(Topic& topic, const Filter::Believed& believed) {
-  if (believed.messages.empty()) return;
-  const ros::Time& first = believed.messages.front().stamp;
+void FrameQueue::put(Topic& topic, const std::vector<Filter::Stamped>& believed) {
+  if (believed.empty()) return;
+  const ros::Time& first = believed.front().stamp;
   if (!topic.filter.stamps().seen) {
     topic.epoch = newest_epoch_;
-  } else if (believed.held && starts_over(topic, first)) {
+  } else if (starts_over(topic, first)) {
     move(topic, first);
     topic.filter.start_over();
   }
-  for (const Filter::Stamped& message : believed.messages) message.message(place(topic, message.stamp));
+  for (const Filter::Stamped& message : believed) message.message(place(topic, message.stamp));
 }
 
 FrameQueue::Place FrameQueue::place(Topic& topic, const ros::Time& stamp) {

@@ -90,7 +90,7 @@ class FrameQueue {
   Topic& find_topic(const std::string& name);
   void accept(const std::string& name, const ros::Time& stamp, Put put);
   bool starts_over(const Topic& topic, const ros::Time& stamp) const;
-  void put(Topic& topic, const Filter::Believed& believed);
+  void put(Topic& topic, const std::vector<Filter::Stamped>& believed);
   Place place(Topic& topic, const ros::Time& stamp);
   /// Moves a topic whose stamps start over to the epoch that they belong to.
   void move(Topic& topic, const ros::Time& stamp);

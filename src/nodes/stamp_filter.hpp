@@ -27,27 +27,21 @@ class StampFilter {
     ros::Time stamp;
     Message message;
   };
-  /// Messages that are believed, in order. `held`: they were held back, so their stamps are the topic's first or have
-  /// jumped.
-  struct Believed {
-    std::vector<Stamped> messages;
-    bool held = false;
-  };
-
   const TopicStamps& stamps() const { return stamps_; }
 
-  /// Adds a message that arrives `now`. `restarts`: the caller knows that the topic's stamps begin anew with this one.
-  Believed add(const ros::Time& stamp, Message message, double now, bool restarts = false) {
+  /// Adds a message that arrives `now`. Returns the messages that are believed thereby, in order. `restarts`: the caller
+  /// knows that the topic's stamps begin anew with this one.
+  std::vector<Stamped> add(const ros::Time& stamp, Message message, double now, bool restarts = false) {
     note_arrival(now);
     if (stamps_.seen && !restarts && stamps_.go_on_with(stamp)) {
       leave_out_held();
-      return {{{stamp, std::move(message)}}, false};
+      return {{stamp, std::move(message)}};
     }
     leave_out_contradicted(stamp);
     held_.push_back({stamp, std::move(message)});
     const std::size_t agreeing = count_agreeing();
     while (held_.size() > (agreeing >= kAgreeingStamps ? agreeing : kMostHeld)) leave_out(0, stamp);
-    return agreeing >= kAgreeingStamps ? release() : Believed{};
+    return agreeing >= kAgreeingStamps ? release() : std::vector<Stamped>{};
   }
 
   bool holds() const { return !held_.empty(); }
@@ -55,7 +49,8 @@ class StampFilter {
   double silent_from() const {
     return last_arrival_ + std::max(patience_, kPauses * std::max(arrival_interval_, stamps_.interval));
   }
-  Believed release() { return {std::exchange(held_, {}), true}; }
+  /// Believes what is held.
+  std::vector<Stamped> release() { return std::exchange(held_, {}); }
 
   /// Goes on with the stamp of a believed message.
   void advance(const ros::Time& stamp) { stamps_.advance(stamp); }

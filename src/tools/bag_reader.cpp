@@ -152,8 +152,8 @@ void BagReader::accept(const std::string& name, const ros::Time& stamp, Put put)
   if (filter.left_out() > left_out) last_broken_ = name + ": " + filter.last_left_out();
 }
 
-void BagReader::believe(Filter& filter, const Filter::Believed& believed) {
-  for (const Filter::Stamped& message : believed.messages) {
+void BagReader::believe(Filter& filter, const std::vector<Filter::Stamped>& believed) {
+  for (const Filter::Stamped& message : believed) {
     filter.advance(message.stamp);
     message.message();
   }

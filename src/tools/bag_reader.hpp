@@ -88,7 +88,7 @@ class BagReader {
   bool read_message();
   /// Calls `put` once the stamp is believed.
   void accept(const std::string& topic, const ros::Time& stamp, Put put);
-  void believe(Filter& filter, const Filter::Believed& believed);
+  void believe(Filter& filter, const std::vector<Filter::Stamped>& believed);
   void release_overdue();
   void release_last();
   void add_force(const rosbag::MessageInstance& message, int source);

@@ -16,9 +16,9 @@ class StampFilterTest : public testing::Test {
 
   // Returns how many messages are believed.
   std::size_t add(double stamp) { return believe(filter.add(at(stamp), 0, now)); }
-  std::size_t believe(const StampFilter<int>::Believed& believed) {
-    for (const auto& message : believed.messages) filter.advance(message.stamp);
-    return believed.messages.size();
+  std::size_t believe(const std::vector<StampFilter<int>::Stamped>& believed) {
+    for (const auto& message : believed) filter.advance(message.stamp);
+    return believed.size();
   }
   // A topic of a message every 0.2 s.
   void start() {
