@@ -5,24 +5,10 @@
 #include <mutex>
 
 #include "tissue_stiffness/types/error.hpp"
+#include "types/read_pose.hpp"
 #include "types/read_table.hpp"
 
 namespace tissue_stiffness {
-namespace {
-
-constexpr double kUnitLength = 1e-3;  // by which the length of a quaternion may be off
-
-// Returns the pose that seven numbers of a file give: position and quaternion.
-Eigen::VectorXd read_pose(const Eigen::VectorXd& numbers, const std::string& where) {
-  const Eigen::Quaterniond rotation(numbers[6], numbers[3], numbers[4], numbers[5]);
-  if (!(std::abs(rotation.norm() - 1.0) < kUnitLength)) {
-    throw InputError(where, "a quaternion of length " + std::to_string(rotation.norm()), "length 1");
-  }
-  return pose_values(Eigen::Translation3d(numbers.head<3>()) * rotation.normalized());
-}
-
-}  // namespace
-
 Course Course::from_csv(const std::string& file, LoadInput::Kind kind) {
   Course course(kind);
   const bool poses = kind == LoadInput::Kind::pose;

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "tissue_stiffness/types/error.hpp"
+#include "types/read_pose.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -23,10 +24,7 @@ Eigen::Isometry3d to_isometry(const Eigen::Vector3d& position, const std::string
                               const std::string& topic) {
   const Eigen::Quaterniond rotation(r.w, r.x, r.y, r.z);
   require_finite(position, topic + ": " + position_key);
-  if (!(std::abs(rotation.norm() - 1.0) < 1e-3)) {
-    throw InputError(topic + ": " + rotation_key, "a quaternion of length " + std::to_string(rotation.norm()), "length 1");
-  }
-  return Eigen::Translation3d(position) * rotation.normalized();
+  return Eigen::Translation3d(position) * unit_rotation(rotation, topic + ": " + rotation_key);
 }
 
 void require_full_image(const sensor_msgs::CameraInfo& info, const std::string& topic) {
@@ -56,6 +54,10 @@ void read_distortion(const sensor_msgs::CameraInfo& info, Camera* camera, const 
 }
 
 }  // namespace
+
+std::string plain_frame(const std::string& frame) {
+  return !frame.empty() && frame[0] == '/' ? frame.substr(1) : frame;
+}
 
 void require_stamp(const std_msgs::Header& header, const std::string& topic) {
   if (header.stamp.isZero()) throw InputError(topic + ": header.stamp", "0", "the time of the measurement");

@@ -23,6 +23,9 @@ namespace tissue_stiffness {
 // what was found in the message and what is allowed. `model_from_sensor` transforms from the message's frame to the model
 // frame.
 
+/// Returns the name of a frame without the slash that it may begin with.
+std::string plain_frame(const std::string& frame);
+
 /// Throws InputError for a stamp of zero.
 void require_stamp(const std_msgs::Header& header, const std::string& topic);
 

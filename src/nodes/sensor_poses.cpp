@@ -11,10 +11,6 @@
 namespace tissue_stiffness {
 namespace {
 
-std::string plain(const std::string& frame) {
-  return !frame.empty() && frame[0] == '/' ? frame.substr(1) : frame;
-}
-
 InputError no_pose(const std::string& topic, const std::string& found, const std::string& reason) {
   return {topic + ": header.frame_id", found + " (" + reason + ")", "a pose on /tf or /tf_static at the stamp"};
 }
@@ -27,7 +23,7 @@ SensorPoses::SensorPoses(std::string model_frame, double patience)
       listener_(buffer_) {}
 
 Eigen::Isometry3d SensorPoses::model_from(const std_msgs::Header& header, const std::string& topic) {
-  const std::string frame = plain(header.frame_id);
+  const std::string frame = plain_frame(header.frame_id);
   if (frame == model_frame_) return Eigen::Isometry3d::Identity();
   if (frame.empty()) {
     throw InputError(topic + ": header.frame_id", "''", model_frame_ + ", or a frame with a pose on /tf or /tf_static");

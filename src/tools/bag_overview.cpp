@@ -20,10 +20,6 @@ namespace {
 
 constexpr std::size_t kImages = 5;
 
-std::string plain(const std::string& frame) {
-  return !frame.empty() && frame[0] == '/' ? frame.substr(1) : frame;
-}
-
 void open(rosbag::Bag& bag, const std::string& file) {
   try {
     bag.open(file, rosbag::bagmode::Read);
@@ -40,7 +36,7 @@ bool add_header(const rosbag::MessageInstance& message, const std::string& file,
   const auto read = read_as<Message>(message, file);
   times.stamps.push_back(read->header.stamp.toSec());
   times.arrivals.push_back(message.getTime().toSec());
-  out.frames.emplace(times.topic, plain(read->header.frame_id));
+  out.frames.emplace(times.topic, plain_frame(read->header.frame_id));
   return true;
 }
 
@@ -58,7 +54,7 @@ void add_transforms(const rosbag::MessageInstance& message, const std::string& f
   if (!message.isType<tf2_msgs::TFMessage>()) return;
   const auto read = read_as<tf2_msgs::TFMessage>(message, file);
   for (const geometry_msgs::TransformStamped& pose : read->transforms) {
-    const std::pair<std::string, std::string> joint{plain(pose.header.frame_id), plain(pose.child_frame_id)};
+    const std::pair<std::string, std::string> joint{plain_frame(pose.header.frame_id), plain_frame(pose.child_frame_id)};
     const auto known = std::find(out.transforms.begin(), out.transforms.end(), joint);
     if (known == out.transforms.end()) out.transforms.push_back(joint);
   }

@@ -24,10 +24,6 @@ constexpr double kPictureWidth = 480.0;      // [pixel]
 constexpr int kPictureQuality = 70;          // of JPEG
 constexpr double kPoseMemory = 60.0;         // [s] of /tf kept; more than any frame lags behind
 
-std::string plain(const std::string& frame) {
-  return !frame.empty() && frame[0] == '/' ? frame.substr(1) : frame;
-}
-
 }  // namespace
 
 BagReader::BagReader(const std::string& file, const ModelSettings& settings, std::string model_frame)
@@ -105,8 +101,8 @@ void BagReader::add_poses(const rosbag::MessageInstance& message, bool is_static
   const auto read = read_as<tf2_msgs::TFMessage>(message, file_);  // held: the loop would not keep it alive
   for (geometry_msgs::TransformStamped pose : read->transforms) {
     to_isometry(pose.transform, message.getTopic() + ": " + pose.child_frame_id);  // tf2 only logs what is wrong
-    pose.header.frame_id = plain(pose.header.frame_id);
-    pose.child_frame_id = plain(pose.child_frame_id);
+    pose.header.frame_id = plain_frame(pose.header.frame_id);
+    pose.child_frame_id = plain_frame(pose.child_frame_id);
     poses_.setTransform(pose, file_, is_static);
   }
 }
@@ -337,7 +333,7 @@ sensor_msgs::CameraInfoConstPtr BagReader::camera_info(const std::string& topic,
 }
 
 std::optional<Eigen::Isometry3d> BagReader::pose(const std_msgs::Header& header, std::string& reason) const {
-  const std::string frame = plain(header.frame_id);
+  const std::string frame = plain_frame(header.frame_id);
   if (frame == model_frame_) return Eigen::Isometry3d::Identity();
   try {
     if (frame.empty()) throw tf2::InvalidArgumentException("the message's frame_id is empty");

@@ -1,6 +1,5 @@
 #include "tools/pack_recording.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -11,6 +10,7 @@
 #include "nodes/estimator_inputs.hpp"
 #include "tissue_stiffness/types/error.hpp"
 #include "tools/recording_writer.hpp"
+#include "types/read_pose.hpp"
 #include "types/read_table.hpp"
 
 namespace tissue_stiffness {
@@ -18,7 +18,6 @@ namespace {
 
 constexpr double kFirstStamp = 1000.0;  // [s]: a stamp of 0 means that there is none
 constexpr double kSameTime = 1e-9;      // [s] between rows of one message
-constexpr double kUnitLength = 1e-3;    // by which the length of a quaternion may be off
 using Write = std::function<void(RecordingWriter&, const ros::Time&)>;
 
 /// One message: its time in the file [s], and what writes it.
@@ -66,11 +65,9 @@ Eigen::VectorXd load_value(const TableRow& row, LoadInput::Kind kind, double sca
     out.head(given) = Eigen::Map<const Eigen::VectorXd>(numbers, given);
     return out;
   }
-  const Eigen::Quaterniond rotation(numbers[6], numbers[3], numbers[4], numbers[5]);
-  if (!(std::abs(rotation.norm() - 1.0) < kUnitLength)) {
-    throw InputError(row.where, "a quaternion of length " + std::to_string(rotation.norm()), "length 1");
-  }
-  return pose_values(Eigen::Translation3d(scale * Eigen::Map<const Eigen::Vector3d>(numbers)) * rotation.normalized());
+  Eigen::Matrix<double, 7, 1> pose = Eigen::Map<const Eigen::Matrix<double, 7, 1>>(numbers);
+  pose.head<3>() *= scale;
+  return read_pose(pose, row.where);
 }
 
 Messages read_loads(const PackedTopic& topic, LoadInput::Kind kind, double scale) {
