@@ -95,14 +95,15 @@ void MotionPath::find_rest() {
   for (int i = 0; i < 3; ++i) rest_position_[i] = at(rest_, i);
 }
 
+// A component needs one row of R(t) only.
 double MotionPath::motion(double time, int component) const {
   if (knots_.empty()) return 0.0;
-  Eigen::Matrix3d rotation;
-  for (int i = 0; i < 9; ++i) rotation(i % 3, i / 3) = at(time, 3 + i);
-  rotation *= from_rest_rotation_;
-  if (component < 3) return at(time, component) - rotation.row(component).dot(rest_position_);
-  rotation -= Eigen::Matrix3d::Identity();
-  return rotation(component % 3, component / 3 - 1);
+  const int axis = component % 3;
+  const Eigen::RowVector3d row(at(time, 3 + axis), at(time, 6 + axis), at(time, 9 + axis));
+  const Eigen::RowVector3d since_rest = row * from_rest_rotation_;
+  if (component < 3) return at(time, component) - since_rest.dot(rest_position_);
+  const int column = component / 3 - 1;
+  return since_rest[column] - (column == axis ? 1.0 : 0.0);
 }
 
 }  // namespace tissue_stiffness
