@@ -16,6 +16,7 @@ import foreign_draws
 from figures import plt, save
 from foreign_draws import honest, ignored
 from foreign_truths import truth_list
+from study_arguments import study_arguments
 from study import MODULUS, VISIBLE, Failed, call, confusion_table, picture
 from trust_study import shown_share
 
@@ -344,23 +345,16 @@ def read_rows(path):
 
 def parse():
     parser = argparse.ArgumentParser(prog='hidden_effects foreign')
-    parser.add_argument('root')
     parser.add_argument('--draws', type=int, help='only the first so many')
     parser.add_argument('--classes', help='only these: %s' % ','.join(foreign_draws.COUNTS))
     parser.add_argument('--jobs', type=int, default=os.cpu_count())
-    parser.add_argument('--output')
-    parser.add_argument('--diagnose', help='the program that is studied')
     parser.add_argument('--simulate-only', action='store_true', help='only the truths that the draws need')
     parser.add_argument('--fresh', action='store_true', help='forget the draws so far; truths are kept')
     parser.add_argument('--page-only', action='store_true', help='write the page from the draws so far')
     parser.add_argument('--time-every', type=int, metavar='N',
                         help='diagnose every N-th draw again, one at a time, to time it on a quiet machine')
     parser.add_argument('--keep', action='store_true', help='keep the recordings and reports of all draws')
-    arguments = parser.parse_args()
-    arguments.output = arguments.output or os.path.join(arguments.root, 'output', 'hidden_effects')
-    arguments.diagnose = arguments.diagnose or os.path.join(arguments.root, 'build/devel/lib/tissue_stiffness/diagnose')
-    arguments.simulator = os.path.join(arguments.root, '..', 'shared', 'simulator')
-    return arguments
+    return study_arguments(parser, 'diagnose', 'hidden_effects')
 
 
 def main():

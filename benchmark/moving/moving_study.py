@@ -18,6 +18,7 @@ import genpy
 import meshes
 import moving_truths as truths
 from foreign import START, simulate_header
+from study_arguments import study_arguments
 
 WANTED = {'indentation': 0.02, 'retraction, force': 0.02, 'retraction, no force': 0.05, 'shaken base': 0.02}
 TOOL_AT = np.array([0.2, -0.1, 0.15])  # the pose's own place: only its motion counts
@@ -174,15 +175,9 @@ def page(rows):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument('root')
-    parser.add_argument('--output')
     parser.add_argument('--seeds', type=int, default=8)
-    parser.add_argument('--estimate')
     parser.add_argument('--fresh', action='store_true')
-    args = parser.parse_args()
-    args.simulator = os.path.join(args.root, '..', 'shared', 'simulator')
-    args.output = args.output or os.path.join(args.root, 'output', 'moving')
-    args.estimate = args.estimate or os.path.join(args.root, 'build', 'devel', 'lib', 'tissue_stiffness', 'estimate')
+    args = study_arguments(parser, 'estimate', 'moving')
     rows = []
     for kind in truths.KINDS:
         for seed in range(args.seeds):

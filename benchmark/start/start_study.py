@@ -14,6 +14,7 @@ import yaml
 
 from foreign_draws import draw_list, write_draw
 from foreign_study import simulate_truths, truth_folder
+from study_arguments import study_arguments
 
 SHARES = (0.3, 0.55)  # of the recording that are cut off
 KINDS = ('stated', 'correlated', 'one side', 'few sensors')
@@ -115,14 +116,8 @@ def page(rows):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument('root')
-    parser.add_argument('--output')
     parser.add_argument('--truths', type=int, default=16)
-    parser.add_argument('--estimate')
-    args = parser.parse_args()
-    args.simulator = os.path.join(args.root, '..', 'shared', 'simulator')
-    args.output = args.output or os.path.join(args.root, 'output', 'hidden_effects')
-    args.estimate = args.estimate or os.path.join(args.root, 'build', 'devel', 'lib', 'tissue_stiffness', 'estimate')
+    args = study_arguments(parser, 'estimate', 'hidden_effects')
     chosen = draws(args.truths)
     simulate_truths(args, [draw['truth'] for draw in chosen])
     rows = []

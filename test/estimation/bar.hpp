@@ -27,6 +27,14 @@ inline std::vector<std::string> bar_under_gravity(const std::string& young_modul
           "gravity: {acceleration: [0.5, 1, -3]}"};
 }
 
+/// Returns the force and torque of a tool that sways along y and pushes down along z, at these rates [rad/s].
+inline LoadSample swaying_wrench(double time, double y_rate = 6.0, double z_rate = 4.0) {
+  LoadSample sample{"/wrench", time, Eigen::VectorXd::Zero(6)};
+  sample.value[1] = 4e-3 * std::sin(y_rate * time);
+  sample.value[2] = -6e-3 * (1.0 - std::cos(z_rate * time));
+  return sample;
+}
+
 /// Returns the result of the last frame.
 inline StepResult step_through(Estimator& estimator, const std::vector<Frame>& frames) {
   StepResult last;

@@ -21,22 +21,15 @@ std::vector<std::string> pushed_bar(bool in_motion) {
   return effects;
 }
 
-LoadSample wrench(double time) {
-  LoadSample sample{"/wrench", time, Eigen::VectorXd::Zero(6)};
-  sample.value[1] = 4e-3 * std::sin(9.0 * time);
-  sample.value[2] = -6e-3 * (1.0 - std::cos(7.0 * time));
-  return sample;
-}
-
 StepResult estimated(bool in_motion) {
   Experiment bar(box_settings(pushed_bar(false)), bar_mesh(), {kTruth});
-  for (int k = 0; k < 400; ++k) bar.add_load(wrench(0.005 * k));
+  for (int k = 0; k < 400; ++k) bar.add_load(swaying_wrench(0.005 * k, 9.0, 7.0));
   std::vector<Experiment::Moment> moments = bar.film(0.0, kFilmed, 80);
   moments.erase(moments.begin(), moments.begin() + 30);
   Estimator estimator(box_settings(pushed_bar(in_motion)), bar_mesh());
   estimator.set_first_stamp(moments.front().time);
   for (int k = 0; k < 400; ++k) {
-    if (0.005 * k >= moments.front().time - 0.01) estimator.add_load(wrench(0.005 * k));
+    if (0.005 * k >= moments.front().time - 0.01) estimator.add_load(swaying_wrench(0.005 * k, 9.0, 7.0));
   }
   return step_through(estimator, see_all(bar, moments, kNoise, 3));
 }

@@ -20,13 +20,6 @@ ModelSettings pushed() {
   return model;
 }
 
-LoadSample wrench(double time) {
-  LoadSample sample{"/wrench", time, Eigen::VectorXd::Zero(6)};
-  sample.value[1] = 4e-3 * std::sin(6.0 * time);
-  sample.value[2] = -6e-3 * (1.0 - std::cos(4.0 * time));
-  return sample;
-}
-
 struct Setting {
   ModelSettings settings = pushed();
   TetMesh mesh = bar_mesh();
@@ -39,8 +32,8 @@ struct Setting {
     model = std::make_unique<Model>(settings, mesh);
     model->loads().set_first_stamp(0.0);
     for (int k = 0; k < 260; ++k) {
-      bar.add_load(wrench(0.005 * k));
-      model->loads().courses().at("/wrench")->add(0.005 * k, wrench(0.005 * k).value);
+      bar.add_load(swaying_wrench(0.005 * k));
+      model->loads().courses().at("/wrench")->add(0.005 * k, swaying_wrench(0.005 * k).value);
     }
     const std::vector<Frame> frames = see_all(bar, bar.film(0.0, kFilmed, kFrames), kNoise, 7);
     models = std::make_unique<InputModels>(*model);

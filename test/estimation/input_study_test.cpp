@@ -20,13 +20,6 @@ ModelSettings pushed(const std::string& load_keys = "", const std::string& densi
   return model;
 }
 
-LoadSample wrench(double time) {
-  LoadSample sample{"/wrench", time, Eigen::VectorXd::Zero(6)};
-  sample.value[1] = 4e-3 * std::sin(6.0 * time);
-  sample.value[2] = -6e-3 * (1.0 - std::cos(4.0 * time));
-  return sample;
-}
-
 // Returns the estimate after 60 frames of a bar whose wrench is recorded with `error`.
 StepResult estimated(const ModelSettings& model, const Change& error) {
   const TetMesh mesh = bar_mesh();
@@ -35,7 +28,7 @@ StepResult estimated(const ModelSettings& model, const Change& error) {
   Estimator estimator(model, mesh);
   estimator.set_first_stamp(0.0);
   for (int k = 0; k < 260; ++k) {
-    LoadSample sample = wrench(0.005 * k);
+    LoadSample sample = swaying_wrench(0.005 * k);
     bar.add_load(sample);
     error(sample);
     estimator.add_load(sample);
@@ -171,8 +164,8 @@ TEST(InputStudy, KnowsNothingBeforeItsFirstAnswer) {
   Estimator estimator(model, mesh);
   estimator.set_first_stamp(0.0);
   for (int k = 0; k < 60; ++k) {
-    bar.add_load(wrench(0.005 * k));
-    estimator.add_load(wrench(0.005 * k));
+    bar.add_load(swaying_wrench(0.005 * k));
+    estimator.add_load(swaying_wrench(0.005 * k));
   }
   const StepResult last = step_through(estimator, see_all(bar, bar.film(0.0, kFilmed, 2), kNoise, 7));
   EXPECT_EQ(last.estimate.state, EstimateState::converging);
@@ -187,8 +180,8 @@ TEST(State, IsStaleWhileALoadStaysAway) {
   Estimator estimator(model, mesh);
   estimator.set_first_stamp(0.0);
   for (int k = 0; k < 60; ++k) {  // to 0.3 s
-    bar.add_load(wrench(0.005 * k));
-    estimator.add_load(wrench(0.005 * k));
+    bar.add_load(swaying_wrench(0.005 * k));
+    estimator.add_load(swaying_wrench(0.005 * k));
   }
   const StepResult last = step_through(estimator, see_all(bar, bar.film(0.0, kFilmed, 60), kNoise, 7));
   EXPECT_EQ(last.estimate.state, EstimateState::stale);
