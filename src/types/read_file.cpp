@@ -18,7 +18,7 @@ std::string megabytes(std::uintmax_t bytes) {
 
 }  // namespace
 
-void check_file(const std::string& file, const std::string& where, const std::string& allowed, std::uintmax_t most) {
+std::string read_file(const std::string& file, const std::string& where, const std::string& allowed, std::uintmax_t most) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(file, error);
   if (!std::filesystem::exists(status)) throw InputError(where, "no readable file", allowed);
@@ -26,10 +26,6 @@ void check_file(const std::string& file, const std::string& where, const std::st
     throw InputError(where, "no readable file (a folder or a device)", allowed);
   const std::uintmax_t size = std::filesystem::file_size(file, error);
   if (!error && size > most) throw InputError(where, megabytes(size), allowed + " of at most " + megabytes(most));
-}
-
-std::string read_file(const std::string& file, const std::string& where, const std::string& allowed, std::uintmax_t most) {
-  check_file(file, where, allowed, most);
   std::ifstream stream(file, std::ios::binary);
   std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
   if (!stream || stream.bad()) throw InputError(where, "no readable file", allowed);
