@@ -60,6 +60,13 @@ FittedModel extended(const FittedModel& base, const Refit& refit) {
                        model.parameters().coordinates(refit.parameters, model.parameters().prior_mean()), kAddedSpread);
 }
 
+// Returns null where the effect was not refitted.
+const Refit* refit_of(const Finding& finding, const std::string& effect) {
+  const auto same = [&effect](const Refit& refit) { return refit.effect == effect; };
+  const auto at = std::find_if(finding.refits.begin(), finding.refits.end(), same);
+  return at == finding.refits.end() ? nullptr : &*at;
+}
+
 // Returns whether all that `next` has beyond the model acts on the body or in a sensor, and leaves the body's own mass and
 // stiffness alone.
 bool same_body(const Model& model, const Model& next) {
@@ -267,17 +274,21 @@ class ModelSearch {
   // done; the diagnosis then says why.
   bool add_one(const std::string& wanted) {
     std::string reason;
+    const std::string name = wanted.empty() ? finding_.refits.front().effect : wanted;
+    const Refit* refit = refit_of(finding_, name);
     std::optional<Finding> asked;
-    if (!wanted.empty()) asked = diagnose_once(model_, {wanted}, options_, finding_.previous);
-    const Finding& from = asked ? *asked : finding_;
-    if (from.refits.empty() && from.failure.empty()) {
-      throw InputError("--add", wanted, "an effect that the library proposes for this model");
+    if (refit == nullptr) {  // the search had no reason to fit it
+      asked = diagnose_once(model_, {name}, options_, finding_.previous);
+      refit = refit_of(*asked, name);
+      if (refit == nullptr && asked->failure.empty()) {
+        throw InputError("--add", name, "an effect that the library proposes for this model");
+      }
     }
-    const std::string name = wanted.empty() ? from.refits.front().effect : wanted;
+    if (grown_ && refit != &finding_.refits.front()) grown_.reset();  // what was found beside another effect
     Library library;
-    const auto add_it = [&] { library = add(from.refits.front()); };
-    if (from.refits.empty() || !try_run(recording_, add_it, &reason)) {
-      out_.failure = name + " cannot be added: " + (from.refits.empty() ? from.failure : reason);
+    const auto add_it = [&] { library = add(*refit); };
+    if (refit == nullptr || !try_run(recording_, add_it, &reason)) {
+      out_.failure = name + " cannot be added: " + (refit == nullptr ? asked->failure : reason);
       return false;
     }
     const auto judge_it = [&] {

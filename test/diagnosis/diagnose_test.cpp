@@ -10,6 +10,7 @@
 #include "../box_model.hpp"
 #include "diagnosis/finding.hpp"
 #include "diagnosis/screening.hpp"
+#include "effects/registry.hpp"
 #include "forward/full_model.hpp"
 #include "settings/extend_model.hpp"
 #include "tissue_stiffness/types/error.hpp"
@@ -224,6 +225,24 @@ TEST(Diagnose, AddsWhatItIsTold) {
   EXPECT_NEAR(d.steps.back().parameters.at("mass_damping.alpha"), 1.5, 0.15);
   options.add = {"pressure"};
   EXPECT_NE(refusal([&] { diagnose_bar(film({}, 1), options); }).find("--add"), std::string::npos);
+}
+
+// An effect that the search has fitted is added as it was fitted, on the side of the body that suits it best.
+TEST(Diagnose, AddsAnEffectAsTheSearchFittedIt) {
+  const Recording recording = film({"foundation: {facing: [0, 0, -1], stiffness: 2.0e4}"}, 3);
+  DiagnosisOptions options;
+  for (const EffectSpec& spec : effect_specs()) {
+    if (spec.name != "foundation" && spec.name != "gravity") options.ignore.push_back(spec.name);
+  }
+  const Diagnosis searched = diagnose_bar(recording, options);
+  for (const MissingEffect& candidate : searched.candidates) {
+    options.add = {candidate.effect};
+    const Diagnosis d = diagnose_bar(recording, options);
+    ASSERT_EQ(d.final_effects, options.add) << d.failure;
+    EXPECT_LT(d.steps.back().train_rms, 1.001 * d.steps.front().train_rms) << candidate.effect;
+    EXPECT_NEAR(d.steps.back().held_out_rms, candidate.held_out_rms_after, 0.05 * candidate.held_out_rms_after)
+        << candidate.effect;
+  }
 }
 
 // The first one's fit compensated for the second.
