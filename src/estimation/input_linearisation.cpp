@@ -203,7 +203,7 @@ InputLinearisation::Row InputLinearisation::row(std::size_t index, const std::ve
     out.constants.col(static_cast<Eigen::Index>(i)) =
         (predict(high).predicted - predict(high + nc).predicted) / (2.0 * kConstantStep);
   }
-  const Eigen::MatrixXd& seen = motions_seen(frame, thetas[0], u.col(0), there);
+  const Eigen::MatrixXd& seen = motions_seen(frame, thetas[0], u.col(0));
   out.modes = modes_seen(frame, thetas[0], seen, modes);
   out.direct = Eigen::MatrixXd::Zero(rows, direct_columns());
   if (sensor_column_count() > 0)
@@ -261,8 +261,8 @@ Eigen::MatrixXd InputLinearisation::modes_seen(const Frame& frame, const Eigen::
 
 // Displacements of named nodes are linear in the motion, and most frames see these nodes again.
 const Eigen::MatrixXd& InputLinearisation::motions_seen(const Frame& frame, const Eigen::VectorXd& theta,
-                                                        const Eigen::VectorXd& u, const Prediction& there) {
-  const auto seen = [&] { return predict_along(models_.base, models_.operators, frame, theta, u, there, motions_); };
+                                                        const Eigen::VectorXd& u) {
+  const auto seen = [&] { return predict_along(models_.base, models_.operators, frame, theta, u, motions_); };
   if (models_.base.nonlinear() || !sees_named_nodes(models_.base, frame)) return seen_ = seen();
   std::vector<int> key;
   for (const Observation& observation : frame.observations) {

@@ -151,9 +151,8 @@ Eigen::MatrixXd RecordingFit::rows_along(const Eigen::VectorXd& w, const Eigen::
     recording_.checkpoint();
     run->advance(all.frames[k].time);
     const Eigen::VectorXd u = run->output();
-    const Prediction there = predict_frame(model_, operators_, all.frames[k], theta, u);
     out.middleRows(rows.offsets[k], rows.offsets[k + 1] - rows.offsets[k]) =
-        predict_along(model_, operators_, all.frames[k], theta, u, there, shapes);
+        predict_along(model_, operators_, all.frames[k], theta, u, shapes);
   }
   for (Eigen::Index r = 0; r < out.rows(); ++r) {
     if (rows.used[r] > 0.0 && out.row(r).allFinite()) {

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "observation/observation_operator.hpp"
@@ -39,7 +40,8 @@ class ContourOperator : public ObservationOperator {
 
   Prediction predict(const Observation& observation, const Eigen::Ref<const Eigen::VectorXd>& u) const override {
     const Contour& contour = *observation.contour;
-    const std::vector<OutlineSegment> outline = model_outline(*observation.camera, u);
+    VectorPool::Loan scratch(scratch_, u.size());
+    const std::vector<OutlineSegment> outline = model_outline(*observation.camera, moved_nodes(u, *scratch));
     const double scale = outline.empty() ? std::numeric_limits<double>::quiet_NaN() : outline.front().scale;
     const Eigen::Index n = contour.size();
     Prediction p;
@@ -51,20 +53,54 @@ class ContourOperator : public ObservationOperator {
     for (Eigen::Index i = 0; i < n; ++i) {
       p.sigma[i] = std::max(settings_.noise, contour.sigma[i] * scale);
       p.places.col(i) = place(*observation.camera, contour.points.col(i), scale);
-      if (!std::isfinite(contour.sigma[i])) continue;
       std::size_t k = 0;
-      const double d =
-          distance_along_normal(outline, contour.points.col(i), contour.normals.col(i), kReach * size_ / scale, k);
+      const double d = distance(contour, i, outline, k);
       if (!std::isfinite(d)) continue;
       p.predicted[i] = d * outline[k].scale;
-      p.nodes[i] = outline[k].node;
+      p.nodes[i] = outline[k].from_end.node;
     }
     return p;
   }
 
+  // Where a point's normal meets a segment at a share r, both ends move the distance d along the normal m by their own
+  // motion across the segment: dd = e . ((1 - r) d from + r d to) / (e . m), with e across it.
+  std::optional<RowTangent> tangent(const Observation& observation,
+                                    const Eigen::Ref<const Eigen::VectorXd>& u) const override {
+    const Contour& contour = *observation.contour;
+    const Camera& camera = *observation.camera;
+    VectorPool::Loan scratch(scratch_, u.size());
+    const Positions at = moved_nodes(u, *scratch);
+    const std::vector<OutlineSegment> outline = model_outline(camera, at);
+    const Eigen::RowVector3d depth = camera.model_from_sensor.linear().col(2).transpose() / camera.fx;
+    std::vector<Eigen::Triplet<double>> entries;
+    for (Eigen::Index i = 0; i < contour.size(); ++i) {
+      std::size_t k = 0;
+      const double d = distance(contour, i, outline, k);
+      if (!std::isfinite(d)) continue;
+      const OutlineSegment& s = outline[k];
+      const auto add = [&](int node, double share, const Eigen::RowVector3d& row) {
+        for (int a = 0; a < 3; ++a) entries.emplace_back(i, 3 * node + a, share * row[a]);
+      };
+      const Eigen::Vector2d edge = s.to - s.from, m = contour.normals.col(i), hit = contour.points.col(i) + d * m;
+      const double r = (hit - s.from).dot(edge) / edge.squaredNorm();
+      const Eigen::RowVector2d across(edge.y(), -edge.x());
+      const Eigen::RowVector2d gain = s.scale / across.dot(m) * across;
+      for (const auto& [end, share] : {std::make_pair(s.from_end, 1.0 - r), std::make_pair(s.to_end, r)}) {
+        const Eigen::RowVector3d row = gain * pixel_tangent(end, at, camera);
+        add(end.node, share * (1.0 - end.share), row);
+        if (end.share > 0.0) add(end.other, share * end.share, row);
+        if (camera.projection == Camera::Projection::pinhole) add(end.node, 0.5 * d, depth);
+      }
+    }
+    RowTangent out(contour.size(), u.size());
+    out.setFromTriplets(entries.begin(), entries.end());
+    return out;
+  }
+
   Eigen::Matrix4Xd outline(const Observation& observation, const Eigen::VectorXd& u) const override {
     if (observation.camera == nullptr) return {};
-    const std::vector<OutlineSegment> pieces = model_outline(*observation.camera, u);
+    VectorPool::Loan scratch(scratch_, u.size());
+    const std::vector<OutlineSegment> pieces = model_outline(*observation.camera, moved_nodes(u, *scratch));
     Eigen::Matrix4Xd out(4, static_cast<Eigen::Index>(pieces.size()));
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       out.col(static_cast<Eigen::Index>(i)) << pieces[i].from, pieces[i].to;
@@ -77,15 +113,25 @@ class ContourOperator : public ObservationOperator {
   }
 
  private:
-  std::vector<OutlineSegment> model_outline(const Camera& camera, const Eigen::Ref<const Eigen::VectorXd>& u) const {
-    VectorPool::Loan scratch(scratch_, u.size());
-    Eigen::Map<Eigen::Matrix3Xd> positions(scratch->data(), 3, mesh_.node_count());
-    positions = mesh_.nodes + Eigen::Map<const Eigen::Matrix3Xd>(u.data(), 3, mesh_.node_count());
+  using Positions = Eigen::Map<const Eigen::Matrix3Xd>;
+  Positions moved_nodes(const Eigen::Ref<const Eigen::VectorXd>& u, Eigen::VectorXd& out) const {
+    out = Eigen::Map<const Eigen::VectorXd>(mesh_.nodes.data(), mesh_.nodes.size()) + u;
+    return {out.data(), 3, mesh_.node_count()};
+  }
+
+  std::vector<OutlineSegment> model_outline(const Camera& camera, const Positions& at) const {
     if (settings_.projection == ObservationSettings::Projection::silhouette) {
-      return silhouette(triangles_, edges_, positions, camera);
+      return silhouette(triangles_, edges_, at, camera);
     }
-    return section_by_plane(triangles_, positions, camera,
-                            settings_.segmentation.kind == SegmentationSettings::Kind::cavity);
+    return section_by_plane(triangles_, at, camera, settings_.segmentation.kind == SegmentationSettings::Kind::cavity);
+  }
+
+  // Returns the distance [pixel] from a measured point to the model's outline, and its segment; NaN where there is none.
+  double distance(const Contour& contour, Eigen::Index i, const std::vector<OutlineSegment>& outline,
+                  std::size_t& segment) const {
+    if (outline.empty() || !std::isfinite(contour.sigma[i])) return std::numeric_limits<double>::quiet_NaN();
+    return distance_along_normal(outline, contour.points.col(i), contour.normals.col(i),
+                                 kReach * size_ / outline.front().scale, segment);
   }
 
   static Eigen::Vector3d place(const Camera& camera, const Eigen::Vector2d& pixel, double scale) {

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "forward/model.hpp"
@@ -9,6 +11,9 @@
 #include "tissue_stiffness/types/prediction.hpp"
 
 namespace tissue_stiffness {
+
+/// d predicted rows / d u, as rows x 3n. A row without a counterpart is empty.
+using RowTangent = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 /// An observation operator predicts what a sensor should see of the body at nodal displacement u (eq. 2 of Yang & Lin
 /// 2016).
@@ -20,6 +25,10 @@ class ObservationOperator {
   /// The rows depend on the observation alone, so predictions for different u line up. A row is NaN where the model has no
   /// counterpart.
   virtual Prediction predict(const Observation& observation, const Eigen::Ref<const Eigen::VectorXd>& u) const = 0;
+  /// Returns the derivative of predict() at u. Sensors whose rows depend on few nodes have none: differences are as fast.
+  virtual std::optional<RowTangent> tangent(const Observation&, const Eigen::Ref<const Eigen::VectorXd>&) const {
+    return {};
+  }
   /// Returns the mesh nodes that a prediction of this observation depends on.
   virtual std::vector<int> nodes(const Observation& observation) const = 0;
   /// Returns the model's outline in the sensor's image as separate segments (u0, v0, u1, v1) [pixel]. It is empty for

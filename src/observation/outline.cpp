@@ -59,7 +59,12 @@ std::vector<OutlineSegment> silhouette(const SurfaceTriangles& triangles, const 
     const Eigen::Vector3d middle = 0.5 * (positions.col(edge.from) + positions.col(edge.to));
     const double depth = (camera.model_from_sensor.inverse() * middle).z();
     const Eigen::Vector2d from = camera.project(positions.col(edge.from)), to = camera.project(positions.col(edge.to));
-    outline.push_back({from, to, outward(from, to, camera.project(positions.col(opposite))), edge.from, depth / camera.fx});
+    outline.push_back({from,
+                       to,
+                       {edge.from, edge.from, 0.0},
+                       {edge.to, edge.to, 0.0},
+                       outward(from, to, camera.project(positions.col(opposite))),
+                       depth / camera.fx});
   }
   return outline;
 }
@@ -73,11 +78,15 @@ std::vector<OutlineSegment> section_by_plane(const SurfaceTriangles& triangles,
     Eigen::Matrix3d x;
     for (int i = 0; i < 3; ++i) x.col(i) = to_sensor * positions.col(triangles.nodes(i, t));
     if (x.row(2).minCoeff() > 0.0 || x.row(2).maxCoeff() <= 0.0) continue;
-    std::array<Eigen::Vector3d, 2> ends;
+    std::array<Eigen::Vector3d, 2> places;
+    std::array<OutlineEnd, 2> ends{};
     std::size_t found = 0;
     for (int i = 0; i < 3 && found < 2; ++i) {
       const Eigen::Vector3d a = x.col(i), b = x.col((i + 1) % 3);
-      if ((a.z() > 0.0) != (b.z() > 0.0)) ends[found++] = a + a.z() / (a.z() - b.z()) * (b - a);
+      if ((a.z() > 0.0) == (b.z() > 0.0)) continue;
+      const double share = a.z() / (a.z() - b.z());
+      places[found] = a + share * (b - a);
+      ends[found++] = {triangles.nodes(i, t), triangles.nodes((i + 1) % 3, t), share};
     }
     Eigen::Vector2d normal = (x.col(1) - x.col(0)).cross(x.col(2) - x.col(0)).head<2>();
     const double length = normal.norm();
@@ -86,9 +95,25 @@ std::vector<OutlineSegment> section_by_plane(const SurfaceTriangles& triangles,
     const auto pixel = [&camera](const Eigen::Vector3d& p) {
       return Eigen::Vector2d(camera.fx * p.x() + camera.cx, camera.fy * p.y() + camera.cy);
     };
-    outline.push_back({pixel(ends[0]), pixel(ends[1]), normal, triangles.nodes(0, t), 1.0 / camera.fx});
+    outline.push_back({pixel(places[0]), pixel(places[1]), ends[0], ends[1], normal, 1.0 / camera.fx});
   }
   return outline;
+}
+
+Eigen::Matrix<double, 2, 3> pixel_tangent(const OutlineEnd& end, const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
+                                          const Camera& camera) {
+  const Eigen::Isometry3d to_sensor = camera.model_from_sensor.inverse();
+  const Eigen::Vector2d focal(camera.fx, camera.fy);
+  Eigen::Vector3d across;  // what moves the pixel along the depth, over what moves the depth
+  if (camera.projection == Camera::Projection::slice) {
+    across = to_sensor.linear() * (positions.col(end.other) - positions.col(end.node));
+  } else {
+    across = to_sensor * positions.col(end.node);
+  }
+  const Eigen::Matrix3d turn = to_sensor.linear();
+  const Eigen::Matrix<double, 2, 3> flat = turn.topRows<2>() - across.head<2>() / across.z() * turn.row(2);
+  const double depth = camera.projection == Camera::Projection::slice ? 1.0 : across.z();
+  return focal.asDiagonal() * flat / depth;
 }
 
 double distance_along_normal(const std::vector<OutlineSegment>& outline, const Eigen::Vector2d& point,

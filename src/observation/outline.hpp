@@ -8,12 +8,18 @@
 
 namespace tissue_stiffness {
 
+/// A segment ends on a mesh edge, at this share of the way from `node` to `other`.
+struct OutlineEnd {
+  int node, other;
+  double share;
+};
+
 /// An outline segment is a straight piece of the model's outline in an image.
 struct OutlineSegment {
   Eigen::Vector2d from, to;  ///< [pixel]
-  Eigen::Vector2d normal;    ///< unit vector, out of the body; out of the cavity in a slice that shows one
-  int node;                  ///< a mesh node near the segment
-  double scale;              ///< metres per pixel at the segment
+  OutlineEnd from_end, to_end;
+  Eigen::Vector2d normal;  ///< unit vector, out of the body; out of the cavity in a slice that shows one
+  double scale;            ///< metres per pixel at the segment
 };
 
 /// A surface edge knows the triangles on its two sides.
@@ -34,6 +40,12 @@ std::vector<OutlineSegment> silhouette(const SurfaceTriangles& triangles, const 
 std::vector<OutlineSegment> section_by_plane(const SurfaceTriangles& triangles,
                                              const Eigen::Ref<const Eigen::Matrix3Xd>& positions, const Camera& camera,
                                              bool cavity);
+
+/// Returns d pixel / d position of the end's nodes, 2 x 3 [pixel/m]. That of `node` is (1 - share) times this matrix, and
+/// that of `other` is `share` times it. In a slice the end slides along its mesh edge, so that it stays in the image's
+/// plane.
+Eigen::Matrix<double, 2, 3> pixel_tangent(const OutlineEnd& end, const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
+                                          const Camera& camera);
 
 /// Returns the signed distance in pixels from `point` along `normal` to the outline. It takes the closest segment within
 /// `reach` pixels whose normal agrees, and writes its number to `segment`. It returns NaN when there is none.

@@ -10,6 +10,74 @@ namespace {
 
 constexpr double kProbe = 1e-4;  // of the body's size: displacement at which the sensors' sensitivity is read
 
+using Operators = std::vector<std::unique_ptr<ObservationOperator>>;
+
+/// How a frame's observations change where the body moves along shapes. Differences are taken where a sensor has no
+/// tangent.
+class SeenAlong {
+ public:
+  SeenAlong(const Model& model, const Operators& operators, const Frame& frame, const Eigen::VectorXd& theta,
+            const Eigen::Ref<const Eigen::VectorXd>& output, const Eigen::MatrixXd& shapes)
+      : model_(model), operators_(operators), frame_(frame), theta_(theta), output_(output), shapes_(shapes) {
+    const Eigen::Matrix3Xd& nodes = model.mesh().nodes;
+    size_ = (nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff()).norm();
+  }
+
+  Eigen::MatrixXd rows_of(const Observation& observation) const {
+    const Eigen::VectorXd apparent = observe(output_.head(model_.fem().dof_count()));
+    const auto& sensor = *operators_[static_cast<std::size_t>(observation.source)];
+    const std::optional<RowTangent> tangent = sensor.tangent(observation, apparent);
+    if (!tangent) return differences(observation);
+    if (!model_.sensors().any()) return *tangent * shapes_;
+    Eigen::MatrixXd seen(shapes_.rows(), shapes_.cols());
+    for_each_index(static_cast<std::size_t>(shapes_.cols()), [&](std::size_t index) {
+      const auto i = static_cast<Eigen::Index>(index);
+      const double step = probe(shapes_.col(i).cwiseAbs().maxCoeff());
+      seen.col(i) = (observe(output_.head(shapes_.rows()) + step * shapes_.col(i)) - apparent) / step;
+    });
+    return *tangent * seen;
+  }
+
+ private:
+  double probe(double largest) const { return kProbe * size_ / std::max(largest, 1e-300); }
+
+  Eigen::VectorXd observe(const Eigen::VectorXd& displacement) const {
+    const double since = frame_.time - model_.loads().first_stamp() - model_.settings().time.start;
+    return model_.sensors().any() ? model_.sensors().observe(theta_, since, displacement).displacement : displacement;
+  }
+
+  // Only the nodes that the sensor sees are moved, one column after the other.
+  Eigen::MatrixXd differences(const Observation& observation) const {
+    Frame alone;
+    alone.time = frame_.time;
+    alone.observations = {observation};
+    const auto predict = [&](const Eigen::VectorXd& u) {
+      return predict_frame(model_, operators_, alone, theta_, u).predicted;
+    };
+    const Eigen::VectorXd there = predict(output_);
+    const std::vector<int> nodes = observed_nodes(operators_, {alone});
+    Eigen::MatrixXd out(there.size(), shapes_.cols());
+    Eigen::VectorXd u = output_;
+    for (Eigen::Index i = 0; i < shapes_.cols(); ++i) {
+      double largest = 0.0;
+      for (const int node : nodes) largest = std::max(largest, shapes_.col(i).segment<3>(3 * node).cwiseAbs().maxCoeff());
+      const double step = probe(largest);
+      for (const int node : nodes)
+        u.segment<3>(3 * node) = output_.segment<3>(3 * node) + step * shapes_.col(i).segment<3>(3 * node);
+      out.col(i) = (predict(u) - there) / step;
+    }
+    return out;
+  }
+
+  const Model& model_;
+  const Operators& operators_;
+  const Frame& frame_;
+  const Eigen::VectorXd& theta_;
+  const Eigen::Ref<const Eigen::VectorXd>& output_;
+  const Eigen::MatrixXd& shapes_;
+  double size_;
+};
+
 }  // namespace
 
 bool sees_named_nodes(const Model& model, const Frame& frame) {
@@ -42,35 +110,20 @@ Prediction predict_frame(const Model& model, const std::vector<std::unique_ptr<O
 
 Eigen::MatrixXd predict_along(const Model& model, const std::vector<std::unique_ptr<ObservationOperator>>& operators,
                               const Frame& frame, const Eigen::VectorXd& theta,
-                              const Eigen::Ref<const Eigen::VectorXd>& output, const Prediction& there,
-                              const Eigen::MatrixXd& shapes) {
-  const Eigen::Matrix3Xd& nodes = model.mesh().nodes;
-  const double size = (nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff()).norm();
-  Eigen::MatrixXd out(there.predicted.size(), shapes.cols());
-  const auto fill = [&](Eigen::Index i, double largest, Eigen::VectorXd& u, const auto& move) {
-    const double probe = kProbe * size / std::max(largest, 1e-300);
-    move(probe);
-    out.col(i) = (predict_frame(model, operators, frame, theta, u).predicted - there.predicted) / probe;
-  };
-  if (sees_named_nodes(model, frame)) {  // cheap: only those nodes are moved, one column after the other
-    const std::vector<int> nodes = observed_nodes(operators, {frame});
-    Eigen::VectorXd u = output;
-    for (Eigen::Index i = 0; i < shapes.cols(); ++i) {
-      double largest = 0.0;
-      for (const int node : nodes) largest = std::max(largest, shapes.col(i).segment<3>(3 * node).cwiseAbs().maxCoeff());
-      fill(i, largest, u, [&](double probe) {
-        for (const int node : nodes)
-          u.segment<3>(3 * node) = output.segment<3>(3 * node) + probe * shapes.col(i).segment<3>(3 * node);
-      });
-    }
-    return out;
+                              const Eigen::Ref<const Eigen::VectorXd>& output, const Eigen::MatrixXd& shapes) {
+  const SeenAlong along(model, operators, frame, theta, output, shapes);
+  std::vector<Eigen::MatrixXd> parts;
+  Eigen::Index rows = 0;
+  for (const Observation& observation : frame.observations) {
+    parts.push_back(along.rows_of(observation));
+    rows += parts.back().rows();
   }
-  for_each_index(static_cast<std::size_t>(shapes.cols()), [&](std::size_t index) {
-    const auto i = static_cast<Eigen::Index>(index);
-    Eigen::VectorXd u = output;
-    fill(i, shapes.col(i).cwiseAbs().maxCoeff(), u,
-         [&](double probe) { u.head(shapes.rows()) = output.head(shapes.rows()) + probe * shapes.col(i); });
-  });
+  Eigen::MatrixXd out(rows, shapes.cols());
+  Eigen::Index first = 0;
+  for (const Eigen::MatrixXd& part : parts) {
+    out.middleRows(first, part.rows()) = part;
+    first += part.rows();
+  }
   return out;
 }
 

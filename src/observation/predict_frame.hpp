@@ -19,12 +19,11 @@ Prediction predict_frame(const Model& model, const std::vector<std::unique_ptr<O
 /// changes them.
 bool sees_named_nodes(const Model& model, const Frame& frame);
 
-/// Returns d predicted rows / d amplitude of each of `shapes` (3n x count) about a run's output, as rows x count. `there`
-/// is the prediction at the output itself. Rows of a force do not depend on displacements alone, so theirs are 0.
+/// Returns d predicted rows / d amplitude of each of `shapes` (3n x count) about a run's output, as rows x count. Rows
+/// without a counterpart are 0 or NaN. Rows of a force do not depend on displacements alone, so theirs are 0.
 Eigen::MatrixXd predict_along(const Model& model, const std::vector<std::unique_ptr<ObservationOperator>>& operators,
                               const Frame& frame, const Eigen::VectorXd& theta,
-                              const Eigen::Ref<const Eigen::VectorXd>& output, const Prediction& there,
-                              const Eigen::MatrixXd& shapes);
+                              const Eigen::Ref<const Eigen::VectorXd>& output, const Eigen::MatrixXd& shapes);
 
 /// Returns the frame's prediction for a body that has not moved.
 Prediction predict_at_rest(const Model& model, const std::vector<std::unique_ptr<ObservationOperator>>& operators,

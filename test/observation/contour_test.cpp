@@ -8,6 +8,7 @@
 #include "../box_model.hpp"
 #include "observation/observation_operator.hpp"
 #include "observation/outline.hpp"
+#include "tangent_check.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -67,6 +68,11 @@ class ContourSensor : public testing::Test {
     sensor_ = std::move(make_observation_operators(*model_).front());
   }
   Prediction predict(const Camera& camera, const std::vector<Row>& rows, const Eigen::VectorXd& u) const {
+    const Observation o = observed(camera, rows);
+    sensor_->check(o);
+    return sensor_->predict(o, u);
+  }
+  static Observation observed(const Camera& camera, const std::vector<Row>& rows) {
     auto outline = std::make_shared<Contour>();
     outline->points.resize(2, static_cast<Eigen::Index>(rows.size()));
     outline->normals.resizeLike(outline->points);
@@ -81,8 +87,7 @@ class ContourSensor : public testing::Test {
     o.kind = ObservationKind::contour;
     o.contour = outline;
     o.camera = std::make_shared<Camera>(camera);
-    sensor_->check(o);
-    return sensor_->predict(o, u);
+    return o;
   }
   Eigen::VectorXd at_rest() const { return Eigen::VectorXd::Zero(model_->fem().dof_count()); }
   Eigen::VectorXd shifted(const Eigen::Vector3d& by) const { return by.replicate(model_->mesh().node_count(), 1); }
@@ -141,6 +146,34 @@ TEST_F(ContourSensor, SilhouetteMovesWithTheBody) {
   // At one and a half times the distance the face shrinks to 200/1.5 pixels, of 0.75 mm each.
   const double away = predict(pinhole(), rows, shifted({0, 0.25, 0})).predicted[0];
   EXPECT_NEAR(away, (100.0 / 1.5 - 101.0) * 0.75e-3, 1e-12);
+}
+
+// The cameras stand askew before a body that is bent, so that depths and edges differ.
+TEST_F(ContourSensor, TangentIsTheDerivativeOfTheRows) {
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.2, Eigen::Vector3d(0.3, -0.5, 0.8).normalized()));
+  for (const bool slice : {false, true}) {
+    make(contour(slice ? ", projection: slice" : ", projection: silhouette"));
+    Eigen::VectorXd u = at_rest();
+    for (int i = 0; i < model_->mesh().node_count(); ++i) {
+      const Eigen::Vector3d x = model_->mesh().nodes.col(i);
+      u.segment<3>(3 * i) = Eigen::Vector3d(0.0, 0.1 * x.x() * x.x(), 0.3 * x.x() * x.x());
+    }
+    Camera camera = slice ? slice_at(0.053) : pinhole();
+    camera.fy = 1.1 * camera.fx;
+    camera.model_from_sensor.linear() = camera.model_from_sensor.linear() * turn.toRotationMatrix();
+    std::vector<Row> rows;  // beside each piece of the outline, not quite along its normal
+    const Eigen::Matrix4Xd outline = sensor_->outline(observed(camera, {}), u);
+    for (Eigen::Index i = 0; i < outline.cols(); ++i) {
+      const Eigen::Vector2d edge = (outline.col(i).tail<2>() - outline.col(i).head<2>()).normalized();
+      for (const double side : {-1.0, 1.0}) {
+        const Eigen::Vector2d normal = (side * Eigen::Vector2d(edge.y(), -edge.x()) + 0.1 * edge).normalized();
+        const Row row{0.6 * outline.col(i).head<2>() + 0.4 * outline.col(i).tail<2>() - 0.2 * normal, normal, 1.0};
+        if (std::isfinite(predict(camera, {row}, u).predicted[0])) rows.push_back(row);
+      }
+    }
+    ASSERT_GE(rows.size(), 8U);
+    expect_tangent(*sensor_, observed(camera, rows), u);
+  }
 }
 
 TEST_F(ContourSensor, NothingIsPredictedBehindTheCamera) {

@@ -9,6 +9,7 @@
 
 #include "../box_model.hpp"
 #include "observation/closest_point.hpp"
+#include "tangent_check.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -162,6 +163,18 @@ TEST_F(Sensor, PointsPullBackTowardsTheSurface) {
   const Prediction after = sensors_[0]->predict(seen(point), raised);
   EXPECT_NEAR(after.predicted[0] - p.predicted[0], 0.0005, 1e-14);  // h grows as the surface moves along its normal
   EXPECT_NEAR(mesh().nodes(2, p.nodes[0]), 0.02, 1e-12);
+}
+
+// The points lie before faces, beyond an edge and beyond a corner.
+TEST_F(Sensor, TangentOfPointsIsTheDerivativeOfTheirRows) {
+  make("linear", "[" + kPoints + "]");
+  const Eigen::VectorXd u = moved([&](const Eigen::Vector3d& x) -> Eigen::Vector3d { return kTurn * x + kShift; });
+  Eigen::Matrix3Xd points(3, 4);
+  points.col(0) = kTurn * Eigen::Vector3d(0.051, 0.0083, 0.0212) + kShift;
+  points.col(1) = kTurn * Eigen::Vector3d(0.082, -0.0013, 0.0112) + kShift;
+  points.col(2) = kTurn * Eigen::Vector3d(0.033, 0.0213, 0.0207) + kShift;
+  points.col(3) = kTurn * Eigen::Vector3d(0.1008, 0.0205, 0.0211) + kShift;
+  expect_tangent(*sensors_[0], seen(points), u);
 }
 
 TEST_F(Sensor, RowsOfSeveralSensorsAreJoinedInOrder) {
