@@ -3,10 +3,14 @@
 #include <functional>
 #include <sstream>
 
+#include "tissue_stiffness/types/error.hpp"
+#include "types/read_file.hpp"
+
 namespace tissue_stiffness {
 namespace {
 
 constexpr int kTetra = 10, kQuadraticTetra = 24;  // VTK's cell types; their node order is TetMesh's
+constexpr std::uintmax_t kLargestFile = std::uintmax_t{1} << 30U;
 
 }  // namespace
 
@@ -35,6 +39,27 @@ std::string map_vtk(const StiffnessMap& map, const TetMesh& mesh) {
   write("upper95 double", [](const StiffnessPatch& patch) { return patch.upper95; });
   write("identified int", [](const StiffnessPatch& patch) { return patch.identified ? 1.0 : 0.0; });
   return out.str();
+}
+
+std::vector<int> read_map_patches(const std::string& file) {
+  const std::string allowed = "the map.vtk that `estimate` wrote";
+  std::istringstream in(read_file(file, file, allowed, kLargestFile));
+  std::string word;
+  std::size_t count = 0;
+  while (in >> word && word != "CELL_DATA") {
+  }
+  if (!(in >> count)) throw InputError(file, "no CELL_DATA", allowed);
+  while (in >> word && word != "patch") {
+  }
+  std::vector<int> out;
+  for (int i = 0; i < 4 && in >> word; ++i) {  // "int 1 LOOKUP_TABLE default"
+  }
+  for (int patch = 0; out.size() < count && in >> patch;) out.push_back(patch);
+  if (out.size() != count) {
+    throw InputError(file, std::to_string(out.size()) + " numbers of `patch`",
+                     std::to_string(count) + ", one a tetrahedron");
+  }
+  return out;
 }
 
 }  // namespace tissue_stiffness

@@ -50,6 +50,7 @@ struct Results {
   double basis_error = std::numeric_limits<double>::quiet_NaN();  ///< of the reduced basis, an upper bound [m]
   double nis_mean_per_dof = std::numeric_limits<double>::quiet_NaN();
   double nis_p_value = std::numeric_limits<double>::quiet_NaN();
+  int nodes = 0, tetrahedra = 0;    ///< of the mesh
   std::optional<StiffnessMap> map;  ///< if the model file asks for one
   std::vector<FrameRecord> frames;
   std::vector<double> frame_seconds;                          ///< wall time of each used frame

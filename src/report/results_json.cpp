@@ -82,6 +82,8 @@ std::string results_json(const Results& results) {
   json root = {
       {"complete", results.interrupted.empty()},
       {"model", results.model},
+      {"model_text", results.model_text},
+      {"mesh", {{"nodes", results.nodes}, {"tetrahedra", results.tetrahedra}}},
       {"recording", results.recording},
       {"state", to_string(results.state)},
       {"state_reason", results.state_reason},

@@ -7,7 +7,8 @@
 
 namespace tissue_stiffness {
 
-/// Returns `results.json`: complete, interrupted_during (if it is not complete),
+/// Returns `results.json`: complete, interrupted_during (if it is not complete), model and recording (their files),
+/// model_text (content of the model file), mesh.{nodes,tetrahedra},
 /// parameters.{effect.parameter}.{unit,mean,std,interval95}, identifiable.{...}.{verdict,reason}, state, map (if there is
 /// one).{levels[].{patches,mean_square,log_evidence,kept},
 /// patches[].{center,young_modulus,interval95,identified},identified,mesh_error}, frames (used), skipped[].{time,reason},

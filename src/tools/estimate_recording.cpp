@@ -113,6 +113,8 @@ class Run {
     results.noise_rms = std::sqrt(noise_.sum / noise_.rows);
     results.basis_error = estimator_.basis_error().value_or(results.basis_error);
     results.description = estimator_.description();
+    results.nodes = estimator_.mesh().node_count();
+    results.tetrahedra = estimator_.mesh().tet_count();
     for (const auto& [stage, samples] : run_.stage_samples) {
       double sum = 0.0;
       for (const double s : samples) sum += s;

@@ -1,12 +1,14 @@
 // The map of the stiffness in what a run writes.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "example.hpp"
 #include "report/map_vtk.hpp"
 #include "report/page.hpp"
 #include "report/write_results.hpp"
+#include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -66,6 +68,22 @@ TEST(MapVtk, HoldsTheBodyAndItsPatches) {
   EXPECT_TRUE(holds("SCALARS patch int 1\nLOOKUP_TABLE default\n1\n0\n-1\n"));
   EXPECT_TRUE(holds("SCALARS young_modulus double 1\nLOOKUP_TABLE default\n50000\n30000\n0\n"));
   EXPECT_TRUE(holds("SCALARS identified int 1\nLOOKUP_TABLE default\n0\n1\n0\n"));
+}
+
+TEST(MapVtk, GivesBackThePatches) {
+  TetMesh mesh;
+  mesh.nodes = Eigen::Matrix3Xd::Zero(3, 6);
+  mesh.tets = Eigen::MatrixXi::Zero(4, 3);
+  const std::string file = (std::filesystem::temp_directory_path() / "tissue_stiffness_map.vtk").string();
+  const std::string text = map_vtk(example_map(), mesh);
+  write_text(file, text);
+  EXPECT_EQ(read_map_patches(file), (std::vector<int>{1, 0, -1}));
+  for (const std::string& broken : {std::string("CELL_DATA"), text.substr(0, text.find("patch") + 36)}) {
+    write_text(file, broken);
+    EXPECT_THROW(read_map_patches(file), InputError) << broken;
+  }
+  std::filesystem::remove(file);
+  EXPECT_THROW(read_map_patches(file), InputError);
 }
 
 }  // namespace

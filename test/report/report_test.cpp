@@ -32,6 +32,8 @@ TEST(ResultsJson, HoldsTheContract) {
   EXPECT_EQ(root.at("identifiable").at("mass_damping.alpha").at("verdict"), "ratio_only");
   EXPECT_EQ(root.at("identifiable").at("elasticity.young_modulus").at("reason"), "gravity is known");
   EXPECT_EQ(root.at("state"), "converged");
+  EXPECT_EQ(root.at("model_text"), results.model_text);
+  EXPECT_EQ(root.at("mesh"), json({{"nodes", 12}, {"tetrahedra", 5}}));
   EXPECT_EQ(root.at("frames"), 57);
   EXPECT_EQ(root.at("skipped").size(), 3u);
   EXPECT_EQ(root.at("skipped")[0].at("time"), 1500000000.0 + 0.02 * 9);
