@@ -30,6 +30,7 @@ const std::map<std::string, std::set<std::string>> kAllowed = [] {
   add("fem", {"settings"});
   add("effects", {"fem"});
   add("forward", {"effects", "meshing"});
+  add("export", {"forward"});
   add("filter", {"types"});
   add("observation", {"forward", "filter"});
   add("fit", {"observation"});
@@ -38,7 +39,7 @@ const std::map<std::string, std::set<std::string>> kAllowed = [] {
   add("report", {"settings"});
   add("check", {"estimation", "segmentation", "report"});
   add("nodes", {"diagnosis", "segmentation", "report", "check"});
-  add("tools", {"nodes"});
+  add("tools", {"nodes", "export"});
   add("nodelets", {"nodes"});
   add("rviz", {"nodes"});
   return allowed;

@@ -90,7 +90,7 @@ class Executables : public Workbench {
 };
 
 TEST_F(Executables, HelpThemselves) {
-  for (const std::string tool : {"estimate", "diagnose", "check", "simulate", "effects", "parameters"}) {
+  for (const std::string tool : {"estimate", "diagnose", "check", "simulate", "export", "effects", "parameters"}) {
     const Outcome help = call(tool + " --help");
     EXPECT_EQ(help.code, 0) << help.text;
     EXPECT_NE(help.text.find("Usage"), std::string::npos) << help.text;

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "export/exported_model.hpp"
+
+namespace tissue_stiffness {
+
+/// A model in another program's format.
+struct ExportFile {
+  std::string text;
+  std::vector<std::string> remarks;  ///< the model's, and what this format cannot express; `text` holds them, too
+};
+
+/// Returns a `.vtu` for ParaView, written by VTK. Points have `fixed`, `load` [N], `weight` [N] and, where a motion is
+/// prescribed, `moved` and `prescribed_displacement` [m]. Cells have `young_modulus` [Pa], `poisson_ratio` and `density`
+/// [kg/m^3]. Field data has the numbers of the whole body and the remarks.
+ExportFile vtu_file(const ExportedModel& model);
+
+}  // namespace tissue_stiffness

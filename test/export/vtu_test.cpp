@@ -1,0 +1,107 @@
+// The file for ParaView, read back by VTK.
+#include <gtest/gtest.h>
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkFieldData.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkStringArray.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLUnstructuredGridReader.h>
+
+#include "example_model.hpp"
+#include "export/formats.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+/// One column for each tuple of an array.
+Eigen::MatrixXd numbers(vtkFieldData& data, const std::string& name) {
+  vtkDataArray* array = data.GetArray(name.c_str());
+  if (array == nullptr) {
+    ADD_FAILURE() << "no " << name;
+    return {};
+  }
+  Eigen::MatrixXd out(array->GetNumberOfComponents(), array->GetNumberOfTuples());
+  for (Eigen::Index i = 0; i < out.cols(); ++i) array->GetTuple(i, out.col(i).data());
+  return out;
+}
+
+std::vector<std::string> texts(vtkFieldData& data, const std::string& name) {
+  auto* array = vtkStringArray::SafeDownCast(data.GetAbstractArray(name.c_str()));
+  std::vector<std::string> out;
+  for (vtkIdType i = 0; array != nullptr && i < array->GetNumberOfValues(); ++i) out.push_back(array->GetValue(i));
+  return out;
+}
+
+class Vtu : public ::testing::TestWithParam<int> {
+ protected:
+  vtkUnstructuredGrid& read(const ExportFile& file) {
+    reader_->ReadFromInputStringOn();
+    reader_->SetInputString(file.text);
+    reader_->Update();
+    return *reader_->GetOutput();
+  }
+  TetMesh mesh() const { return make_box_mesh({0.10, 0.02, 0.02}, 4, 1, 1, GetParam()); }
+
+ private:
+  vtkNew<vtkXMLUnstructuredGridReader> reader_;
+};
+
+TEST_P(Vtu, GivesBackTheModel) {
+  const auto model = bar_model(bar_effects({"mass_damping: {alpha: 2.5}", "viscous_damping: {beta: 1.0e-3}",
+                                            "viscoelasticity: {gamma: 0.5, tau: 0.1}"}),
+                               mesh());
+  ExportedModel bar = export_model(*model, model->parameters().known(), 12.0);
+  bar.title = "a bar < 1 m & \"soft\"";
+  const ExportFile file = vtu_file(bar);
+  EXPECT_EQ(file.remarks, bar.remarks);
+  vtkUnstructuredGrid& grid = read(file);
+  ASSERT_EQ(grid.GetNumberOfPoints(), bar.mesh.node_count());
+  ASSERT_EQ(grid.GetNumberOfCells(), bar.mesh.tet_count());
+  for (int i = 0; i < bar.mesh.node_count(); ++i) {
+    EXPECT_EQ(Eigen::Vector3d(grid.GetPoint(i)), bar.mesh.nodes.col(i));
+    EXPECT_EQ(numbers(*grid.GetPointData(), "fixed")(0, i), bar.fixed[static_cast<std::size_t>(i)]);
+  }
+  for (int e = 0; e < bar.mesh.tet_count(); ++e) {
+    EXPECT_EQ(grid.GetCellType(e), GetParam() == 1 ? 10 : 24);
+    vtkNew<vtkIdList> nodes;
+    grid.GetCellPoints(e, nodes);
+    ASSERT_EQ(nodes->GetNumberOfIds(), bar.mesh.tets.rows());
+    for (Eigen::Index i = 0; i < bar.mesh.tets.rows(); ++i) EXPECT_EQ(nodes->GetId(i), bar.mesh.tets(i, e));
+  }
+  EXPECT_EQ(numbers(*grid.GetPointData(), "load"), bar.force());
+  EXPECT_EQ(numbers(*grid.GetPointData(), "weight"), bar.weight);
+  EXPECT_EQ(numbers(*grid.GetCellData(), "young_modulus").transpose(), bar.young_modulus);
+  EXPECT_EQ(numbers(*grid.GetCellData(), "poisson_ratio").transpose(), bar.poisson_ratio);
+  EXPECT_EQ(numbers(*grid.GetCellData(), "density").transpose(), bar.density);
+  vtkFieldData& whole = *grid.GetFieldData();
+  EXPECT_EQ(numbers(whole, "time")(0, 0), 2.0);
+  EXPECT_EQ(Eigen::Vector3d(numbers(whole, "gravity")), bar.gravity);
+  EXPECT_EQ(numbers(whole, "mass_damping")(0, 0), 2.5);
+  EXPECT_EQ(numbers(whole, "stiffness_damping")(0, 0), 1e-3);
+  EXPECT_EQ(texts(whole, "law"), std::vector<std::string>{"linear"});
+  EXPECT_EQ(texts(whole, "title"), std::vector<std::string>{bar.title});
+  EXPECT_EQ(texts(whole, "remarks"), bar.remarks);
+  EXPECT_EQ(bar.remarks.size(), 1U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Orders, Vtu, ::testing::Values(1, 2));
+
+TEST(VtuMotion, IsOnTheNodesThatAreMoved) {
+  ExportedModel bar = export_bar(bar_effects());
+  bar.motions.push_back({"moved on tip", {3, 5}, Eigen::Matrix3Xd::Constant(3, 2, 0.25)});
+  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  reader->ReadFromInputStringOn();
+  reader->SetInputString(vtu_file(bar).text);
+  reader->Update();
+  vtkPointData& points = *reader->GetOutput()->GetPointData();
+  const Eigen::MatrixXd moved = numbers(points, "moved"), displacement = numbers(points, "prescribed_displacement");
+  EXPECT_EQ(moved.sum(), 2.0);
+  EXPECT_EQ(moved(0, 5), 1.0);
+  EXPECT_EQ(displacement(2, 3), 0.25);
+  EXPECT_EQ(displacement.sum(), 1.5);
+}
+
+}  // namespace
+}  // namespace tissue_stiffness
