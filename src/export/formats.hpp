@@ -18,4 +18,7 @@ struct ExportFile {
 /// [kg/m^3]. Field data has the numbers of the whole body and the remarks.
 ExportFile vtu_file(const ExportedModel& model);
 
+/// Returns an input file of CalculiX: a static step with the loads, and the displacement of every node in the `.dat` file.
+ExportFile calculix_file(const ExportedModel& model);
+
 }  // namespace tissue_stiffness

@@ -23,7 +23,8 @@ struct Format {
 };
 
 const std::map<std::string, Format>& formats() {
-  static const std::map<std::string, Format> all = {{"vtu", {".vtu", vtu_file}}};
+  static const std::map<std::string, Format> all = {{"vtu", {".vtu", vtu_file}},
+                                                    {"calculix", {".inp", calculix_file}}};
   return all;
 }
 
@@ -66,7 +67,7 @@ int main(int argc, char** argv) {
   app.add_option("--recording", recording, "the rosbag (default: as results.json says)");
   app.add_flag("--quiet", quiet, "no word about what was written");
   app.footer(
-      "Example: export out --to vtu -o liver.vtu\nWhat the format cannot express is said on stderr and in the file.");
+      "Example: export out --to calculix -o liver.inp\nWhat the format cannot express is said on stderr and in the file.");
   return run_tool(app, argc, argv, [&] {
     const EstimatedModel estimated = load_estimated_model(results, model, recording);
     const Format& format = formats().at(to);
