@@ -21,4 +21,7 @@ ExportFile vtu_file(const ExportedModel& model);
 /// Returns an input file of CalculiX: a static step with the loads, and the displacement of every node in the `.dat` file.
 ExportFile calculix_file(const ExportedModel& model);
 
+/// Returns an input file of FEBio, version 4.0 of its format: a static analysis in which the loads rise from zero.
+ExportFile febio_file(const ExportedModel& model);
+
 }  // namespace tissue_stiffness

@@ -24,7 +24,8 @@ struct Format {
 
 const std::map<std::string, Format>& formats() {
   static const std::map<std::string, Format> all = {{"vtu", {".vtu", vtu_file}},
-                                                    {"calculix", {".inp", calculix_file}}};
+                                                    {"calculix", {".inp", calculix_file}},
+                                                    {"febio", {".feb", febio_file}}};
   return all;
 }
 
