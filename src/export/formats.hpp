@@ -24,4 +24,8 @@ ExportFile calculix_file(const ExportedModel& model);
 /// Returns an input file of FEBio, version 4.0 of its format: a static analysis in which the loads rise from zero.
 ExportFile febio_file(const ExportedModel& model);
 
+/// Returns a scene of SOFA, 23.12 or later: the body settles under the constant loads. SOFA has no 10-node tetrahedra, so
+/// the nodes on edges are dropped and their forces go to the corners.
+ExportFile sofa_file(const ExportedModel& model);
+
 }  // namespace tissue_stiffness

@@ -25,7 +25,8 @@ struct Format {
 const std::map<std::string, Format>& formats() {
   static const std::map<std::string, Format> all = {{"vtu", {".vtu", vtu_file}},
                                                     {"calculix", {".inp", calculix_file}},
-                                                    {"febio", {".feb", febio_file}}};
+                                                    {"febio", {".feb", febio_file}},
+                                                    {"sofa", {".scn", sofa_file}}};
   return all;
 }
 
