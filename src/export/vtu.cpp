@@ -1,4 +1,4 @@
-// VTK's XML format, for ParaView, by VTK's own writer.
+// VTK's XML format, for ParaView, by VTK's own writer. GetPointer() is for VTK 7, whose vtkNew does not convert.
 #include <vtkCellData.h>
 #include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
@@ -21,7 +21,7 @@ void add_grid(const TetMesh& mesh, vtkUnstructuredGrid& grid) {
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
   for (int i = 0; i < mesh.node_count(); ++i) points->InsertNextPoint(mesh.nodes.col(i).data());
-  grid.SetPoints(points);
+  grid.SetPoints(points.GetPointer());
   const auto size = static_cast<int>(mesh.tets.rows());
   std::vector<vtkIdType> nodes(static_cast<std::size_t>(size));
   for (int tet = 0; tet < mesh.tet_count(); ++tet) {
@@ -36,21 +36,21 @@ void add_numbers(const std::string& name, const Eigen::MatrixXd& columns, vtkFie
   array->SetName(name.c_str());
   array->SetNumberOfComponents(static_cast<int>(columns.rows()));
   for (Eigen::Index i = 0; i < columns.cols(); ++i) array->InsertNextTuple(columns.col(i).data());
-  to.AddArray(array);
+  to.AddArray(array.GetPointer());
 }
 
 void add_flags(const std::string& name, const std::vector<char>& flags, vtkFieldData& to) {
   vtkNew<vtkIntArray> array;
   array->SetName(name.c_str());
   for (const char flag : flags) array->InsertNextValue(flag != 0 ? 1 : 0);
-  to.AddArray(array);
+  to.AddArray(array.GetPointer());
 }
 
 void add_texts(const std::string& name, const std::vector<std::string>& texts, vtkFieldData& to) {
   vtkNew<vtkStringArray> array;
   array->SetName(name.c_str());
   for (const std::string& text : texts) array->InsertNextValue(text);
-  to.AddArray(array);
+  to.AddArray(array.GetPointer());
 }
 
 void add_motions(const ExportedModel& model, vtkFieldData& to) {
@@ -88,7 +88,7 @@ ExportFile vtu_file(const ExportedModel& model) {
   add_texts("title", {model.title}, whole);
   if (!model.remarks.empty()) add_texts("remarks", model.remarks, whole);
   vtkNew<vtkXMLUnstructuredGridWriter> writer;
-  writer->SetInputData(grid);
+  writer->SetInputData(grid.GetPointer());
   writer->SetDataModeToBinary();
   writer->WriteToOutputStringOn();
   writer->Write();

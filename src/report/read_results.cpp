@@ -30,7 +30,9 @@ class Entry {
     try {
       return value_.get<T>();
     } catch (const json::exception&) {
-      throw InputError(where_, value_.dump(-1, ' ', false, json::error_handler_t::replace), kAllowed);
+      const bool nested = value_.is_structured();
+      throw InputError(where_, nested ? "a list or a map" : value_.dump(-1, ' ', false, json::error_handler_t::replace),
+                       kAllowed);
     }
   }
 

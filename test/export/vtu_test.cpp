@@ -3,6 +3,7 @@
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkFieldData.h>
+#include <vtkIdList.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkStringArray.h>
@@ -66,7 +67,7 @@ TEST_P(Vtu, GivesBackTheModel) {
   for (int e = 0; e < bar.mesh.tet_count(); ++e) {
     EXPECT_EQ(grid.GetCellType(e), GetParam() == 1 ? 10 : 24);
     vtkNew<vtkIdList> nodes;
-    grid.GetCellPoints(e, nodes);
+    grid.GetCellPoints(e, nodes.GetPointer());
     ASSERT_EQ(nodes->GetNumberOfIds(), bar.mesh.tets.rows());
     for (Eigen::Index i = 0; i < bar.mesh.tets.rows(); ++i) EXPECT_EQ(nodes->GetId(i), bar.mesh.tets(i, e));
   }
