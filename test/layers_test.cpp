@@ -42,6 +42,7 @@ const std::map<std::string, std::set<std::string>> kAllowed = [] {
   add("tools", {"nodes", "export"});
   add("nodelets", {"nodes"});
   add("rviz", {"nodes"});
+  add("python", {"tools"});
   return allowed;
 }();
 
