@@ -120,11 +120,11 @@ def read_bag(model: Union[_core.Model, 'PathLike'], file: 'PathLike') -> Recordi
     """Reads a rosbag for a model: frames, loads and mesh. The part of this package that can do so needs ROS's C++ libraries."""
     name = os.fspath(file)
     try:
-        from . import _bag
+        from ._bag import Reader
     except ImportError as error:
         raise input_error(name, 'a rosbag, which cannot be read here (%s)' % error,
                           'frames of arrays, or a build beside ROS whose setup.bash has been sourced') from None
-    reader = _bag.Reader(as_model(model), name)
+    reader = Reader(as_model(model), name)
     frames = []
     while True:
         instant = reader.next()

@@ -109,6 +109,8 @@ class Result:
             since = stamps - stamps[0] if len(stamps) else stamps
             axis.fill_between(since, columns['lower'], columns['upper'], alpha=0.3, linewidth=0, label='95 % interval')
             axis.plot(since, mean, label='mean')
+            if columns['lower'].size and np.nanmin(columns['lower']) > 0:  # the first intervals span decades
+                axis.set_yscale('log')
             axis.set_ylabel('%s [%s]' % (name, self.parameters[name].unit))
             axis.legend()
         axes[-1, 0].set_xlabel('time since the first frame [s]')
