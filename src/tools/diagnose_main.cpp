@@ -6,15 +6,14 @@
 #include <utility>
 #include <vector>
 
+#include "diagnosis/estimate_at_last.hpp"
 #include "diagnosis/replay_model.hpp"
-#include "estimation/reuse_sources.hpp"
 #include "forward/for_each_index.hpp"
 #include "report/effect_words.hpp"
 #include "report/write_diagnosis.hpp"
 #include "report/write_results.hpp"
 #include "settings/extend_model.hpp"
 #include "tissue_stiffness/diagnosis/diagnose.hpp"
-#include "tissue_stiffness/estimation/estimator.hpp"
 #include "tissue_stiffness/types/error.hpp"
 #include "tools/check_setup.hpp"
 #include "tools/print_diagnosis.hpp"
@@ -32,21 +31,6 @@ std::string read_text(const std::string& file) {
 }
 
 using namespace tissue_stiffness;
-
-/// Returns an estimator's result for the last model. For a model that is integrated in full it returns the fit's result,
-/// because the estimator would take as long as the diagnosis.
-Estimate estimate_at_last(const Diagnosis& diagnosis, const FittedModel& given, const FittedModel& last,
-                          const RecordingFit* finer) {
-  if (last.recording_fit->model().nonlinear()) return diagnosis.estimate;
-  const Recording& recording = given.recording_fit->recording();
-  const Model& model = given.recording_fit->model();
-  const ReuseSources relatives{last.recording_fit->reduced().get(), finer != nullptr ? finer->reduced().get() : nullptr};
-  Estimator estimator(extend_model(model.settings(), diagnosis.entries), model.mesh(), relatives);
-  estimator.set_first_stamp(recording.first_stamp);
-  for (const LoadSample& load : recording.loads) estimator.add_load(load);
-  estimator.replay(recording.frames, &diagnosis.estimate, recording.checkpoint);
-  return estimator.estimate();
-}
 
 /// Keeps the results if a final run fails, as with a prior that reaches impossible values.
 void try_run(const std::string& what, const std::function<void()>& run) {
