@@ -8,5 +8,6 @@ namespace tissue_stiffness {
 void bind_types(pybind11::module& module);
 void bind_model(pybind11::module& module);
 void bind_estimator(pybind11::module& module);
+void bind_diagnosis(pybind11::module& module);
 
 }  // namespace tissue_stiffness

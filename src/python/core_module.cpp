@@ -15,4 +15,5 @@ PYBIND11_MODULE(_core, module) {
   bind_types(module);
   bind_model(module);
   bind_estimator(module);
+  bind_diagnosis(module);
 }

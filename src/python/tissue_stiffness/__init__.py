@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from ._core import (Estimate, Identifiability, InputError, LoadInput, LoadSample, Misfit, Model, NumericalError, Observation,
                         ParameterEstimate, Prediction, StepResult, TetMesh, build_mesh)
+    from .diagnosis import Diagnosis, MissingEffect, diagnose, read_diagnosis
     from .estimation import Estimator, estimate
     from .frames import Frame, Load, Recording, make_frames, make_loads, read_bag
     from .results import FrameRecord, Result, read_results
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
 _SOURCES = {
     '_core': ('Estimate', 'Identifiability', 'InputError', 'LoadInput', 'LoadSample', 'Misfit', 'Model', 'NumericalError',
               'Observation', 'ParameterEstimate', 'Prediction', 'StepResult', 'TetMesh', 'build_mesh'),
+    'diagnosis': ('Diagnosis', 'MissingEffect', 'diagnose', 'read_diagnosis'),
     'estimation': ('Estimator', 'estimate'),
     'frames': ('Frame', 'Load', 'Recording', 'make_frames', 'make_loads', 'read_bag'),
     'results': ('FrameRecord', 'Result', 'read_results'),

@@ -139,7 +139,7 @@ def read_json(file: 'PathLike', allowed: str) -> Dict[str, Any]:
 
 def to_parameter(name: str, p: Dict[str, Any]) -> ParameterEstimate:
     lower, upper = p['interval95']
-    return ParameterEstimate(name, p['unit'], real(p['mean']), real(p['std']), real(lower), real(upper))
+    return ParameterEstimate(name, p['unit'], real(p['mean']), real(p.get('std')), real(lower), real(upper))
 
 
 def read_frames(file: 'PathLike') -> List[FrameRecord]:
