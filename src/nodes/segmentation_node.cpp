@@ -9,6 +9,7 @@
 #include "nodes/node_keys.hpp"
 #include "nodes/sensor_conversions.hpp"
 #include "segmentation/overlay.hpp"
+#include "settings/read_sections.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
@@ -17,19 +18,6 @@ namespace {
 using diagnostic_msgs::DiagnosticStatus;
 
 constexpr std::size_t kMostWaiting = 30;  // images for the model's outline: an estimator that is behind, or skips frames
-
-SegmentationSettings read_segmentation(const Value& map) {
-  SegmentationSettings out;
-  out.kind = map.at("kind").as_choice({"silhouette", "cavity"}) == "cavity" ? SegmentationSettings::Kind::cavity
-                                                                            : SegmentationSettings::Kind::silhouette;
-  if (map.has("seed")) {
-    const auto& seed = map.at("seed").items();
-    if (seed.size() != 2) throw InputError(map.at("seed").path(), map.at("seed").shown(), "[u, v] [pixel]");
-    out.seed = Eigen::Vector2d(seed[0].as_number(0, 1e6, "pixel"), seed[1].as_number(0, 1e6, "pixel"));
-  }
-  map.require_all_read();
-  return out;
-}
 
 /// Returns contour `number` of a model, or null when the model has no contour. Throws InputError for a number out of range.
 const ObservationSettings* find_contour(const ModelSettings& model, int number) {
@@ -56,7 +44,8 @@ SegmentationNode::SegmentationNode(const ros::NodeHandle& node, const ros::NodeH
   image_topic_ = node_.resolveName("image");
   camera_info_topic_ = node_.resolveName("camera_info");
   if (settings.own.has("segmentation")) {
-    segmenter_ = make_segmenter(read_segmentation(settings.own.at("segmentation")));
+    segmentation_ = read_segmentation(settings.own.at("segmentation"));
+    settings.own.at("segmentation").require_all_read();
   } else {
     const ModelSettings model = read_model(settings.model, settings.directory);
     const ObservationSettings* contour = find_contour(model, number);
@@ -64,10 +53,11 @@ SegmentationNode::SegmentationNode(const ros::NodeHandle& node, const ros::NodeH
       ROS_INFO("the model observes no contour: nothing to segment");
       return;
     }
-    segmenter_ = make_segmenter(contour->segmentation);
+    segmentation_ = contour->segmentation;
     if (image_topic_ == node_.resolveName("image", false)) image_topic_ = contour->topic;
     if (camera_info_topic_ == node_.resolveName("camera_info", false)) camera_info_topic_ = contour->camera_info;
   }
+  segmenter_ = make_segmenter(segmentation_);
   const auto on_listener = [this](const ros::SingleSubscriberPublisher&) { connect(); };
   const auto on_viewer = [this](const image_transport::SingleSubscriberPublisher&) { connect(); };
   contour_publisher_ = node_.advertise<ContourMessage>("contour", queue_size_, on_listener, on_listener);
@@ -92,7 +82,7 @@ void SegmentationNode::on_camera_info(const sensor_msgs::CameraInfoConstPtr& mes
 void SegmentationNode::on_image(const sensor_msgs::ImageConstPtr& message) {
   try {
     require_stamp(message->header, image_topic_);
-    const cv::Mat image = to_image(message, image_topic_);
+    const cv::Mat image = to_image(message, segmentation_.kind, image_topic_);
     if (camera_info_ && (camera_info_->width != message->width || camera_info_->height != message->height)) {
       throw InputError(image_topic_, size_of(message->width, message->height) + " pixels",
                        size_of(camera_info_->width, camera_info_->height) + " as in " + camera_info_topic_);

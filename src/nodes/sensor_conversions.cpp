@@ -118,6 +118,25 @@ cv::Mat to_image(const sensor_msgs::ImageConstPtr& image, const std::string& top
   }
 }
 
+cv::Mat to_image(const sensor_msgs::ImageConstPtr& image, SegmentationSettings::Kind kind, const std::string& topic) {
+  if (kind != SegmentationSettings::Kind::mask) return to_image(image, topic);
+  static const std::array<const char*, 4> allowed{"mono8", "8UC1", "mono16", "16UC1"};
+  const char* const names = "mono8, 8UC1, mono16 or 16UC1 (a mask: 0 is background), with step * height bytes";
+  const std::string& encoding = image->encoding;
+  if (std::find(allowed.begin(), allowed.end(), encoding) == allowed.end()) {
+    throw InputError(topic, "encoding '" + encoding + "'", names);
+  }
+  try {
+    const cv::Mat values = cv_bridge::toCvShare(image)->image;
+    if (values.empty()) throw InputError(topic, "an empty image", "at least one pixel");
+    return values != 0;
+  } catch (const cv_bridge::Exception& error) {
+    throw InputError(topic, "encoding '" + encoding + "' (" + error.what() + ")", names);
+  } catch (const cv::Exception& error) {
+    throw InputError(topic, "an image that OpenCV refuses: " + error.err, names);
+  }
+}
+
 LoadSample to_load(const sensor_msgs::FluidPressure& pressure, const std::string& topic) {
   LoadSample sample{topic, pressure.header.stamp.toSec(), Eigen::VectorXd::Constant(1, pressure.fluid_pressure)};
   require_finite(sample.value, topic + ": fluid_pressure");

@@ -48,6 +48,10 @@ Camera to_camera(const sensor_msgs::CameraInfo& info, ObservationSettings::Proje
 /// the result.
 cv::Mat to_image(const sensor_msgs::ImageConstPtr& image, const std::string& topic);
 
+/// Returns what a segmentation of this kind takes. For a mask these are 255 where the image is not 0, at any depth, so that
+/// a mask of 0 and 1 in 16 bits is not lost. For the other kinds it is the image as above.
+cv::Mat to_image(const sensor_msgs::ImageConstPtr& image, SegmentationSettings::Kind kind, const std::string& topic);
+
 LoadSample to_load(const sensor_msgs::FluidPressure& pressure, const std::string& topic);
 
 /// Converts force and torque and rotates them into the model frame.

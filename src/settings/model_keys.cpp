@@ -103,10 +103,13 @@ std::vector<KeySpec> observation_keys() {
                     "topic of the calibration, sensor_msgs/CameraInfo; for a slice fx and fy are pixels a metre"),
        positive(contour + ".noise", "m", "1 sigma along the outline's normal"), pose_keys(contour)[0],
        pose_keys(contour)[1], plain_key(contour + ".segmentation", Kind::map, "", "how the outline is found"),
-       choice_key(contour + ".segmentation.kind", {"silhouette", "cavity"}, true,
-                  "the body against a darker background, or a dark pool inside a bright wall (B-mode)"),
+       choice_key(contour + ".segmentation.kind", {"silhouette", "cavity", "mask"}, true,
+                  "the body against a darker background, a dark pool inside a bright wall (B-mode), or a mask that another "
+                  "program has made: 0 is background, all else the body"),
        plain_key(contour + ".segmentation.seed", Kind::numbers, "pixel",
                  "[u, v] inside the body or the pool; found when absent"),
+       plain_key(contour + ".segmentation.roi", Kind::numbers, "pixel",
+                 "[u, v, width, height] of the part of the image that holds the body; a mask's body only has to touch it"),
        choice_key(contour + ".projection", {"silhouette", "slice"}, false,
                   "the outline that a pinhole sees, or the surface cut by the image plane"),
        plain_key(contour + ".region", Kind::text, "", "part of the surface that the outline belongs to; all when absent")});

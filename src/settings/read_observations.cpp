@@ -11,7 +11,8 @@ namespace {
 
 using Kind = ObservationSettings::Kind;
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double kShareOfLargest = -0.1;  // a force sensor's bias that is not stated
+constexpr double kShareOfLargest = -0.1;               // a force sensor's bias that is not stated
+constexpr int kLeastPixels = 32, kMostPixels = 16384;  // width and height of a part of an image
 
 const KeySpec& key(const std::string& path) {
   return find_key(model_keys(), path);
@@ -31,12 +32,11 @@ Eigen::Vector2d read_pixel(const Value& list) {
   return {items[0].as_number(0.0, infinity, "pixel"), items[1].as_number(0.0, infinity, "pixel")};
 }
 
-SegmentationSettings read_segmentation(const Value& map) {
-  SegmentationSettings segmentation;
-  const bool cavity = read_choice(map, key("observations[].contour.segmentation.kind")) == "cavity";
-  segmentation.kind = cavity ? SegmentationSettings::Kind::cavity : SegmentationSettings::Kind::silhouette;
-  if (map.has("seed")) segmentation.seed = read_pixel(map.at("seed"));
-  return segmentation;
+PixelBox read_box(const Value& list) {
+  const std::vector<Value>& items = list.items();
+  if (items.size() != 4) throw InputError(list.path(), list.shown(), "four numbers [u, v, width, height] [pixel]");
+  const auto whole = [&](std::size_t i, int least) { return items[i].as_integer(least, kMostPixels); };
+  return {whole(0, 0), whole(1, 0), whole(2, kLeastPixels), whole(3, kLeastPixels)};
 }
 
 void read_contour(const Value& map, ObservationSettings& observation) {
@@ -89,6 +89,18 @@ ObservationSettings read_observation(const Value& entry) {
 }
 
 }  // namespace
+
+SegmentationSettings read_segmentation(const Value& map) {
+  using SegmentationKind = SegmentationSettings::Kind;
+  SegmentationSettings segmentation;
+  const std::string kind = read_choice(map, key("observations[].contour.segmentation.kind"));
+  segmentation.kind = kind == "cavity" ? SegmentationKind::cavity
+                      : kind == "mask" ? SegmentationKind::mask
+                                       : SegmentationKind::silhouette;
+  if (map.has("seed")) segmentation.seed = read_pixel(map.at("seed"));
+  if (map.has("roi")) segmentation.roi = read_box(map.at("roi"));
+  return segmentation;
+}
 
 std::vector<ObservationSettings> read_observations(const Value& list) {
   std::vector<ObservationSettings> observations;

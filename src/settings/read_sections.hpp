@@ -13,5 +13,6 @@ namespace tissue_stiffness {
 MeshSettings read_mesh(const Value& map, const std::string& directory);
 std::vector<RegionSettings> read_regions(const Value& map);
 std::vector<ObservationSettings> read_observations(const Value& list);
+SegmentationSettings read_segmentation(const Value& map);
 
 }  // namespace tissue_stiffness

@@ -282,7 +282,7 @@ void BagReader::segment(const Measurement& measurement, Instant& instant) {
                                                    *model_from_sensor, settings.camera_info));
   std::unique_ptr<Segmenter>& segmenter = segmenters_[measurement.source];
   if (!segmenter) segmenter = make_segmenter(settings.segmentation);
-  const cv::Mat image = to_image(measurement.image, settings.topic);
+  const cv::Mat image = to_image(measurement.image, settings.segmentation.kind, settings.topic);
   if (image.cols != camera->width || image.rows != camera->height) {
     throw InputError(
         settings.topic, std::to_string(image.cols) + " x " + std::to_string(image.rows) + " pixels",

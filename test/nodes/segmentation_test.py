@@ -111,6 +111,30 @@ class SegmentationTest(unittest.TestCase):
         blue, green, red = np.frombuffer(overlay.data, np.uint8).reshape(-1, 3).astype(int).T
         return ((blue - green > 60) & (red - green > 60)).sum()
 
+    def test_takes_the_masks_of_a_network(self):
+        masks = rospy.Publisher('/network/mask', Image, queue_size=10)
+        contours = {}
+        subscriber = rospy.Subscriber('mask_contour', Contour, lambda m: self.keep(contours, m), queue_size=10)
+        self.addCleanup(masks.unregister)
+        self.addCleanup(subscriber.unregister)
+        while not masks.get_num_connections():
+            self.pause(0.05)
+        v, u = np.mgrid[0:HEIGHT, 0:WIDTH]
+        body = np.hypot(u - 150.0, v - 120.0) < RADIUS
+        other = np.hypot(u - 20.0, v - 20.0) < 15
+        masks.publish(image((body | other).astype(np.uint8), 300.0))
+        masks.publish(image(other.astype(np.uint8), 300.1))  # nothing in the region of interest
+        wide = image((body | other).astype('<u2'), 300.2, 'mono16')
+        wide.step = 2 * WIDTH
+        masks.publish(wide)
+        for stamp in (300.0, 300.2):
+            contour = self.wait(contours, stamp)
+            self.assertIsNotNone(contour, 'no contour for the mask at %g s' % stamp)
+            distance = np.hypot(np.array(contour.u) - 150.0, np.array(contour.v) - 120.0)
+            self.assertLess(abs(distance.mean() - RADIUS), 0.2)
+            self.assertLess(distance.std(), 0.4)
+        self.assertEqual(sorted(contours), [300.0, 300.2])
+
     def test_survives_what_it_cannot_use(self):
         self.publish(200.0, None)  # nothing to be found
         self.images.publish(image(disc(None, 1), 200.1, 'holiday'))
@@ -135,6 +159,8 @@ class SegmentationTest(unittest.TestCase):
         found, done = {}, threading.Event()
 
         def on_diagnostics(message):
+            if not message.status[0].name.startswith('/segmentation_node'):
+                return
             for entry in message.status[0].values:
                 found[entry.key] = entry.value
             if found.get(key) == wanted:

@@ -95,6 +95,35 @@ TEST(ImageConversion, RefusesWrongImages) {
   expect_input_error([&] { to_image(empty, "/image"); }, {"/image"});
 }
 
+TEST(ImageConversion, KeepsAMaskOfAnyDepth) {
+  const auto kind = SegmentationSettings::Kind::mask;
+  for (const char* encoding : {"mono8", "8UC1", "mono16", "16UC1"}) {
+    const int bytes = std::string(encoding).find("16") == std::string::npos ? 1 : 2;
+    const sensor_msgs::ImagePtr mask = image(encoding, bytes, 0);
+    mask->data[static_cast<std::size_t>(5 * bytes)] = 1;  // column 1 of row 1
+    const cv::Mat out = to_image(mask, kind, "/mask");
+    ASSERT_EQ(out.type(), CV_8UC1) << encoding;
+    EXPECT_EQ(out.at<std::uint8_t>(1, 1), 255) << encoding;
+    EXPECT_EQ(cv::countNonZero(out), 1) << encoding;
+  }
+  EXPECT_EQ(to_image(image("mono8", 1, 7), SegmentationSettings::Kind::silhouette, "/image").at<std::uint8_t>(0, 0), 7);
+}
+
+TEST(ImageConversion, RefusesWhatIsNoMask) {
+  const auto kind = SegmentationSettings::Kind::mask;
+  for (const char* encoding : {"rgb8", "bgr8", "32FC1", "holiday"}) {
+    expect_input_error([&] { to_image(image(encoding, 4, 1), kind, "/mask"); },
+                       {"/mask", encoding, "mono8", "mono16", "16UC1"});
+  }
+  const sensor_msgs::ImagePtr cut = image("mono16", 2, 1);
+  cut->data.resize(5);
+  expect_input_error([&] { to_image(cut, kind, "/mask"); }, {"/mask", "mono16"});
+  const sensor_msgs::ImagePtr empty = image("mono8", 1, 1);
+  empty->width = empty->height = empty->step = 0;
+  empty->data.clear();
+  expect_input_error([&] { to_image(empty, kind, "/mask"); }, {"/mask"});
+}
+
 TEST(LoadConversion, TurnsAWrenchIntoTheModelFrame) {
   geometry_msgs::WrenchStamped wrench;
   wrench.wrench.force.x = 2.0;

@@ -31,7 +31,7 @@ observations:
 - vertices: {topic: /v, noise: 3e-4}
 - markers: {topic: /m, noise: 1e-4, rest: [[1, 2, 3], [4, 5, 6]]}
 - points: {topic: /p, noise: 1e-3}
-- contour: {image: /i, camera_info: /c, segmentation: {kind: cavity, seed: [10, 20.5]}, projection: slice, noise: 6e-4, region: egg}
+- contour: {image: /i, camera_info: /c, segmentation: {kind: cavity, seed: [10, 20.5], roi: [1, 2, 300, 200]}, projection: slice, noise: 6e-4, region: egg}
 time: {start: 0.09, step: 0.004}
 initial: {velocity: [0, 0, -4]}
 estimator: paper
@@ -70,6 +70,9 @@ TEST(ModelSettings, ReadsEveryKey) {
   EXPECT_EQ(contour.camera_info, "/c");
   EXPECT_EQ(contour.segmentation.kind, SegmentationSettings::Kind::cavity);
   EXPECT_EQ(*contour.segmentation.seed, Eigen::Vector2d(10, 20.5));
+  ASSERT_TRUE(contour.segmentation.roi);
+  EXPECT_EQ(contour.segmentation.roi->v, 2);
+  EXPECT_EQ(contour.segmentation.roi->width, 300);
   EXPECT_EQ(contour.projection, ObservationSettings::Projection::slice);
   EXPECT_EQ(contour.region, "egg");
   EXPECT_EQ(model.time.start, 0.09);
@@ -169,8 +172,10 @@ TEST(ModelSettings, RefusesWhatIsWrongAndSaysWhere) {
       {"- vertices:", "- vertexes:", {"model.yaml:16: observations[0].vertexes", "did you mean `vertices`?", "contour"}},
       {"rest: [[1, 2, 3], [4, 5, 6]]", "rest: []", {"observations[1].markers.rest", "an empty list"}},
       {"[4, 5, 6]", "[4, 5]", {"model.yaml:17: observations[1].markers.rest[1]", "[4, 5]", "three numbers"}},
-      {"kind: cavity", "kind: cave", {"contour.segmentation.kind", "`cave`", "silhouette, cavity"}},
+      {"kind: cavity", "kind: cave", {"contour.segmentation.kind", "`cave`", "silhouette, cavity, mask"}},
       {"seed: [10, 20.5]", "seed: [10]", {"contour.segmentation.seed", "[10]", "[u, v]"}},
+      {"roi: [1, 2, 300, 200]", "roi: [1, 2, 300]", {"contour.segmentation.roi", "[1, 2, 300]", "[u, v, width, height]"}},
+      {"roi: [1, 2, 300, 200]", "roi: [1, 2, 300, 20]", {"contour.segmentation.roi[3]", "found 20", "32 to 16384"}},
       {"projection: slice", "projection: fisheye", {"contour.projection", "`fisheye`", "silhouette, slice"}},
       {"camera_info: /c, ", "", {"model.yaml:19: observations[3].contour", "no key `camera_info`"}},
       {"region: egg", "region: eg", {"observations[3].contour.region", "`eg` (did you mean `egg`?)", "clamp, ball, egg"}},

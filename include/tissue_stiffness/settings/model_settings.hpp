@@ -55,10 +55,17 @@ struct EffectSettings {
   Value arguments;    ///< the map that follows the name
 };
 
+/// A part of an image [pixel].
+struct PixelBox {
+  int u = 0, v = 0;  ///< its upper left pixel
+  int width = 0, height = 0;
+};
+
 struct SegmentationSettings {
-  enum class Kind { silhouette, cavity };
+  enum class Kind { silhouette, cavity, mask };
   Kind kind = Kind::silhouette;
-  std::optional<Eigen::Vector2d> seed;  ///< pixel inside the body or the cavity; found automatically when absent
+  std::optional<Eigen::Vector2d> seed{};  ///< pixel inside the body or the cavity; found automatically when absent
+  std::optional<PixelBox> roi{};          ///< part of the image that the body lies in; all when absent
 };
 
 struct ObservationSettings {

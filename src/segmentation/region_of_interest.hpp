@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+#include <opencv2/core/mat.hpp>
+
+#include "tissue_stiffness/segmentation/segmenter.hpp"
+
+namespace tissue_stiffness {
+
+/// Returns the region of interest as OpenCV's rectangle. Throws InputError for one that is not wholly inside the image.
+cv::Rect rectangle_in(const cv::Mat& image, const PixelBox& roi);
+
+/// Shows another segmenter only the part of each image that the body lies in. An outline that comes near the border of this
+/// part is refused, because the body may go on beyond it. The next image is then searched without a memory of this one.
+class RegionOfInterest : public Segmenter {
+ public:
+  /// Makes a segmenter for `settings`, whose `roi` has to be there.
+  explicit RegionOfInterest(SegmentationSettings settings);
+  Segmentation segment(const cv::Mat& image, double stamp) override;
+  void reset() override { inner_->reset(); }
+
+ private:
+  PixelBox roi_;
+  std::unique_ptr<Segmenter> inner_;
+};
+
+}  // namespace tissue_stiffness
