@@ -9,7 +9,8 @@
 
 namespace tissue_stiffness {
 
-/// Finds images of a silhouette whose body is darker than its background in more than half of them (see shows_dark_body).
+/// Finds images of a silhouette whose body is darker than its background, where the model says brighter, or the other way
+/// round, in more than half of them (see shows_dark_body).
 SetupFindings check_images(const ObservationSettings& observation, const std::vector<cv::Mat>& images);
 
 }  // namespace tissue_stiffness

@@ -18,7 +18,7 @@ const std::vector<std::pair<std::string, std::vector<KeySpec>>>& all_keys() {
   static const std::vector<std::pair<std::string, std::vector<KeySpec>>> keys{
       {"segmentation_node",
        {plain_key("segmentation", KeySpec::Kind::map, "",
-                  "`{kind, seed, roi}` as in a model file's contour, for a node without a model"),
+                  "`{kind, ...}` as in a model file's contour, for a node without a model"),
         number_key("contour_number", "", 1, 100, 1, "which of the model's contours"),
         number_key("queue_size", "images", 1, 1e4, 100, "that may wait before the oldest is dropped")}},
       {"mesh_node",

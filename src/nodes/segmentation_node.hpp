@@ -18,7 +18,7 @@ namespace tissue_stiffness {
 /// one with the image's stamp. The node works only while it has subscribers, so that it does not consume the first image of
 /// a recording that waits for them.
 ///
-/// Private parameters: `segmentation: {kind, seed, roi}`, or `model` (a file or the model's keys), whose contour number
+/// Private parameters: `segmentation: {kind, ...}`, or `model` (a file or the model's keys), whose contour number
 /// `contour_number` (1) is used. With a model the image topic is the model's, unless `image` is remapped. `queue_size`
 /// (100).
 class SegmentationNode {

@@ -23,12 +23,6 @@ cv::Rect rectangle_in(const cv::Mat& image, const PixelBox& roi) {
                        std::to_string(image.rows) + " pixels");
 }
 
-RegionOfInterest::RegionOfInterest(SegmentationSettings settings) : roi_(settings.roi.value()) {
-  settings.roi.reset();
-  if (settings.seed) *settings.seed -= Eigen::Vector2d(roi_.u, roi_.v);
-  inner_ = make_segmenter(settings);
-}
-
 Segmentation RegionOfInterest::segment(const cv::Mat& image, double stamp) {
   const cv::Mat part = image(rectangle_in(image, roi_));
   Segmentation found = inner_->segment(part, stamp);

@@ -14,8 +14,8 @@ cv::Rect rectangle_in(const cv::Mat& image, const PixelBox& roi);
 /// part is refused, because the body may go on beyond it. The next image is then searched without a memory of this one.
 class RegionOfInterest : public Segmenter {
  public:
-  /// Makes a segmenter for `settings`, whose `roi` has to be there.
-  explicit RegionOfInterest(SegmentationSettings settings);
+  /// `inner` sees the part `roi` alone, and counts its pixels from there.
+  RegionOfInterest(const PixelBox& roi, std::unique_ptr<Segmenter> inner) : roi_(roi), inner_(std::move(inner)) {}
   Segmentation segment(const cv::Mat& image, double stamp) override;
   void reset() override { inner_->reset(); }
 

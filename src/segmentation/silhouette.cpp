@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <opencv2/imgproc.hpp>
 
 #include "segmentation/outline.hpp"
 
@@ -14,6 +15,7 @@ constexpr int reach = 8;                   // [pixel] half length of the fitted 
 constexpr double search = 3.5;             // [pixel] largest offset that a fit may find
 constexpr double largest_sigma = 0.6;      // [pixel] an edge known no better than this is no edge
 constexpr double smallest_fraction = 0.5;  // of the outline that must be edge
+constexpr double smallest_share = 0.7;     // of the enclosed region that must have the body's colour
 constexpr double sigma_floor = 0.05;       // [pixel] a camera's blur is not exactly Gaussian
 constexpr Eigen::Index neighbours = 4;     // on each side, whose scatter counts
 constexpr int shortest_run = 9;            // of points with an edge
@@ -85,17 +87,30 @@ void compare_neighbours(Located* located) {
   located->sigma = checked;
 }
 
+/// Returns the share of the enclosed pixels that are above `least`.
+double share_above(const cv::Mat& grey, const Eigen::Matrix2Xd& outline, double least) {
+  if (!std::isfinite(least)) return 1.0;
+  std::vector<cv::Point> corners;
+  for (Eigen::Index i = 0; i < outline.cols(); ++i) corners.emplace_back(cvRound(outline(0, i)), cvRound(outline(1, i)));
+  cv::Mat inside = cv::Mat::zeros(grey.size(), CV_8U);
+  cv::fillPoly(inside, std::vector<std::vector<cv::Point>>{corners}, 255);
+  return cv::countNonZero(inside & (grey > least)) / std::max(1.0, static_cast<double>(cv::countNonZero(inside)));
+}
+
 }  // namespace
 
-SilhouetteSegmenter::SilhouetteSegmenter(const SegmentationSettings& settings) : seed_(settings.seed), previous_(2, 0) {
+SilhouetteSegmenter::SilhouetteSegmenter(const SegmentationSettings& settings)
+    : seed_(settings.seed), contrast_(settings), previous_(2, 0) {
   for (const double blur : {0.5, 0.7, 1.0, 1.4, 2.0, 2.8}) edges_.emplace_back(blur, reach, search);
 }
 
 Segmentation SilhouetteSegmenter::segment(const cv::Mat& image, double stamp) {
-  const cv::Mat grey = to_grey(image);
+  const cv::Mat grey = contrast_(image);
   if (std::min(grey.cols, grey.rows) < smallest_image) return {{}, "the image is smaller than 32 x 32 pixels"};
-  Eigen::Matrix2Xd outline = find_outline(grey, seed_, previous_, spacing);
-  if (outline.cols() == 0) return {{}, "no bright region of the expected size"};
+  const BrightRegion region = sharpest_region(grey, seed_, previous_, contrast_.least());
+  if (region.border.cols() < 8) return {{}, "no region of the expected brightness or colour and size"};
+  if (region.has_rival) return {{}, "two regions are alike; a seed or a roi tells which is the body"};
+  Eigen::Matrix2Xd outline = find_outline(grey, region.border, previous_, spacing);
   Eigen::VectorXd sigma;
   double blur = 0.0;
   for (int pass = 0; pass < 2; ++pass) {  // the second time along the first one's better normals
@@ -111,9 +126,11 @@ Segmentation SilhouetteSegmenter::segment(const cv::Mat& image, double stamp) {
   }
   const double found = static_cast<double>(sigma.array().isFinite().count()) / static_cast<double>(sigma.size());
   if (found < smallest_fraction) return {{}, "no closed edge around the brightest region"};
+  if (share_above(grey, outline, contrast_.least()) < smallest_share)
+    return {{}, "most of the enclosed region has another colour than the body"};
   previous_ = outline;
   const Eigen::ArrayXd rounding = 0.5 * blur * blur * curvature(outline, 1.0).array().abs();
-  sigma = (sigma.array().square() + rounding.square()).sqrt();
+  sigma = (sigma.array().square() + rounding.square() + std::pow(contrast_.edge_error(), 2)).sqrt();
   return {{stamp, image.cols, image.rows, true, outline, outward_normals(outline, 1.5), sigma}, ""};
 }
 

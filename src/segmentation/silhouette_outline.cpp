@@ -88,10 +88,8 @@ SharpOutline settle(const cv::Mat& smooth, const Eigen::Matrix2Xd& start, double
 
 }  // namespace
 
-Eigen::Matrix2Xd find_outline(const cv::Mat& grey, const std::optional<Eigen::Vector2d>& seed,
-                              const Eigen::Matrix2Xd& previous, double spacing) {
-  const Eigen::Matrix2Xd region = sharpest_region(grey, seed, previous);
-  if (region.cols() < 8) return Eigen::Matrix2Xd(2, 0);
+Eigen::Matrix2Xd find_outline(const cv::Mat& grey, const Eigen::Matrix2Xd& region, const Eigen::Matrix2Xd& previous,
+                              double spacing) {
   cv::Mat smooth;
   cv::GaussianBlur(grey, smooth, {}, 1.2);
   double darkest = 0.0, brightest = 0.0;

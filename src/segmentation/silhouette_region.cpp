@@ -11,6 +11,8 @@ namespace {
 
 constexpr int working_width = 320;  // [pixel] the search needs no more resolution
 constexpr int thresholds = 24;
+constexpr double rival_score = 0.8;                          // of the best: as sharp
+constexpr double rival_area = 0.5;                           // of the larger: as large
 constexpr double smallest_area = 0.003, largest_area = 0.8;  // of the image
 
 using Border = std::vector<cv::Point>;
@@ -50,10 +52,21 @@ cv::Mat gradient_magnitude(const cv::Mat& image) {
   return magnitude;
 }
 
+struct Candidate {
+  Border border;
+  double area = 0.0, score = 0.0;
+};
+
+bool is_rival(const Candidate& other, const Candidate& best) {
+  const double smaller = std::min(other.area, best.area), larger = std::max(other.area, best.area);
+  const bool apart = (cv::boundingRect(other.border) & cv::boundingRect(best.border)).empty();
+  return apart && other.score > rival_score * best.score && smaller > rival_area * larger;
+}
+
 }  // namespace
 
-Eigen::Matrix2Xd sharpest_region(const cv::Mat& grey, const std::optional<Eigen::Vector2d>& seed,
-                                 const Eigen::Matrix2Xd& previous) {
+BrightRegion sharpest_region(const cv::Mat& grey, const std::optional<Eigen::Vector2d>& seed,
+                             const Eigen::Matrix2Xd& previous, double least) {
   const double scale = std::min(1.0, static_cast<double>(working_width) / grey.cols);
   cv::Mat small;
   cv::resize(grey, small, {}, scale, scale, cv::INTER_AREA);
@@ -61,10 +74,11 @@ Eigen::Matrix2Xd sharpest_region(const cv::Mat& grey, const std::optional<Eigen:
   const cv::Mat gradient = gradient_magnitude(small), before = mask_of(previous, scale, small.size());
   double lowest = 0.0, highest = 0.0;
   cv::minMaxLoc(small, &lowest, &highest);
+  lowest = std::max(lowest, least);
 
-  Border best;
-  double best_score = 0.0;
-  for (int k = 1; k < thresholds; ++k) {
+  Candidate best;
+  std::vector<Candidate> candidates;
+  for (int k = 1; k < thresholds && lowest < highest; ++k) {
     cv::Mat mask = small > lowest + (highest - lowest) * k / thresholds;
     std::vector<Border> borders;
     cv::findContours(mask, borders, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
@@ -78,15 +92,19 @@ Eigen::Matrix2Xd sharpest_region(const cv::Mat& grey, const std::optional<Eigen:
       }
       double score = border_gradient(border, gradient);
       if (previous.cols() > 0) score *= 0.2 + 0.8 * overlap(border, before);
-      if (score > best_score) best_score = score, best = border;
+      candidates.push_back({border, area, score});
+      if (score > best.score) best = candidates.back();
     }
   }
-  Eigen::Matrix2Xd result(2, static_cast<Eigen::Index>(best.size()));
-  for (Eigen::Index i = 0; i < result.cols(); ++i) {
-    const cv::Point& p = best[static_cast<std::size_t>(i)];
-    result.col(i) << (p.x + 0.5) / scale - 0.5, (p.y + 0.5) / scale - 0.5;
+  BrightRegion region;
+  region.border.resize(2, static_cast<Eigen::Index>(best.border.size()));
+  for (Eigen::Index i = 0; i < region.border.cols(); ++i) {
+    const cv::Point& p = best.border[static_cast<std::size_t>(i)];
+    region.border.col(i) << (p.x + 0.5) / scale - 0.5, (p.y + 0.5) / scale - 0.5;
   }
-  return result;
+  region.has_rival =
+      std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& other) { return is_rival(other, best); });
+  return region;
 }
 
 }  // namespace tissue_stiffness

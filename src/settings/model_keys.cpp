@@ -110,6 +110,12 @@ std::vector<KeySpec> observation_keys() {
                  "[u, v] inside the body or the pool; found when absent"),
        plain_key(contour + ".segmentation.roi", Kind::numbers, "pixel",
                  "[u, v, width, height] of the part of the image that holds the body; a mask's body only has to touch it"),
+       choice_key(contour + ".segmentation.body", {"bright", "dark", "colour"}, false,
+                  "of a silhouette: by what the body differs from its background"),
+       plain_key(contour + ".segmentation.colour", Kind::numbers, "",
+                 "[red, green, blue] of the body, 0 to 255; needed with `body: colour`"),
+       number_key(contour + ".segmentation.tolerance", "", 1, 200, 20,
+                  "distance in the plane a*, b* of CIE Lab that is still this colour"),
        choice_key(contour + ".projection", {"silhouette", "slice"}, false,
                   "the outline that a pinhole sees, or the surface cut by the image plane"),
        plain_key(contour + ".region", Kind::text, "", "part of the surface that the outline belongs to; all when absent")});

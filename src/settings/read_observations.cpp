@@ -88,6 +88,20 @@ ObservationSettings read_observation(const Value& entry) {
   return observation;
 }
 
+void read_body(const Value& map, SegmentationSettings& segmentation) {
+  using Body = SegmentationSettings::Body;
+  const std::string segment = "observations[].contour.segmentation.";
+  const std::string body = read_choice(map, key(segment + "body"));
+  segmentation.body = body == "dark" ? Body::dark : body == "colour" ? Body::colour : Body::bright;
+  if (segmentation.body != Body::colour) return;
+  const Value& colour = map.at("colour");
+  segmentation.colour = colour.as_vector3("");
+  if (segmentation.colour.minCoeff() < 0.0 || segmentation.colour.maxCoeff() > 255.0) {
+    throw InputError(colour.path(), colour.shown(), "[red, green, blue], each 0 to 255");
+  }
+  segmentation.tolerance = read_number(map, key(segment + "tolerance"));
+}
+
 }  // namespace
 
 SegmentationSettings read_segmentation(const Value& map) {
@@ -99,6 +113,7 @@ SegmentationSettings read_segmentation(const Value& map) {
                                        : SegmentationKind::silhouette;
   if (map.has("seed")) segmentation.seed = read_pixel(map.at("seed"));
   if (map.has("roi")) segmentation.roi = read_box(map.at("roi"));
+  if (segmentation.kind == SegmentationKind::silhouette) read_body(map, segmentation);
   return segmentation;
 }
 

@@ -174,6 +174,83 @@ TEST(silhouette, seed_chooses_between_two_bodies) {
   }
 }
 
+TEST(silhouette, two_bodies_alike_are_refused_without_a_seed) {
+  const auto inside = [&](double u, double v) {
+    return std::hypot(u - 100.0, v - 160.0) < 50.0 || std::hypot(u - 300.0, v - 160.0) < 48.0;
+  };
+  const cv::Mat image = camera_image(texture(size, 140.0, 3.0, 5.0, 1), texture(size, 50.0, 5.0, 15.0, 2),
+                                     coverage(size, inside), 1.0, 3.0, 3);
+  const Segmentation found = silhouette()->segment(image, 0.0);
+  EXPECT_FALSE(found.found());
+  EXPECT_NE(found.reason.find("two regions are alike"), std::string::npos) << found.reason;
+  const auto segmenter = silhouette();  // which has seen one of them alone
+  ASSERT_TRUE(segmenter->segment(disc({100.0, 160.0}, 50.0, 4), 0.0).found());
+  const Segmentation next = segmenter->segment(image, 1.0);
+  ASSERT_TRUE(next.found()) << next.reason;
+  EXPECT_NEAR(next.contour.points.row(0).mean(), 100.0, 1.0);
+}
+
+TEST(silhouette, dark_body_is_found_as_well_as_a_bright_one) {
+  SegmentationSettings settings;
+  settings.body = SegmentationSettings::Body::dark;
+  const Eigen::Vector2d centre(201.37, 158.81);
+  cv::Mat inverted;
+  cv::bitwise_not(disc(centre, 70.3, 10), inverted);
+  const Segmentation dark = make_segmenter(settings)->segment(inverted, 0.0);
+  const Segmentation bright = silhouette()->segment(disc(centre, 70.3, 10), 0.0);
+  ASSERT_TRUE(dark.found()) << dark.reason;
+  ASSERT_EQ(dark.contour.size(), bright.contour.size());
+  EXPECT_LT((dark.contour.points - bright.contour.points).cwiseAbs().maxCoeff(), 1e-6);
+}
+
+/// A disc and its surroundings in two colours (red, green, blue), before a white window in the upper right corner.
+cv::Mat coloured(const Eigen::Vector2d& centre, double radius, const Eigen::Vector3d& body, const Eigen::Vector3d& around) {
+  const auto inside = [&](double u, double v) { return std::hypot(u - centre.x(), v - centre.y()) < radius; };
+  const cv::Mat cover = coverage(size, inside);
+  std::vector<cv::Mat> channels;
+  for (const int k : {2, 1, 0}) {
+    const unsigned seed = 10U * static_cast<unsigned>(k);
+    cv::Mat shaded = texture(size, body[k], 3.0, 6.0, seed), background = texture(size, around[k], 8.0, 15.0, 7);
+    for (int u = 0; u < size.width; ++u) shaded.col(u) *= 1.0 + 0.2 * (centre.x() - u) / radius;
+    background(cv::Rect(300, 15, 80, 100)) = 250.0;
+    channels.push_back(camera_image(shaded, background, cover, 0.9, 3.0, seed + 1));
+  }
+  cv::Mat image;
+  cv::merge(channels, image);
+  return image;
+}
+
+TEST(silhouette, coloured_body_before_a_window_of_any_brightness) {
+  const Eigen::Vector2d centre(180.3, 170.6);
+  const Eigen::Vector3d purple(112, 48, 150);
+  SegmentationSettings settings;
+  settings.body = SegmentationSettings::Body::colour;
+  settings.colour = {120, 60, 160};
+  settings.tolerance = 25.0;
+  for (const double grey : {60.0, 85.0, 150.0}) {
+    const cv::Mat image = coloured(centre, 62.4, purple, {grey, grey, grey});
+    const Segmentation found = make_segmenter(settings)->segment(image, 0.0);
+    ASSERT_TRUE(found.found()) << found.reason << " before " << grey;
+    const Errors errors = errors_of(found.contour, to_circle(centre, 62.4));
+    EXPECT_NEAR(errors.mean, 0.0, 0.25) << "before " << grey;
+    EXPECT_LT(errors.nis, 1.6) << "before " << grey;
+    EXPECT_LT(errors.deviation, 0.3) << "before " << grey;
+    EXPECT_GT(errors.count, 0.8 * static_cast<double>(found.contour.size()));
+  }
+  const Segmentation other = make_segmenter(settings)->segment(coloured(centre, 62.4, {60, 140, 60}, {85, 85, 85}), 0.0);
+  EXPECT_FALSE(other.found()) << "a green body is not the purple one";
+}
+
+TEST(silhouette, colour_needs_a_hue_and_a_coloured_image) {
+  SegmentationSettings settings;
+  settings.body = SegmentationSettings::Body::colour;
+  settings.tolerance = 25.0;
+  settings.colour = {120, 124, 120};
+  EXPECT_THROW(make_segmenter(settings), InputError);
+  settings.colour = {120, 60, 160};
+  EXPECT_THROW(make_segmenter(settings)->segment(disc({200.0, 160.0}, 60.0, 8), 0.0), InputError);
+}
+
 TEST(silhouette, colour_equals_grey_and_results_repeat) {
   const cv::Mat grey = disc({200.0, 160.0}, 60.0, 8);
   cv::Mat colour;

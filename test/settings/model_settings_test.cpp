@@ -198,6 +198,28 @@ TEST(ModelSettings, RefusesWhatIsWrongAndSaysWhere) {
   }
 }
 
+TEST(ModelSettings, ReadsByWhatABodyDiffersFromItsBackground) {
+  const auto segmentation = [](const std::string& keys) {
+    return read(
+               "mesh: {file: m}\neffects: [inertia: {density: 1}]\nobservations:\n- contour: {image: /i, camera_info: /c, "
+               "noise: 1e-3, segmentation: {" +
+               keys + "}}\n")
+        .observations.at(0)
+        .segmentation;
+  };
+  using Body = SegmentationSettings::Body;
+  EXPECT_EQ(segmentation("kind: silhouette").body, Body::bright);
+  EXPECT_EQ(segmentation("kind: silhouette, body: dark").body, Body::dark);
+  const SegmentationSettings colour = segmentation("kind: silhouette, body: colour, colour: [1, 2, 3], tolerance: 7");
+  EXPECT_EQ(colour.body, Body::colour);
+  EXPECT_EQ(colour.colour, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(colour.tolerance, 7.0);
+  EXPECT_THROW(segmentation("kind: silhouette, body: colour"), InputError);
+  EXPECT_THROW(segmentation("kind: silhouette, body: colour, colour: [1, 2, 256]"), InputError);
+  EXPECT_THROW(segmentation("kind: silhouette, colour: [1, 2, 3]"), InputError) << "a colour that nobody reads";
+  EXPECT_THROW(segmentation("kind: cavity, body: dark"), InputError);
+}
+
 TEST(ModelSettings, RefusesWhatIsNotAModel) {
   EXPECT_THROW(read(""), InputError);
   EXPECT_THROW(read("[1, 2]"), InputError);

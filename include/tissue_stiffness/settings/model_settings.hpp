@@ -63,9 +63,14 @@ struct PixelBox {
 
 struct SegmentationSettings {
   enum class Kind { silhouette, cavity, mask };
+  enum class Body { bright, dark, colour };
   Kind kind = Kind::silhouette;
   std::optional<Eigen::Vector2d> seed{};  ///< pixel inside the body or the cavity; found automatically when absent
   std::optional<PixelBox> roi{};          ///< part of the image that the body lies in; all when absent
+  // The following members are for a silhouette only.
+  Body body = Body::bright;                          ///< by what it differs from its background
+  Eigen::Vector3d colour = Eigen::Vector3d::Zero();  ///< red, green and blue of the body, 0 to 255
+  double tolerance = 0.0;                            ///< distance in the plane a*, b* of CIE Lab that is still this colour
 };
 
 struct ObservationSettings {
