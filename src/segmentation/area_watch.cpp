@@ -12,7 +12,7 @@ namespace {
 constexpr double largest_jump = 1.3;  // factor between an area and the median of those before
 constexpr double agreement = 1.1;     // factor between areas that confirm each other
 constexpr std::size_t memory = 5;     // outlines
-constexpr std::size_t enough = 3;     // outlines that confirm each other
+constexpr std::size_t enough = 30;    // outlines that confirm each other
 
 double factor_between(double a, double b) {
   return std::max(a, b) / std::max(std::min(a, b), 1e-9);

@@ -54,19 +54,18 @@ TEST_F(AreaWatchTest, OneJumpIsRefusedAndNotRemembered) {
   EXPECT_TRUE(accepts(50.5));
 }
 
-TEST_F(AreaWatchTest, ThreeThatAgreeAreBelievedAgain) {
+TEST_F(AreaWatchTest, ThirtyThatAgreeAreBelievedAgain) {
   for (int k = 0; k < 5; ++k) EXPECT_TRUE(accepts(50.0));
-  EXPECT_FALSE(accepts(80.0));
-  EXPECT_FALSE(accepts(81.0));
+  for (int k = 1; k < 30; ++k) EXPECT_FALSE(accepts(k % 2 == 0 ? 80.0 : 81.0)) << k;
   EXPECT_FALSE(show(0.0).found());
   EXPECT_TRUE(accepts(80.0));
   EXPECT_TRUE(accepts(82.0));
   EXPECT_FALSE(accepts(50.0));
 }
 
-TEST_F(AreaWatchTest, ThreeThatDisagreeAreNot) {
+TEST_F(AreaWatchTest, ThirtyThatDisagreeAreNot) {
   for (int k = 0; k < 5; ++k) EXPECT_TRUE(accepts(50.0));
-  for (const double radius : {80.0, 100.0, 30.0, 70.0, 100.0}) EXPECT_FALSE(accepts(radius)) << radius;
+  for (int k = 0; k < 90; ++k) EXPECT_FALSE(accepts(k % 3 == 0 ? 80.0 : k % 3 == 1 ? 100.0 : 30.0)) << k;
 }
 
 TEST_F(AreaWatchTest, ResetForgets) {
