@@ -8,6 +8,7 @@
 
 #include "effects/registry.hpp"
 #include "nodes/message_conversions.hpp"
+#include "segmentation/lens.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
@@ -115,8 +116,8 @@ Observation EstimatorInputs::observe_contour(const ContourMessage& message, int 
   out.kind = ObservationKind::contour;
   out.time = message.header.stamp.toSec();
   auto contour = std::make_shared<Contour>(to_contour(message, topic));
-  auto camera = std::make_shared<Camera>(
-      to_camera(*info, settings.projection, poses_.model_from(message.header, topic), settings.camera_info));
+  auto camera =
+      std::make_shared<Camera>(to_camera(*info, settings, poses_.model_from(message.header, topic), settings.camera_info));
   if (contour->width != camera->width || contour->height != camera->height) {
     throw InputError(
         topic, "an image of " + std::to_string(contour->width) + " x " + std::to_string(contour->height),
@@ -130,6 +131,7 @@ Observation EstimatorInputs::observe_contour(const ContourMessage& message, int 
 void EstimatorInputs::listen_load(const LoadInput& input, std::uint32_t queue_size) {
   const std::string topic = input.topic;
   const std::uint32_t deep = 10 * queue_size;  // loads come faster than frames
+  undistort(*camera, contour.get());
   if (input.kind == LoadInput::Kind::pressure) {
     subscribe<sensor_msgs::FluidPressure>(topic, deep, [this, topic](const sensor_msgs::FluidPressureConstPtr& pressure) {
       const LoadSample sample = to_load(*pressure, topic);

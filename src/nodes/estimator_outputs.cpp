@@ -5,6 +5,7 @@
 
 #include "nodes/message_conversions.hpp"
 #include "nodes/surface_view.hpp"
+#include "segmentation/lens.hpp"
 
 namespace tissue_stiffness {
 
@@ -60,8 +61,9 @@ void EstimatorOutputs::publish_outline(const Estimator& estimator, const Frame& 
     const auto outline = outlines_.find(observation.source);
     if (outline == outlines_.end() || outline_topics_.at(observation.source).getNumSubscribers() == 0) continue;
     const Eigen::Matrix3Xd positions = estimator.mesh().nodes + estimator.displacement();
-    outline_topics_.at(observation.source)
-        .publish(to_message(outline->second.seen_by(*observation.camera, positions), header));
+    Contour seen = outline->second.seen_by(*observation.camera, positions);
+    seen.points = distort(*observation.camera, seen.points);  // to lie over the camera's image
+    outline_topics_.at(observation.source).publish(to_message(seen, header));
   }
 }
 

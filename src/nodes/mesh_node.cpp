@@ -9,6 +9,7 @@
 #include "nodes/node_keys.hpp"
 #include "nodes/sensor_conversions.hpp"
 #include "nodes/setup_watch.hpp"
+#include "segmentation/lens.hpp"
 #include "settings/inside_folder.hpp"
 #include "tissue_stiffness/meshing/build_mesh.hpp"
 #include "tissue_stiffness/meshing/mesh_io.hpp"
@@ -38,7 +39,7 @@ MeshNode::MeshNode(ros::NodeHandle node, const NodeSettings& settings)
   camera_info_topic_ = node_.resolveName("camera_info");
   for (const ObservationSettings& observation : settings_.observations) {
     if (!traits_of(observation.kind).image) continue;
-    projection_ = observation.projection;
+    observation_ = observation;
     if (camera_info_topic_ == node_.resolveName("camera_info", false)) camera_info_topic_ = observation.camera_info;
     break;
   }
@@ -88,8 +89,10 @@ void MeshNode::build_from_contour() {
   try {
     require_stamp(contour_->header, "contour");
     const Camera camera =
-        to_camera(*camera_info_, projection_, poses_.model_from(contour_->header, "contour"), camera_info_topic_);
-    publish(build_mesh(settings_.mesh, to_contour(*contour_, "contour"), camera));
+        to_camera(*camera_info_, observation_, poses_.model_from(contour_->header, "contour"), camera_info_topic_);
+    Contour contour = to_contour(*contour_, "contour");
+    undistort(camera, &contour);
+    publish(build_mesh(settings_.mesh, contour, camera));
     contour_subscriber_.shutdown();
     camera_info_subscriber_.shutdown();
   } catch (const std::exception& error) {

@@ -40,8 +40,8 @@ class MeshNode {
   ros::NodeHandle node_;
   ModelSettings settings_;
   SensorPoses poses_;
-  const std::string folder_;  ///< of the services' files; empty: none
-  ObservationSettings::Projection projection_ = ObservationSettings::Projection::silhouette;
+  const std::string folder_;         ///< of the services' files; empty: none
+  ObservationSettings observation_;  ///< the contour that the mesh comes from
   std::string camera_info_topic_;
   TetMesh mesh_;
   ContourConstPtr contour_;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 
+#include "segmentation/lens.hpp"
 #include "tissue_stiffness/types/error.hpp"
 #include "types/read_pose.hpp"
 
@@ -41,16 +42,25 @@ void require_full_image(const sensor_msgs::CameraInfo& info, const std::string& 
   if (!whole) throw InputError(topic + ": roi", "part of the image", "the full image");
 }
 
-void read_distortion(const sensor_msgs::CameraInfo& info, Camera* camera, const std::string& topic) {
-  if (info.D.empty()) return;
-  if (info.distortion_model != "plumb_bob") {
-    throw InputError(topic + ": distortion_model", "'" + info.distortion_model + "'", "plumb_bob, or an empty D");
+void read_focal_lengths(double fx, double fy, double cx, double cy, const std::string& where, Camera* camera) {
+  require_finite(Eigen::Vector4d(fx, fy, cx, cy), where);
+  if (!(fx > 0.0 && fy > 0.0)) {
+    throw InputError(where, "fx = " + std::to_string(fx) + ", fy = " + std::to_string(fy),
+                     "focal lengths > 0 (calibrate the camera)");
   }
-  if (info.D.size() != 4 && info.D.size() != 5) {
-    throw InputError(topic + ": D", std::to_string(info.D.size()) + " numbers", "k1 k2 p1 p2 and k3, or an empty D");
-  }
-  for (std::size_t i = 0; i < info.D.size(); ++i) camera->distortion[static_cast<Eigen::Index>(i)] = info.D[i];
-  require_finite(camera->distortion, topic + ": D");
+  camera->fx = fx;
+  camera->fy = fy;
+  camera->cx = cx;
+  camera->cy = cy;
+}
+
+/// A rectified image is that of a camera without a lens, whose matrix is P, turned by R.
+void read_rectified(const sensor_msgs::CameraInfo& info, Camera* camera, const std::string& topic) {
+  read_focal_lengths(info.P[0], info.P[5], info.P[2], info.P[6], topic + ": P", camera);
+  const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> rotation(info.R.data());
+  require_finite(Eigen::Map<const Eigen::VectorXd>(info.R.data(), 9), topic + ": R");
+  if (!rotation.isUnitary(1e-3)) throw InputError(topic + ": R", "no rotation", "the rotation of the rectified image");
+  camera->model_from_sensor.linear() *= rotation.transpose();
 }
 
 }  // namespace
@@ -73,26 +83,26 @@ Eigen::Isometry3d to_isometry(const geometry_msgs::Pose& pose, const std::string
   return to_isometry({p.x, p.y, p.z}, "pose.position", pose.orientation, "pose.orientation", topic);
 }
 
-Camera to_camera(const sensor_msgs::CameraInfo& info, ObservationSettings::Projection projection,
+Camera to_camera(const sensor_msgs::CameraInfo& info, const ObservationSettings& settings,
                  const Eigen::Isometry3d& model_from_sensor, const std::string& topic) {
   require_full_image(info, topic);
   Camera camera;
-  camera.projection =
-      projection == ObservationSettings::Projection::slice ? Camera::Projection::slice : Camera::Projection::pinhole;
+  camera.projection = settings.projection == ObservationSettings::Projection::slice ? Camera::Projection::slice
+                                                                                    : Camera::Projection::pinhole;
   camera.width = static_cast<int>(info.width);
   camera.height = static_cast<int>(info.height);
-  const Eigen::Map<const Eigen::Matrix<double, 9, 1>> k(info.K.data());
-  require_finite(k, topic + ": K");
-  if (!(k[0] > 0.0 && k[4] > 0.0)) {
-    throw InputError(topic + ": K", "fx = " + std::to_string(k[0]) + ", fy = " + std::to_string(k[4]),
-                     "focal lengths > 0 (calibrate the camera)");
-  }
-  camera.fx = k[0];
-  camera.fy = k[4];
-  camera.cx = k[2];
-  camera.cy = k[5];
-  read_distortion(info, &camera, topic);
   camera.model_from_sensor = model_from_sensor;
+  if (settings.rectified.value_or(false)) {
+    read_rectified(info, &camera, topic);
+    return camera;
+  }
+  read_focal_lengths(info.K[0], info.K[4], info.K[2], info.K[5], topic + ": K", &camera);
+  set_lens(info.distortion_model, info.D, topic, &camera);
+  const std::string name = settings.topic.substr(settings.topic.find_last_of('/') + 1);
+  if (camera.lens != Camera::Lens::none && name.rfind("image_rect", 0) == 0 && !settings.rectified) {
+    throw InputError(settings.topic, "a topic named as for rectified images, and a distortion in " + topic,
+                     "`rectified: true` in the model's contour, or `rectified: false` where the lens still shows");
+  }
   return camera;
 }
 

@@ -39,9 +39,10 @@ Eigen::Isometry3d to_isometry(const geometry_msgs::Pose& pose, const std::string
 Observation to_observation(const sensor_msgs::PointCloud2& cloud, const ObservationSettings& settings, int source,
                            int vertex_count, const Eigen::Isometry3d& model_from_sensor);
 
-/// Reads projection, size, focal lengths, principal point and distortion. Only plumb_bob is allowed, without binning and
-/// region of interest.
-Camera to_camera(const sensor_msgs::CameraInfo& info, ObservationSettings::Projection projection,
+/// Reads size, focal lengths, principal point and lens (see set_lens). Binning and a region of interest are refused. For
+/// rectified images the camera has P and R in place of K and D. Images whose topic is named like rectified ones are refused
+/// where a lens remains and `rectified` says nothing.
+Camera to_camera(const sensor_msgs::CameraInfo& info, const ObservationSettings& settings,
                  const Eigen::Isometry3d& model_from_sensor, const std::string& topic);
 
 /// Returns the 8-bit grey or BGR pixels of an image. An image with such pixels is not copied, so the message must outlive

@@ -127,6 +127,8 @@ std::vector<KeySpec> observation_keys() {
                required_key(reaction + ".region", Kind::text, "", "region of that effect"),
                positive(reaction + ".noise", "N", "1 sigma of a component"),
                number_key(reaction + ".gain", "", 0, 1, 0.1, "relative error of the sensor's scale, 1 sigma"),
+       plain_key(contour + ".rectified", Kind::boolean, "",
+                 "whether the images are rectified, so that P of the calibration counts and K and D do not"),
                number_key(reaction + ".bias", "N", 0, kInfinity, std::numeric_limits<double>::quiet_NaN(),
                           "constant offset of each component, 1 sigma; 10 % of the largest force when absent"),
                number_key(reaction + ".rotation_tolerance", "rad", 0, 1, 0.05, "of the sensor about each axis, 1 sigma"),

@@ -45,6 +45,7 @@ void read_contour(const Value& map, ObservationSettings& observation) {
   if (map.has("segmentation")) observation.segmentation = read_segmentation(map.at("segmentation"));
   const bool slice = read_choice(map, key("observations[].contour.projection")) == "slice";
   observation.projection = slice ? ObservationSettings::Projection::slice : ObservationSettings::Projection::silhouette;
+  if (map.has("rectified")) observation.rectified = read_boolean(map, key("observations[].contour.rectified"));
   observation.region = read_text(map, key("observations[].contour.region"));
 }
 

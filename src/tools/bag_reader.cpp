@@ -10,6 +10,7 @@
 
 #include "nodes/estimator_inputs.hpp"
 #include "nodes/sensor_conversions.hpp"
+#include "segmentation/lens.hpp"
 #include "tissue_stiffness/types/error.hpp"
 #include "tools/read_message.hpp"
 
@@ -278,8 +279,8 @@ void BagReader::segment(const Measurement& measurement, Instant& instant) {
   const std_msgs::Header& header = measurement.image->header;
   const auto model_from_sensor = pose(header, instant.reason);
   if (!model_from_sensor) return;
-  auto camera = std::make_shared<Camera>(to_camera(*camera_info(settings.camera_info, header.stamp), settings.projection,
-                                                   *model_from_sensor, settings.camera_info));
+  auto camera = std::make_shared<Camera>(
+      to_camera(*camera_info(settings.camera_info, header.stamp), settings, *model_from_sensor, settings.camera_info));
   std::unique_ptr<Segmenter>& segmenter = segmenters_[measurement.source];
   if (!segmenter) segmenter = make_segmenter(settings.segmentation);
   const cv::Mat image = to_image(measurement.image, settings.segmentation.kind, settings.topic);
@@ -288,7 +289,7 @@ void BagReader::segment(const Measurement& measurement, Instant& instant) {
         settings.topic, std::to_string(image.cols) + " x " + std::to_string(image.rows) + " pixels",
         std::to_string(camera->width) + " x " + std::to_string(camera->height) + " as in " + settings.camera_info);
   }
-  keep_picture(measurement, image);
+  keep_picture(measurement, image, *camera);
   const auto start = std::chrono::steady_clock::now();
   Segmentation found = segmenter->segment(image, header.stamp.toSec());
   instant.segment_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -305,12 +306,14 @@ void BagReader::segment(const Measurement& measurement, Instant& instant) {
   instant.frame.observations.push_back(std::move(out));
 }
 
-void BagReader::keep_picture(const Measurement& measurement, const cv::Mat& image) {
+// Undistorted, because the outlines that the report draws over it are.
+void BagReader::keep_picture(const Measurement& measurement, const cv::Mat& image, const Camera& camera) {
   const std::size_t stride = (frame_count_ + kMostPictures - 1) / kMostPictures;
+  undistort(*camera, &found.contour);
   if (images_[measurement.source]++ % std::max<std::size_t>(1, stride) != 0) return;
-  cv::Mat small = image;
+  cv::Mat small = undistort(camera, image);
   const double scale = kPictureWidth / image.cols;
-  if (scale < 1.0) cv::resize(image, small, {}, scale, scale, cv::INTER_AREA);
+  if (scale < 1.0) cv::resize(small, small, {}, scale, scale, cv::INTER_AREA);
   std::vector<unsigned char> bytes;
   cv::imencode(".jpg", small, bytes, {cv::IMWRITE_JPEG_QUALITY, kPictureQuality});
   pictures_.push_back({measurement.source, measurement.image->header.stamp.toSec(), {bytes.begin(), bytes.end()}});

@@ -103,7 +103,7 @@ class BagReader {
 
   void convert(const Measurement& measurement, Instant& instant);
   void segment(const Measurement& measurement, Instant& instant);
-  void keep_picture(const Measurement& measurement, const cv::Mat& image);
+  void keep_picture(const Measurement& measurement, const cv::Mat& image, const Camera& camera);
   sensor_msgs::CameraInfoConstPtr camera_info(const std::string& topic, const ros::Time& stamp) const;
   std::optional<Eigen::Isometry3d> pose(const std_msgs::Header& header, std::string& reason) const;
 

@@ -1,12 +1,17 @@
 #include "tools/read_image_scene.hpp"
 
 #include <cmath>
+#include <limits>
+#include <vector>
 
+#include "segmentation/lens.hpp"
 #include "tissue_stiffness/types/error.hpp"
 #include "tools/scene_keys.hpp"
 
 namespace tissue_stiffness {
 namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void read_size(const Value& map, Camera& camera) {
   camera.width = 640;
@@ -34,6 +39,13 @@ void read_pinhole(const Value& map, Camera& camera) {
   camera.fx = camera.fy = read_number(map, scene_key("sensors.*.focal_length"));
   camera.cx = 0.5 * (camera.width - 1);
   camera.cy = 0.5 * (camera.height - 1);
+  if (map.has("distortion")) {
+    std::vector<double> coefficients;
+    for (const Value& item : map.at("distortion").items()) {
+      coefficients.push_back(item.as_number(-kInfinity, kInfinity, ""));
+    }
+    set_lens(read_choice(map, scene_key("sensors.*.distortion_model")), coefficients, map.path(), &camera);
+  }
   const Eigen::Vector3d position = map.at("position").as_vector3("m");
   const Eigen::Vector3d forward = map.at("target").as_vector3("m") - position;
   const Eigen::Vector3d up = map.has("up") ? map.at("up").as_vector3("") : Eigen::Vector3d::UnitZ();

@@ -10,6 +10,7 @@
 
 #include <Eigen/Geometry>
 
+#include "segmentation/lens.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
@@ -29,8 +30,10 @@ sensor_msgs::CameraInfo info_of(const Camera& camera, const std_msgs::Header& he
   info.header = header;
   info.width = static_cast<std::uint32_t>(camera.width);
   info.height = static_cast<std::uint32_t>(camera.height);
-  info.distortion_model = "plumb_bob";
+  info.distortion_model = lens_name(camera.lens);
   info.D.assign(5, 0.0);
+  if (camera.lens != Camera::Lens::none)
+    info.D.assign(camera.distortion.data(), camera.distortion.data() + camera.distortion.size());
   info.K = {camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0};
   info.R = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
   info.P = {camera.fx, 0.0, camera.cx, 0.0, 0.0, camera.fy, camera.cy, 0.0, 0.0, 0.0, 1.0, 0.0};

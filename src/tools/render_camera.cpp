@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "observation/closest_point.hpp"
+#include "segmentation/lens.hpp"
 #include "tools/render.hpp"
 
 namespace tissue_stiffness {
@@ -85,7 +86,10 @@ class CameraRenderer : public Renderer {
     cv::Mat depth(grey.size(), CV_32F, cv::Scalar(std::numeric_limits<float>::max()));
     const Eigen::Matrix3Xd local = scene_.camera.model_from_sensor.inverse() * positions;
     const Eigen::VectorXd shade = shades(local);
-    for (Eigen::Index t = 0; t < triangles_.nodes.cols(); ++t) fill(triangles_.nodes.col(t), local, shade, grey, depth);
+    const Eigen::Matrix2Xd pixels = pixels_of(local);
+    for (Eigen::Index t = 0; t < triangles_.nodes.cols(); ++t) {
+      fill(triangles_.nodes.col(t), local, pixels, shade, grey, depth);
+    }
     cv::Mat small, image;
     cv::resize(grey, small, cv::Size(scene_.camera.width, scene_.camera.height), 0, 0, cv::INTER_AREA);
     if (scene_.blur > 0.0) cv::GaussianBlur(small, small, cv::Size(), scene_.blur);
@@ -102,9 +106,16 @@ class CameraRenderer : public Renderer {
   void draw_floor(const Plane& plane, const Eigen::Vector3d& centre) {
     const Camera& camera = scene_.camera;
     const double depth = (camera.model_from_sensor.inverse() * centre).z();
+    Eigen::Matrix2Xd pixels(2, Eigen::Index{camera.width} * camera.height);
+    for (Eigen::Index i = 0; i < pixels.cols(); ++i) {
+      pixels.col(i) << static_cast<double>(i % camera.width), static_cast<double>(i / camera.width);
+    }
+    pixels = undistort(camera, pixels);
     for (int v = 0; v < camera.height; ++v) {
       for (int u = 0; u < camera.width; ++u) {
-        const Eigen::Vector3d local((u - camera.cx) / camera.fx * depth, (v - camera.cy) / camera.fy * depth, depth);
+        const Eigen::Vector2d pixel = pixels.col(Eigen::Index{v} * camera.width + u);
+        const Eigen::Vector3d local((pixel.x() - camera.cx) / camera.fx * depth,
+                                    (pixel.y() - camera.cy) / camera.fy * depth, depth);
         if ((camera.model_from_sensor * local - plane.point).dot(plane.normal) < 0.0) {
           background_.at<float>(v, u) += static_cast<float>(kFloor - kBackground);
         }
@@ -127,15 +138,22 @@ class CameraRenderer : public Renderer {
     return out;
   }
 
-  // Fills a triangle by barycentric rasterisation with a depth buffer.
-  void fill(const Eigen::Vector3i& nodes, const Eigen::Matrix3Xd& local, const Eigen::VectorXd& shade, cv::Mat& grey,
-            cv::Mat& depth) const {
+  /// Returns where the camera sees the nodes, through its lens.
+  Eigen::Matrix2Xd pixels_of(const Eigen::Matrix3Xd& local) const {
+    const Camera& camera = scene_.camera;
+    Eigen::Matrix2Xd pixels(2, local.cols());
+    pixels.row(0) = camera.fx * local.row(0).array() / local.row(2).array() + camera.cx;
+    pixels.row(1) = camera.fy * local.row(1).array() / local.row(2).array() + camera.cy;
+    return distort(camera, pixels);
+  }
+
+  // Fills a triangle by barycentric rasterisation with a depth buffer. The lens bends its edges, but they are short.
+  void fill(const Eigen::Vector3i& nodes, const Eigen::Matrix3Xd& local, const Eigen::Matrix2Xd& pixels,
+            const Eigen::VectorXd& shade, cv::Mat& grey, cv::Mat& depth) const {
     Eigen::Matrix<double, 2, 3> p;
     for (int i = 0; i < 3; ++i) {
-      const Eigen::Vector3d x = local.col(nodes[i]);
-      if (x.z() <= 0.0) return;
-      p(0, i) = kSuper * (scene_.camera.fx * x.x() / x.z() + scene_.camera.cx + 0.5) - 0.5;
-      p(1, i) = kSuper * (scene_.camera.fy * x.y() / x.z() + scene_.camera.cy + 0.5) - 0.5;
+      if (local(2, nodes[i]) <= 0.0) return;
+      p.col(i) = kSuper * (pixels.col(nodes[i]).array() + 0.5) - 0.5;
     }
     Eigen::Matrix2d edges;
     edges << p.col(1) - p.col(0), p.col(2) - p.col(0);

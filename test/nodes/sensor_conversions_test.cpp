@@ -10,8 +10,6 @@
 namespace tissue_stiffness {
 namespace {
 
-using Projection = ObservationSettings::Projection;
-
 sensor_msgs::CameraInfo camera_info() {
   sensor_msgs::CameraInfo info;
   info.width = 640;
@@ -23,7 +21,14 @@ sensor_msgs::CameraInfo camera_info() {
 }
 
 Camera convert(const sensor_msgs::CameraInfo& info) {
-  return to_camera(info, Projection::silhouette, Eigen::Isometry3d::Identity(), "/camera_info");
+  return to_camera(info, ObservationSettings(), Eigen::Isometry3d::Identity(), "/camera_info");
+}
+
+ObservationSettings contour(const std::string& topic, std::optional<bool> rectified) {
+  ObservationSettings settings;
+  settings.topic = topic;
+  settings.rectified = rectified;
+  return settings;
 }
 
 sensor_msgs::ImagePtr image(const std::string& encoding, int channels, std::uint8_t value) {
@@ -42,6 +47,7 @@ TEST(CameraConversion, ReadsCalibration) {
   EXPECT_EQ(camera.fx, 500);
   EXPECT_EQ(camera.fy, 510);
   EXPECT_EQ(camera.cy, 240);
+  EXPECT_EQ(camera.lens, Camera::Lens::plumb_bob);
   EXPECT_EQ(camera.distortion[4], 0.05);
   EXPECT_EQ(camera.projection, Camera::Projection::pinhole);
 }
@@ -54,8 +60,8 @@ TEST(CameraConversion, RefusesWhatItCannotUse) {
   info.K[2] = std::numeric_limits<double>::infinity();
   expect_input_error([&] { convert(info); }, {"/camera_info: K", "finite"});
   info = camera_info();
-  info.distortion_model = "equidistant";
-  expect_input_error([&] { convert(info); }, {"equidistant", "plumb_bob"});
+  info.distortion_model = "thin_prism";
+  expect_input_error([&] { convert(info); }, {"thin_prism", "plumb_bob", "rational_polynomial", "equidistant"});
   info = camera_info();
   info.D.resize(3);
   expect_input_error([&] { convert(info); }, {"D", "3 numbers"});
@@ -68,6 +74,33 @@ TEST(CameraConversion, RefusesWhatItCannotUse) {
   info = camera_info();
   info.height = 0;
   expect_input_error([&] { convert(info); }, {"640 x 0"});
+}
+
+TEST(CameraConversion, TakesPAndROfRectifiedImages) {
+  sensor_msgs::CameraInfo info = camera_info();
+  info.P = {400, 0, 310, 0, 0, 410, 230, 0, 0, 0, 1, 0};
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.1, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  for (int i = 0; i < 9; ++i) info.R[static_cast<std::size_t>(i)] = turn(i / 3, i % 3);
+  const auto rectified = [&](const std::string& topic, std::optional<bool> stated) {
+    return to_camera(info, contour(topic, stated), Eigen::Isometry3d::Identity(), "/camera_info");
+  };
+  const Camera camera = rectified("/image_rect", true);
+  EXPECT_EQ(camera.lens, Camera::Lens::none);
+  EXPECT_EQ(camera.fx, 400);
+  EXPECT_EQ(camera.fy, 410);
+  EXPECT_EQ(camera.cx, 310);
+  EXPECT_EQ(camera.cy, 230);
+  // A point along the rectified axis lies on the principal point of the rectified image.
+  EXPECT_LT((camera.project(turn.transpose() * Eigen::Vector3d(0, 0, 2)) - Eigen::Vector2d(310, 230)).norm(), 1e-9);
+  expect_input_error([&] { rectified("/camera/image_rect_color", std::nullopt); },
+                     {"/camera/image_rect_color", "rectified: true"});
+  EXPECT_EQ(rectified("/camera/image_rect", false).lens, Camera::Lens::plumb_bob);
+  EXPECT_EQ(rectified("/camera/image_raw", std::nullopt).fx, 500);
+  info.R.fill(0.0);
+  expect_input_error([&] { rectified("/image_rect", true); }, {"/camera_info: R", "rotation"});
+  info.R = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  info.P.fill(0.0);
+  expect_input_error([&] { rectified("/image_rect", true); }, {"/camera_info: P", "calibrate"});
 }
 
 TEST(ImageConversion, GivesGreyOrBgr) {

@@ -93,6 +93,7 @@ struct ObservationSettings {
 
 struct TimeSettings {
   double start = 0.0;  ///< when the body was at rest and undeformed, after the recording's first stamp [s]
+  std::optional<bool> rectified;  ///< only for a contour: its images have no distortion any more; absent: not stated
   double step = 0.0;   ///< integration step [s]; 0: chosen automatically
 };
 
