@@ -154,7 +154,7 @@ Observation to_observation(const Cloud& cloud, const ObservationSettings& settin
         cloud.data.data() + std::size_t{i / cloud.width} * cloud.row_step + std::size_t{i % cloud.width} * cloud.point_step;
     const Eigen::Vector3d position = columns.position(point);
     if (!position.allFinite()) {
-      if (!cloud.is_dense) continue;
+      if (!cloud.is_dense || settings.depth_camera) continue;
       throw InputError(topic + ": point " + std::to_string(i), "a coordinate that is not finite",
                        "finite coordinates, or is_dense false");
     }

@@ -45,6 +45,11 @@ void EstimatorInputs::listen(std::uint32_t queue_size) {
   }
 }
 
+void EstimatorInputs::set_mesh(const TetMesh& mesh) {
+  vertex_count_ = mesh.corner_count;
+  body_points_ = make_body_points(settings_, mesh);
+}
+
 // Checks the stamp and hands the message to `add`. Errors in the message are reported and never thrown into the spinner.
 template <typename Message, typename Add>
 void EstimatorInputs::subscribe(const std::string& topic, std::uint32_t queue_size, Add add) {
@@ -69,7 +74,10 @@ void EstimatorInputs::listen_cloud(int source, std::uint32_t queue_size) {
   subscribe<sensor_msgs::PointCloud2>(
       topic, queue_size, [this, topic, source, &settings](const sensor_msgs::PointCloud2ConstPtr& cloud) {
         queue_.add_observation(topic, cloud->header.stamp, [this, topic, source, &settings, cloud] {
-          return to_observation(*cloud, settings, source, vertex_count_, poses_.model_from(cloud->header, topic));
+          Observation out =
+              to_observation(*cloud, settings, source, vertex_count_, poses_.model_from(cloud->header, topic));
+          select_body(body_points_, settings_, &out);
+          return out;
         });
       });
 }
@@ -123,6 +131,7 @@ Observation EstimatorInputs::observe_contour(const ContourMessage& message, int 
         topic, "an image of " + std::to_string(contour->width) + " x " + std::to_string(contour->height),
         std::to_string(camera->width) + " x " + std::to_string(camera->height) + " as in " + settings.camera_info);
   }
+  undistort(*camera, contour.get());
   out.contour = contour;
   out.camera = camera;
   return out;
@@ -131,7 +140,6 @@ Observation EstimatorInputs::observe_contour(const ContourMessage& message, int 
 void EstimatorInputs::listen_load(const LoadInput& input, std::uint32_t queue_size) {
   const std::string topic = input.topic;
   const std::uint32_t deep = 10 * queue_size;  // loads come faster than frames
-  undistort(*camera, contour.get());
   if (input.kind == LoadInput::Kind::pressure) {
     subscribe<sensor_msgs::FluidPressure>(topic, deep, [this, topic](const sensor_msgs::FluidPressureConstPtr& pressure) {
       const LoadSample sample = to_load(*pressure, topic);

@@ -2,7 +2,6 @@
 
 #include <ros/node_handle.h>
 
-#include <atomic>
 #include <map>
 #include <mutex>
 #include <string>
@@ -13,6 +12,7 @@
 #include "nodes/messages.hpp"
 #include "nodes/sensor_conversions.hpp"
 #include "nodes/sensor_poses.hpp"
+#include "observation/body_points.hpp"
 
 namespace tissue_stiffness {
 
@@ -30,8 +30,8 @@ class EstimatorInputs {
   /// Subscribes to observations and loads, the first time it is called.
   void listen(std::uint32_t queue_size);
 
-  /// Sets the upper bound of the field `vertex`.
-  void set_vertex_count(int count) { vertex_count_ = count; }
+  /// Tells which vertices there are, and where the body is. The worker calls it, between two frames.
+  void set_mesh(const TetMesh& mesh);
 
  private:
   void listen_cloud(int source, std::uint32_t queue_size);
@@ -49,7 +49,8 @@ class EstimatorInputs {
   SensorPoses& poses_;
   FrameQueue& queue_;
   Diagnostics& diagnostics_;
-  std::atomic<int> vertex_count_{0};
+  int vertex_count_ = 0;
+  std::map<int, BodyPoints> body_points_;  ///< by index of the observation
   mutable std::mutex camera_mutex_;
   std::map<std::string, sensor_msgs::CameraInfoConstPtr> cameras_;  ///< by topic
   std::vector<ros::Subscriber> subscribers_;

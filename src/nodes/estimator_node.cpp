@@ -187,7 +187,7 @@ void EstimatorNode::build(const ModelSettings& settings, const TetMesh& mesh) {
   last_.reset();
   estimator_->work_in_background();
   services_->start(running_, mesh);
-  inputs_.set_vertex_count(mesh.corner_count);
+  inputs_.set_mesh(mesh);
   map_.start(running_, mesh);
   for (const std::string& line : estimator_->description()) ROS_INFO("%s", line.c_str());
   diagnostics_.state(DiagnosticStatus::OK, to_string(EstimateState::no_data));

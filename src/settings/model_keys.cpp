@@ -94,6 +94,15 @@ std::vector<KeySpec> observation_keys() {
       keys.push_back(required_key(path + ".rest", Kind::list, "m", "where the markers are at rest, [x, y, z] each"));
     }
   }
+  const std::string depth = "observations[].points.depth_camera";
+  keys.insert(
+      keys.end(),
+      {plain_key(depth, Kind::map, "", "the cloud is a depth camera's: leave out what is not the body"),
+       positive(depth + ".margin", "m", "around the mesh at rest; points farther away are left out"),
+       number_key(depth + ".voxel", "m", 0, kInfinity, 0,
+                  "as many points are kept as there are cubes of this edge that hold any; 0: 1/25 of the body's size"),
+       integer_key(depth + ".neighbours", 0, 100, 4,
+                   "points with fewer others within 2.5 voxels are left out, as flying pixels are")});
   const std::string contour = "observations[].contour";
   keys.insert(
       keys.end(),
@@ -118,6 +127,8 @@ std::vector<KeySpec> observation_keys() {
                   "distance in the plane a*, b* of CIE Lab that is still this colour"),
        choice_key(contour + ".projection", {"silhouette", "slice"}, false,
                   "the outline that a pinhole sees, or the surface cut by the image plane"),
+       plain_key(contour + ".rectified", Kind::boolean, "",
+                 "whether the images are rectified, so that P of the calibration counts and K and D do not"),
        plain_key(contour + ".region", Kind::text, "", "part of the surface that the outline belongs to; all when absent")});
   const std::string reaction = "observations[].reaction";
   keys.insert(keys.end(),
@@ -127,8 +138,6 @@ std::vector<KeySpec> observation_keys() {
                required_key(reaction + ".region", Kind::text, "", "region of that effect"),
                positive(reaction + ".noise", "N", "1 sigma of a component"),
                number_key(reaction + ".gain", "", 0, 1, 0.1, "relative error of the sensor's scale, 1 sigma"),
-       plain_key(contour + ".rectified", Kind::boolean, "",
-                 "whether the images are rectified, so that P of the calibration counts and K and D do not"),
                number_key(reaction + ".bias", "N", 0, kInfinity, std::numeric_limits<double>::quiet_NaN(),
                           "constant offset of each component, 1 sigma; 10 % of the largest force when absent"),
                number_key(reaction + ".rotation_tolerance", "rad", 0, 1, 0.05, "of the sensor about each axis, 1 sigma"),

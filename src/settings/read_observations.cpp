@@ -49,6 +49,15 @@ void read_contour(const Value& map, ObservationSettings& observation) {
   observation.region = read_text(map, key("observations[].contour.region"));
 }
 
+DepthCameraSettings read_depth_camera(const Value& map) {
+  const std::string path = "observations[].points.depth_camera.";
+  DepthCameraSettings out;
+  out.margin = read_number(map, key(path + "margin"));
+  out.voxel = read_number(map, key(path + "voxel"));
+  out.neighbours = read_integer(map, key(path + "neighbours"));
+  return out;
+}
+
 void read_reaction(const Value& map, ObservationSettings& observation) {
   observation.region = read_text(map, key("observations[].reaction.region"));
   observation.gain = read_number(map, key("observations[].reaction.gain"));
@@ -77,6 +86,9 @@ ObservationSettings read_observation(const Value& entry) {
     observation.topic = read_text(map, key("observations[]." + keys.front() + ".topic"));
   }
   if (observation.kind == Kind::markers) observation.rest = read_rest(map.at("rest"));
+  if (observation.kind == Kind::points && map.has("depth_camera")) {
+    observation.depth_camera = read_depth_camera(map.at("depth_camera"));
+  }
   const std::string path = "observations[]." + keys.front();
   observation.noise = read_number(map, key(path + ".noise"));
   observation.rotation = read_number(map, key(path + ".rotation_tolerance"));

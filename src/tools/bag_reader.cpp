@@ -47,6 +47,11 @@ BagReader::BagReader(const std::string& file, const ModelSettings& settings, std
   if (pending_.empty()) throw InputError(file_, "no message on the model's topics", "at least one frame");
 }
 
+void BagReader::set_mesh(const TetMesh& mesh) {
+  vertex_count_ = mesh.corner_count;
+  body_points_ = make_body_points(settings_, mesh);
+}
+
 void BagReader::open() {
   try {
     bag_.open(file_, rosbag::bagmode::Read);
@@ -269,8 +274,14 @@ void BagReader::convert(const Measurement& measurement, Instant& instant) {
         to_reaction(*measurement.wrench, measurement.source, *model_from_sensor, settings.topic));
     return;
   }
-  instant.frame.observations.push_back(
-      to_observation(*measurement.cloud, settings, measurement.source, vertex_count_, *model_from_sensor));
+  Observation out = to_observation(*measurement.cloud, settings, measurement.source, vertex_count_, *model_from_sensor);
+  try {
+    select_body(body_points_, settings_, &out);
+  } catch (const InputError& error) {
+    instant.reason = error.what();
+    return;
+  }
+  instant.frame.observations.push_back(std::move(out));
 }
 
 void BagReader::segment(const Measurement& measurement, Instant& instant) {
@@ -297,6 +308,7 @@ void BagReader::segment(const Measurement& measurement, Instant& instant) {
     instant.reason = settings.topic + ": " + found.reason;
     return;
   }
+  undistort(*camera, &found.contour);
   Observation out;
   out.source = measurement.source;
   out.kind = ObservationKind::contour;
@@ -309,7 +321,6 @@ void BagReader::segment(const Measurement& measurement, Instant& instant) {
 // Undistorted, because the outlines that the report draws over it are.
 void BagReader::keep_picture(const Measurement& measurement, const cv::Mat& image, const Camera& camera) {
   const std::size_t stride = (frame_count_ + kMostPictures - 1) / kMostPictures;
-  undistort(*camera, &found.contour);
   if (images_[measurement.source]++ % std::max<std::size_t>(1, stride) != 0) return;
   cv::Mat small = undistort(camera, image);
   const double scale = kPictureWidth / image.cols;

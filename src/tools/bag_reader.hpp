@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "nodes/stamp_filter.hpp"
+#include "observation/body_points.hpp"
 #include "tissue_stiffness/segmentation/segmenter.hpp"
 #include "tissue_stiffness/settings/model_settings.hpp"
 #include "tissue_stiffness/types/load_sample.hpp"
@@ -50,8 +51,8 @@ class BagReader {
   double first_stamp() const { return first_stamp_.toSec(); }
   /// Returns the number of frames, at most.
   std::size_t frame_count() const { return frame_count_; }
-  /// Sets the upper bound of the field `vertex`, once the mesh is known.
-  void set_vertex_count(int count) { vertex_count_ = count; }
+  /// Tells which vertices there are, and where the body is, once the mesh is known.
+  void set_mesh(const TetMesh& mesh);
 
   /// Segments only about `most` images of each sensor, evenly over the bag.
   void thin_images(std::size_t most) { image_stride_ = (frame_count_ + most - 1) / most; }
@@ -116,6 +117,7 @@ class BagReader {
   rosbag::View::iterator next_message_;
   std::size_t frame_count_ = 0, image_stride_ = 1;
   int vertex_count_ = std::numeric_limits<int>::max();
+  std::map<int, BodyPoints> body_points_;  ///< by index of the observation
   int late_ = 0;
   double now_ = 0.0;  ///< when the recorder received the last message [s]
   std::string last_broken_;

@@ -10,7 +10,7 @@ namespace tissue_stiffness {
 RecordingReader::RecordingReader(const std::string& file, const ModelSettings& settings, std::function<void()> checkpoint,
                                  std::size_t most_images)
     : checkpoint_(std::move(checkpoint)), reader_(file, settings), mesh_(make_mesh(file, settings, most_images)) {
-  reader_.set_vertex_count(mesh_.corner_count);
+  reader_.set_mesh(mesh_);
 }
 
 std::optional<Instant> RecordingReader::next() {

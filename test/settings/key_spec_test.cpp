@@ -23,7 +23,7 @@ effects: [inertia: {density: 1060}]
 observations:
 - vertices: {topic: /v, noise: 3e-4, rotation_tolerance: 0.01, offset_tolerance: 1e-3}
 - markers: {topic: /m, noise: 1e-4, rotation_tolerance: 0.01, offset_tolerance: 1e-3, rest: [[1, 2, 3]]}
-- points: {topic: /p, noise: 1e-3, rotation_tolerance: 0.01, offset_tolerance: 1e-3}
+- points: {topic: /p, noise: 1e-3, rotation_tolerance: 0.01, offset_tolerance: 1e-3, depth_camera: {margin: 0.02, voxel: 0.003, neighbours: 5}}
 - reaction: {topic: /f, region: ball, noise: 0.01, gain: 0.02, bias: 0.03, rotation_tolerance: 0.04, rate: 100}
 - contour: {image: /i, rotation_tolerance: 0.01, offset_tolerance: 1e-3, camera_info: /c, segmentation: {kind: cavity, seed: [1, 2], roi: [3, 4, 50, 60]}, projection: slice, rectified: true, noise: 6e-4, region: egg}
 - contour: {image: /i, camera_info: /c, noise: 6e-4, segmentation: {kind: silhouette, body: colour, colour: [120, 60, 160], tolerance: 30}}

@@ -300,7 +300,9 @@ TEST_F(BagReaderTest, RefusesVerticesThatTheMeshDoesNotHave) {
     writer.close();
   }
   BagReader reader = open();
-  reader.set_vertex_count(3);
+  TetMesh mesh;
+  mesh.corner_count = 3;
+  reader.set_mesh(mesh);
   EXPECT_TRUE(says(input_error([&] { reader.next(); }), {"/tissue/vertices", "vertex", "found 3", "0 to 2"}));
 }
 

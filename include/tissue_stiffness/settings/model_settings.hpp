@@ -73,6 +73,13 @@ struct SegmentationSettings {
   double tolerance = 0.0;                            ///< distance in the plane a*, b* of CIE Lab that is still this colour
 };
 
+/// What is done with the clouds of a depth camera, which also sees what is not the body.
+struct DepthCameraSettings {
+  double margin = 0.0;  ///< around the mesh at rest; points farther away are left out [m]
+  double voxel = 0.0;   ///< edge of cubes whose number is that of the points kept [m]; 0: 1/25 of the body's size
+  int neighbours = 0;   ///< a point with fewer others around it is left out
+};
+
 struct ObservationSettings {
   using Kind = ObservationKind;
   enum class Projection { silhouette, slice };
@@ -83,8 +90,10 @@ struct ObservationSettings {
   double rotation = 0.0;    ///< tolerance of the sensor's orientation, 1 sigma about each axis [rad]
   double offset = 0.0;      ///< tolerance of the sensor's position, 1 sigma along each axis [m]
   Eigen::Matrix3Xd rest;    ///< only for markers: their positions at rest [m]
+  std::optional<DepthCameraSettings> depth_camera;  ///< only for points
   SegmentationSettings segmentation;
   Projection projection = Projection::silhouette;
+  std::optional<bool> rectified;  ///< only for a contour: its images have no distortion any more; absent: not stated
   std::string region;  ///< contour: part of the surface it belongs to, empty: all; reaction: the region that is pushed
   double gain = 0.0;   ///< only for a reaction: relative error of the force's scale, 1 sigma
   double bias = 0.0;   ///< the same: constant offset of each component, 1 sigma [N]; negative: a share of the largest force
@@ -93,7 +102,6 @@ struct ObservationSettings {
 
 struct TimeSettings {
   double start = 0.0;  ///< when the body was at rest and undeformed, after the recording's first stamp [s]
-  std::optional<bool> rectified;  ///< only for a contour: its images have no distortion any more; absent: not stated
   double step = 0.0;   ///< integration step [s]; 0: chosen automatically
 };
 
