@@ -4,6 +4,7 @@
 #include <sensor_msgs/image_encodings.h>
 
 #include <limits>
+#include <opencv2/core.hpp>
 
 #include "expect_input_error.hpp"
 
