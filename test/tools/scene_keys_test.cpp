@@ -46,7 +46,7 @@ simulation:
     /v: {noise: 1e-4, memory: 0.5, every: 2}
     /p: {count: 100}
     /u: {ids: [1, 2]}
-    /i: {size: [64, 64], blur: 1, focal_length: 100, position: [0, -1, 0], target: [0, 0, 0], up: [0, 0, 1]}
+    /i: {size: [64, 64], blur: 1, focal_length: 100, distortion: [0.1, 0, 0, 0], distortion_model: equidistant, position: [0, -1, 0], target: [0, 0, 0], up: [0, 0, 1]}
     /s: {pixels_per_metre: 100, apex: [0, 0, -1], axis: [0, 0, 1], lateral: [1, 0, 0], sector: 60, depth: 0.1, drop_out: 0.1}
 )";
 
