@@ -35,7 +35,8 @@ Eigen::Isometry3d to_isometry(const geometry_msgs::Pose& pose, const std::string
 
 /// Converts a cloud of entry `source` of the model's observations. It has fields x, y, z (FLOAT32 or FLOAT64, m), little
 /// endian, and for vertices and markers an integer field `vertex` or `marker`. Points that are not finite are left out of a
-/// cloud that is not dense, or of a depth camera's; in another dense cloud they are an error. `vertex_count` bounds the field `vertex`.
+/// cloud that is not dense, or of a depth camera's; in another dense cloud they are an error. `vertex_count` bounds the
+/// field `vertex`.
 Observation to_observation(const sensor_msgs::PointCloud2& cloud, const ObservationSettings& settings, int source,
                            int vertex_count, const Eigen::Isometry3d& model_from_sensor);
 
