@@ -1,5 +1,6 @@
 #include "nodes/node_keys.hpp"
 
+#include <limits>
 #include <map>
 #include <stdexcept>
 
@@ -14,8 +15,26 @@ KeySpec patience(double seconds) {
   return number_key("transform_timeout", "s", 0, 60, seconds, "how long to wait for a sensor's pose on tf, in wall time");
 }
 
+KeySpec rate(const std::string& path, const std::string& meaning) {
+  return number_key(path, "", 0, 1, 0.01, "probability that a message " + meaning);
+}
+
 const std::vector<std::pair<std::string, std::vector<KeySpec>>>& all_keys() {
   static const std::vector<std::pair<std::string, std::vector<KeySpec>>> keys{
+      {"fault_injector",
+       {required_key("topics", KeySpec::Kind::list, "", "the topics that pass through"),
+        required_key("topics[].input", KeySpec::Kind::text, "", "topic of the sensor"),
+        required_key("topics[].output", KeySpec::Kind::text, "", "topic of the nodes behind"),
+        integer_key("seed", 0, std::numeric_limits<int>::max(), 1, "of all that is random"), rate("drop", "is lost"),
+        rate("delay", "comes late"), rate("duplicate", "comes twice"), rate("reorder", "comes after the next one"),
+        rate("corrupt", "loses its stamp, its frame or its end, or holds numbers that are not finite or too few"),
+        rate("restamp", "has a stamp of some seconds before or after, or of an hour after"),
+        number_key("mute", "Hz", 0, 1, 0.01, "how often a topic falls silent"),
+        number_key("longest_delay", "s", 0, 60, 0.3,
+                   "between stamps, like the times below; each fault draws its own length"),
+        number_key("longest_shift", "s", 0, 60, 5, "of a stamp"), number_key("longest_mute", "s", 0, 3600, 3, "of a topic"),
+        number_key("quiet", "s", 0, 1e6, 0, "how long none happens; 0: they always do"),
+        number_key("active", "s", 0, 1e6, 0, "how long they then happen, in turns with `quiet`")}},
       {"segmentation_node",
        {plain_key("segmentation", KeySpec::Kind::map, "",
                   "`{kind, ...}` as in a model file's contour, for a node without a model"),

@@ -8,7 +8,7 @@
 
 namespace tissue_stiffness {
 
-/// Returns the private parameters that every node has: `model` and `directory`.
+/// Returns the private parameters of every node that has a model: `model` and `directory`.
 const std::vector<KeySpec>& common_node_keys();
 
 /// Returns a node's own private parameters. Throws std::logic_error for an unknown node.

@@ -83,7 +83,7 @@ void print_keys(std::ostream& out) {
   print_lines(model_keys(), out);
   out << "\nscene file, beside the model's keys\n";
   print_lines(scene_keys(), out);
-  out << "\nevery node\n";
+  out << "\nevery node but fault_injector\n";
   print_lines(common_node_keys(), out);
   for (const std::string& node : node_names()) {
     out << "\n" << node << "\n";
@@ -103,7 +103,7 @@ void print_keys_markdown(std::ostream& out) {
          "the model is run and recorded. `sensors` takes\nthe keys of a cloud, of a pinhole camera or of a B-mode "
          "slice.\n\n";
   print_table(scene_keys(), out);
-  out << "\n## Private parameters of the nodes\n\nEvery node takes these keys:\n\n";
+  out << "\n## Private parameters of the nodes\n\nEvery node but `fault_injector` takes these keys:\n\n";
   print_table(common_node_keys(), out);
   for (const std::string& node : node_names()) {
     out << "\n### `" << node << "`\n\n";
