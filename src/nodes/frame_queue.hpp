@@ -22,7 +22,7 @@ namespace tissue_stiffness {
 /// Orders the messages of several topics as the estimator needs them. Callbacks add messages, and one worker takes them.
 ///
 /// A frame is handed out once every topic has delivered up to the frame's stamp, or after `patience`. In the latter case
-/// the available messages are used (a load is held). When more than `capacity` frames wait, the oldest is dropped.
+/// the available messages are handed out. When more than `capacity` frames wait, the oldest is dropped.
 ///
 /// An epoch is one run of the experiment. A topic starts a new epoch when its stamps go back by more than 0.5 s, or to the
 /// topic's first stamp (a bag that loops), or ahead by more than a minute. Topics may notice this at different times, so
