@@ -118,13 +118,29 @@ void FrameQueue::renew(int epoch) {
   for (auto& load : kept) loads_.insert(std::move(load));
 }
 
+// A clock that jumps back in a recording takes all topics with it. So a jump that only a topic knows that fell silent is
+// broken where the others have gone on since.
+bool FrameQueue::others_go_on(const Topic& jumped) const {
+  if (!jumped.filter.stamps().seen) return false;
+  return std::any_of(topics_.begin(), topics_.end(), [&](const auto& entry) {
+    const Topic& topic = entry.second;
+    return &topic != &jumped && topic.epoch == jumped.epoch && topic.filter.stamps().seen && !topic.filter.holds() &&
+           topic.filter.last_arrival() > jumped.filter.last_arrival();
+  });
+}
+
 FrameQueue::Clock::time_point FrameQueue::release_overdue() {
   const Clock::time_point now = Clock::now();
   double next = seconds(now + kIdle);
   for (auto& [name, topic] : topics_) {
     if (!topic.filter.holds()) continue;
     if (topic.filter.silent_from() <= seconds(now)) {
-      put(topic, topic.filter.release());
+      if (others_go_on(topic)) {
+        topic.filter.leave_out_held();
+        last_broken_ = name + ": " + topic.filter.last_left_out();
+      } else {
+        put(topic, topic.filter.release());
+      }
     } else {
       next = std::min(next, topic.filter.silent_from());
     }

@@ -29,7 +29,8 @@ namespace tissue_stiffness {
 /// each message is kept in the epoch of its topic. A topic whose stamps had jumped alone joins the others again when its
 /// stamps go on from theirs.
 ///
-/// A message whose stamp jumps is held back until it is believed (see StampFilter). Broken ones are left out.
+/// A message whose stamp jumps is held back until it is believed (see StampFilter). Broken ones are left out. A silence
+/// does not make a jump believed while other topics go on.
 class FrameQueue {
  public:
   /// Conversions run in the worker, because they may wait for a transform. They may throw InputError.
@@ -96,6 +97,8 @@ class FrameQueue {
   void move(Topic& topic, const ros::Time& stamp);
   /// Gives an epoch that was left the number of a new one.
   void renew(int epoch);
+  /// Returns whether other topics went on in this topic's epoch since its last message came.
+  bool others_go_on(const Topic& jumped) const;
   /// Releases what no message has contradicted in time. Returns when that has to be asked next.
   Clock::time_point release_overdue();
   bool complete(const Place& place) const;

@@ -45,6 +45,7 @@ class StampFilter {
   }
 
   bool holds() const { return !held_.empty(); }
+  double last_arrival() const { return last_arrival_; }
   /// Returns when the topic has been silent for longer than usual. Held messages are believed then.
   double silent_from() const {
     return last_arrival_ + std::max(patience_, kPauses * std::max(arrival_interval_, stamps_.interval));

@@ -198,6 +198,26 @@ TEST_F(PatientFrameQueueTest, ABrokenStampIsLeftOut) {
 }
 
 // Nothing goes before the first message that could tell that its stamp is wrong.
+// Silence believes a jump, but not while other topics tell the old time.
+TEST_F(FrameQueueTest, ABrokenStampBeforeASilenceIsLeftOutWhereTheOthersGoOn) {
+  start();
+  for (const double t : {0.0, 0.1, 0.2}) {
+    load(t);
+    frame(t);
+    EXPECT_NEAR(take(), t, 1e-9);
+  }
+  frame(3600.0);
+  load(0.3);
+  const auto work = queue.take();  // comes back without a frame, long after the topic fell silent
+  EXPECT_TRUE(work->observations.empty());
+  EXPECT_EQ(queue.broken_stamps(), 1U);
+  load(0.4);
+  frame(0.4);
+  const auto next = queue.take();
+  EXPECT_FALSE(next->new_epoch);
+  EXPECT_NEAR((next->stamp - at(0.4)).toSec(), 0.0, 1e-9);
+}
+
 TEST_F(PatientFrameQueueTest, ABrokenFirstStampIsLeftOut) {
   std::size_t broken = 0;
   for (const double jump : {3600.0, -3600.0, 5.0, -5.0}) {
