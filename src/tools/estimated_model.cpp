@@ -44,7 +44,7 @@ Drive read_drive(const ModelSettings& settings, const SavedResults& results, con
   if (!meshed) out.mesh = RecordingReader(bag, settings).mesh();
   if (meshed) out.mesh = build_mesh(settings.mesh);
   BagReader reader(bag, settings);
-  reader.set_vertex_count(out.mesh.corner_count);
+  reader.set_mesh(out.mesh);
   reader.thin_images(1);
   while (std::optional<Instant> instant = loaded ? reader.next() : std::nullopt) {
     for (LoadSample& sample : instant->loads) out.loads.push_back(std::move(sample));
