@@ -1,8 +1,10 @@
-"""The README's picture of the error falling: see scripts/draw_figures."""
+"""The README's picture of the error falling, and that of the recipe: see scripts/draw_figures."""
+import csv
 import json
 import os
 import sys
 
+import numpy as np
 import yaml
 
 from figures import plt, save
@@ -52,17 +54,61 @@ def draw(diagnosis, truth, path):
     save(figure, path, 110)
 
 
+def truth_of(scene):
+    with open(scene) as file:
+        effects = yaml.safe_load(file)['effects']
+    return next(float(effect['elasticity']['young_modulus']) for effect in effects if 'elasticity' in effect)
+
+
+def images_at(bag, topic, seconds):
+    """The image of a recording at each of these times after its first one."""
+    import rosbag  # only this picture needs it
+    with rosbag.Bag(bag) as file:
+        messages = [message for _, message, _ in file.read_messages(topics=[topic])]
+    stamps = np.array([message.header.stamp.to_sec() for message in messages])
+    out = []
+    for time in seconds:
+        message = messages[int(np.argmin(abs(stamps - stamps[0] - time)))]
+        out.append(np.frombuffer(message.data, np.uint8).reshape(message.height, message.width, -1))
+    return out
+
+
+def draw_recipe(folder, path):
+    times = (0.0, 0.5, 1.55)
+    with open(os.path.join(folder, 'second', 'estimates.csv')) as file:
+        rows = list(csv.DictReader(file))
+    stamp = np.array([float(row['time [s]']) for row in rows])
+    mean, low, high = (np.array([float(row[MODULUS + '.%s [Pa]' % name]) for row in rows]) / 1e3
+                       for name in ('mean', 'lower95', 'upper95'))
+    figure, axes = plt.subplots(1, 4, figsize=(11, 2.8), gridspec_kw={'width_ratios': [1, 1, 1, 1.6]})
+    for axis, time, image in zip(axes, times, images_at(os.path.join(folder, 'recording.bag'), '/camera/image_raw', times)):
+        axis.imshow(image.squeeze(), cmap='gray')
+        axis.set_title('%.2f s' % time, color=INK, fontsize=10)
+        axis.axis('off')
+    plot, seconds = axes[-1], stamp - stamp[0]
+    plot.fill_between(seconds, low, high, color=GOOD, alpha=0.25, linewidth=0)
+    plot.plot(seconds, mean, color=GOOD)
+    plot.axhline(truth_of(os.path.join(folder, 'scene.yaml')) / 1e3, color=FLOOR, linestyle='--', linewidth=1)
+    plot.set_ylim(0, 300)
+    plot.set_title("Young's modulus [kPa], 95 % interval, truth dashed", color=INK, fontsize=10)
+    plot.set_xlabel('time [s]', color=INK, fontsize=9)
+    clean(plot)
+    save(figure, path, 110)
+
+
 def main():
     root = sys.argv[1]
+    recipe = os.path.join(root, 'silicone')
+    if os.path.exists(os.path.join(recipe, 'second', 'estimates.csv')):
+        draw_recipe(recipe, os.path.join(root, 'doc', 'tutorials', 'silicone_block.png'))
+    else:
+        print('draw_figures: left out the recipe; follow doc/tutorials/silicone_block.md first', file=sys.stderr)
     source = os.path.join(root, 'output', 'demo', 'diagnosis.json')
     if not os.path.exists(source):
         sys.exit('draw_figures: no %s; run scripts/demo first' % os.path.relpath(source, root))
     with open(source) as file:
         diagnosis = json.load(file)
-    with open(os.path.join(root, 'config', 'demo', 'scene.yaml')) as file:
-        effects = yaml.safe_load(file)['effects']
-    truth = next(float(effect['elasticity']['young_modulus']) for effect in effects if 'elasticity' in effect)
-    draw(diagnosis, truth, os.path.join(root, 'doc', 'error_falling.png'))
+    draw(diagnosis, truth_of(os.path.join(root, 'config', 'demo', 'scene.yaml')), os.path.join(root, 'doc', 'error_falling.png'))
 
 
 if __name__ == '__main__':
