@@ -8,15 +8,22 @@
 
 #include "tissue_stiffness/types/error.hpp"
 #include "tools/exit_code.hpp"
+#include "tools/versions.hpp"
 #include "types/freed_memory.hpp"
 
 namespace tissue_stiffness {
 
-/// Parses the command line and runs a tool. The tool returns its exit code, or nothing if it always answers. Wrong
-/// arguments or input give one line and exit code 2, other failures one line and exit code 1.
+/// Ends the parsing of a command line that asks for the versions alone.
+struct VersionWanted {};
+
+/// Parses the command line and runs a tool. With --version it prints the versions instead. The tool returns its exit code,
+/// or nothing if it always answers. Wrong arguments or input give one line and exit code 2, other failures one line and
+/// exit code 1.
 template <typename Tool>
 int run_tool(CLI::App& app, int argc, char** argv, const Tool& tool) {
   keep_freed_memory();
+  app.add_flag_callback(
+      "--version", [] { throw VersionWanted(); }, "print the versions of the package and its libraries and exit");
   try {
     app.parse(argc, argv);
     if constexpr (std::is_void_v<decltype(tool())>) {
@@ -25,6 +32,9 @@ int run_tool(CLI::App& app, int argc, char** argv, const Tool& tool) {
     } else {
       return static_cast<int>(tool());
     }
+  } catch (const VersionWanted&) {
+    for (const auto& [name, version] : versions()) std::cout << name << " " << version << "\n";
+    return static_cast<int>(ExitCode::answered);
   } catch (const CLI::Success& help) {
     return app.exit(help);
   } catch (const CLI::ParseError& error) {

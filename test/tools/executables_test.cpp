@@ -98,6 +98,15 @@ TEST_F(Executables, HelpThemselves) {
   }
 }
 
+TEST_F(Executables, TellTheirVersions) {
+  for (const std::string tool : {"estimate", "effects"}) {  // with and without required arguments
+    const Outcome outcome = call(tool + " --version");
+    EXPECT_EQ(outcome.code, 0) << outcome.text;
+    EXPECT_EQ(outcome.text.rfind("tissue_stiffness ", 0), 0U) << outcome.text;
+    EXPECT_NE(outcome.text.find("\nEigen "), std::string::npos) << outcome.text;
+  }
+}
+
 TEST_F(Executables, RefuseWrongArguments) {
   EXPECT_TRUE(refuses("estimate", {"estimate:", "required"}));
   EXPECT_TRUE(refuses("estimate a.yaml b.bag --output " + path("out") + " --colour", {"--colour"}));
