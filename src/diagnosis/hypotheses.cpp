@@ -19,16 +19,17 @@ void find_probabilities_of(std::vector<Hypothesis>& hypotheses) {
   for (Hypothesis& h : hypotheses) h.probability /= sum;
 }
 
-// Returns the weight at which the most evident extension gains no more than the structure of the residual says. What gains
-// more gains it across the lowest modes, which the test does not use, because the mesh's error is not known there.
+// Returns the weight at which no extension gains more than the residual of the model shows. Named effects have its whole
+// structure to explain. Something unknown beside the given model has only what the test does not tolerate. What gains more
+// gains it from the mesh's error, across the lowest modes or by its memory.
 double least_weight(const Hypothesis& model, const std::vector<Hypothesis>& all) {
-  constexpr double none = -std::numeric_limits<double>::infinity();
-  if (std::isinf(model.structure)) return none;
-  double evident = none;
+  double least = -std::numeric_limits<double>::infinity();
   for (const Hypothesis& h : all) {
-    if (h.extends(model)) evident = std::max(evident, h.log_weight - h.log_prior);
+    if (!h.extends(model) || (h.random_force && !model.effects.empty())) continue;
+    const double shown = h.random_force ? model.z : model.structure;
+    if (std::isfinite(shown)) least = std::max(least, h.log_weight - h.log_prior - log_bayes_factor_bound(shown));
   }
-  return evident - log_bayes_factor_bound(model.structure) + model.log_prior;
+  return least + model.log_prior;
 }
 
 }  // namespace
@@ -104,10 +105,10 @@ void Comparison::find_probabilities() {
   for (const Hypothesis& h : weighed) {
     if (!h.random_force && h.log_weight > best->log_weight) best = &h;
   }
-  const double model = best->log_weight - best->log_prior, more = log_bayes_factor_bound(best->z);
   for (Hypothesis& h : weighed) {
-    if (h.random_force && h.log_weight > none && h.effects == best->effects)
-      h.log_weight = std::max(h.log_weight, model + h.log_prior + more);
+    if (!h.random_force || h.superfluous) continue;
+    const double shown = best->log_weight + h.log_prior_of_force + log_bayes_factor_bound(best->z);
+    h.log_weight = h.effects == best->effects ? shown : std::min(h.log_weight, shown);
   }
   find_probabilities_of(weighed);
   for (std::size_t i = 0; i < weighed.size(); ++i) hypotheses[i].probability = weighed[i].probability;
@@ -137,7 +138,8 @@ Verdict judge(const Comparison& c) {
   if (given.probability > 1.0 - kComparison.believed)
     return given.passes ? (c.passes_without_mesh ? Verdict::adequate : Verdict::numerics) : Verdict::unexplained;
   const Hypothesis& best = c.best();
-  return !best.effects.empty() && !best.random_force && best.passes ? Verdict::missing : Verdict::unexplained;
+  const bool named = !best.effects.empty() && !best.random_force && c.none_of_these() < 0.5;
+  return named && best.passes ? Verdict::missing : Verdict::unexplained;
 }
 
 std::vector<std::string> believed_effects(const Comparison& comparison) {

@@ -17,7 +17,8 @@ struct Hypothesis {
   std::vector<std::string> effects;  ///< empty: the given model
   /// It also acts on the lowest modes: something that the library does not have. Null: nothing does.
   std::shared_ptr<const RandomForce> random_force;
-  double log_prior = 0.0;
+  double log_prior = 0.0;                      ///< of the hypothesis
+  double log_prior_of_force = 0.0;             ///< the random force's part of it
   std::shared_ptr<const Explained> explained;  ///< the model
   double log_weight = 0.0;                     ///< log evidence plus log prior, up to a constant
   double z = 0.0;                              ///< of the residual's test; with a random force, of the test without it
@@ -53,8 +54,9 @@ struct Comparison {
   /// Assigns weights, tests and probabilities to all hypotheses by one likelihood.
   void assess(const ModelComparison& models);
   /// Computes probabilities from the weights. A superfluous hypothesis has none: what it has more is too small to be
-  /// missing, whatever it gains. No hypothesis loses more to what extends it than the structure of its residual says. Where
-  /// the most probable model does not pass its test, a random force beside it gains what that test says, or more.
+  /// missing, whatever it gains. No hypothesis loses more to effects that extend it than the structure of its residual
+  /// says. A random force gains over the given model, and over the most probable one, what their tests say: the tests
+  /// tolerate what the mesh's error and its memory may give to a force.
   void find_probabilities();
   /// `deeper` is a comparison about the model with `effects` added. Its hypotheses take the place of those with these
   /// effects alone, and have to be assessed together with the others.
@@ -63,7 +65,8 @@ struct Comparison {
 
 /// Returns `adequate` if the given model is believed (P(given) > 1 - `believed`) and its residual passes, `numerics` if it
 /// passes only with the mesh's error allowed for. Returns `missing` if it is not believed, named effects alone are the most
-/// probable hypothesis, and what they leave passes. Otherwise it returns `unexplained`.
+/// probable hypothesis, what they leave passes, and "none of these" is less probable than not. Otherwise it returns
+/// `unexplained`.
 Verdict judge(const Comparison& comparison);
 
 /// Returns the effects of the fewest hypotheses that hold the believed part of the probability of all that name any effect,

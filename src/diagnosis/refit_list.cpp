@@ -108,7 +108,7 @@ const Comparison& RefitList::compare() {
   };
   const auto beside = [prior](Hypothesis h, std::shared_ptr<const RandomForce> force) {
     h.random_force = std::move(force);
-    h.log_prior += prior;
+    h.log_prior += h.log_prior_of_force = prior;
     return h;
   };
   add(alone({}, 0.0, base_), given_);
