@@ -128,7 +128,7 @@ void Discretisation::compute_pattern() {
   }
   pattern_.resizeNonZeros(outer[3 * node_count_]);
   pattern_.coeffs().setZero();
-  slots_.resize(static_cast<std::size_t>(element_count() * n * n));
+  slots_.resize(slot(element_count(), 0, 0));
   tbb::parallel_for(0, node_count_, [&](int node) {
     const auto& list = neighbours[static_cast<std::size_t>(node)];
     for (int j = 0; j < 3; ++j) {
@@ -140,7 +140,7 @@ void Discretisation::compute_pattern() {
     for_each_corner(node, [&](int e, int b) {
       for (int a = 0; a < n; ++a) {
         const auto at = std::lower_bound(list.begin(), list.end(), elements_(a, e));
-        slots_[static_cast<std::size_t>((e * n + b) * n + a)] = static_cast<int>(at - list.begin());
+        slots_[slot(e, a, b)] = static_cast<int>(at - list.begin());
       }
     });
   });

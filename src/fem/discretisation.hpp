@@ -45,8 +45,7 @@ class Discretisation {
 
   /// Adds a 3 x 3 block at row node a and column node b of element e, in local numbers.
   void add_block(SparseMatrix& matrix, int e, int a, int b, const Eigen::Matrix3d& block) const {
-    const int n = nodes_per_element();
-    const int k = slots_[static_cast<std::size_t>((e * n + b) * n + a)];
+    const int k = slots_[slot(e, a, b)];
     const int column = 3 * elements_(b, e);
     double* values = matrix.valuePtr();
     const int* outer = matrix.outerIndexPtr();
@@ -81,6 +80,11 @@ class Discretisation {
       const int corner = corners_.corners[static_cast<std::size_t>(k)];
       visit(corner / n, corner % n);
     }
+  }
+  // Returns where `slots_` holds the position of a block within its column.
+  std::size_t slot(int e, int a, int b) const {
+    const auto n = static_cast<std::size_t>(nodes_per_element());
+    return (static_cast<std::size_t>(e) * n + static_cast<std::size_t>(b)) * n + static_cast<std::size_t>(a);
   }
 
   int node_count_ = 0;
