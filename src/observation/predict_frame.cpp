@@ -12,6 +12,11 @@ constexpr double kProbe = 1e-4;  // of the body's size: displacement at which th
 
 using Operators = std::vector<std::unique_ptr<ObservationOperator>>;
 
+/// Returns the time of a frame since the model's start [s].
+double seconds_since_start(const Model& model, const Frame& frame) {
+  return frame.time - model.loads().first_stamp() - model.settings().time.start;
+}
+
 /// How a frame's observations change where the body moves along shapes. Differences are taken where a sensor has no
 /// tangent.
 class SeenAlong {
@@ -21,29 +26,36 @@ class SeenAlong {
       : model_(model), operators_(operators), frame_(frame), theta_(theta), output_(output), shapes_(shapes) {
     const Eigen::Matrix3Xd& nodes = model.mesh().nodes;
     size_ = (nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff()).norm();
+    if (model.sensors().any()) apparent_ = observe(output.head(model.fem().dof_count()));
   }
 
-  Eigen::MatrixXd rows_of(const Observation& observation) const {
-    const Eigen::VectorXd apparent = observe(output_.head(model_.fem().dof_count()));
+  Eigen::MatrixXd rows_of(const Observation& observation) {
+    const bool observes = model_.sensors().any();
+    using Field = Eigen::Ref<const Eigen::VectorXd>;
+    const Field u = observes ? Field(apparent_) : Field(output_.head(model_.fem().dof_count()));
     const auto& sensor = *operators_[static_cast<std::size_t>(observation.source)];
-    const std::optional<RowTangent> tangent = sensor.tangent(observation, apparent);
+    const std::optional<RowTangent> tangent = sensor.tangent(observation, u);
     if (!tangent) return differences(observation);
-    if (!model_.sensors().any()) return *tangent * shapes_;
-    Eigen::MatrixXd seen(shapes_.rows(), shapes_.cols());
-    for_each_index(static_cast<std::size_t>(shapes_.cols()), [&](std::size_t index) {
-      const auto i = static_cast<Eigen::Index>(index);
-      const double step = probe(shapes_.col(i).cwiseAbs().maxCoeff());
-      seen.col(i) = (observe(output_.head(shapes_.rows()) + step * shapes_.col(i)) - apparent) / step;
-    });
-    return *tangent * seen;
+    return *tangent * (observes ? apparent_shapes() : shapes_);
   }
 
  private:
   double probe(double largest) const { return kProbe * size_ / std::max(largest, 1e-300); }
 
   Eigen::VectorXd observe(const Eigen::VectorXd& displacement) const {
-    const double since = frame_.time - model_.loads().first_stamp() - model_.settings().time.start;
-    return model_.sensors().any() ? model_.sensors().observe(theta_, since, displacement).displacement : displacement;
+    return model_.sensors().observe(theta_, seconds_since_start(model_, frame_), displacement).displacement;
+  }
+
+  // The sensors' effects are smooth, and all observations of the frame share them.
+  const Eigen::MatrixXd& apparent_shapes() {
+    if (apparent_shapes_.cols() > 0) return apparent_shapes_;
+    apparent_shapes_.resize(shapes_.rows(), shapes_.cols());
+    for_each_index(static_cast<std::size_t>(shapes_.cols()), [&](std::size_t index) {
+      const auto i = static_cast<Eigen::Index>(index);
+      const double step = probe(shapes_.col(i).cwiseAbs().maxCoeff());
+      apparent_shapes_.col(i) = (observe(output_.head(shapes_.rows()) + step * shapes_.col(i)) - apparent_) / step;
+    });
+    return apparent_shapes_;
   }
 
   // Only the nodes that the sensor sees are moved, one column after the other.
@@ -76,6 +88,8 @@ class SeenAlong {
   const Eigen::Ref<const Eigen::VectorXd>& output_;
   const Eigen::MatrixXd& shapes_;
   double size_;
+  Eigen::VectorXd apparent_;         ///< displacement as the sensors' effects show it; empty where there are none
+  Eigen::MatrixXd apparent_shapes_;  ///< empty until an observation needs them
 };
 
 }  // namespace
@@ -92,7 +106,7 @@ Prediction predict_frame(const Model& model, const std::vector<std::unique_ptr<O
                          const Frame& frame, const Eigen::VectorXd& theta,
                          const Eigen::Ref<const Eigen::VectorXd>& output) {
   const Eigen::Ref<const Eigen::VectorXd> displacement = output.head(model.fem().dof_count());
-  const double since = frame.time - model.loads().first_stamp() - model.settings().time.start;
+  const double since = seconds_since_start(model, frame);
   const bool observes = model.sensors().any();
   const ObservedMotion seen =
       observes ? model.sensors().observe(theta, since, displacement) : ObservedMotion{model.mesh(), since, {}};
@@ -111,7 +125,7 @@ Prediction predict_frame(const Model& model, const std::vector<std::unique_ptr<O
 Eigen::MatrixXd predict_along(const Model& model, const std::vector<std::unique_ptr<ObservationOperator>>& operators,
                               const Frame& frame, const Eigen::VectorXd& theta,
                               const Eigen::Ref<const Eigen::VectorXd>& output, const Eigen::MatrixXd& shapes) {
-  const SeenAlong along(model, operators, frame, theta, output, shapes);
+  SeenAlong along(model, operators, frame, theta, output, shapes);
   std::vector<Eigen::MatrixXd> parts;
   Eigen::Index rows = 0;
   for (const Observation& observation : frame.observations) {
