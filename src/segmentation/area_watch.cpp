@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "segmentation/outline.hpp"
 
@@ -27,24 +28,21 @@ Segmentation AreaWatch::segment(const cv::Mat& image, double stamp) {
   const double before = median_of({believed_.begin(), believed_.end()});
   if (believed_.empty() || factor_between(area, before) < largest_jump) {
     doubted_.clear();
-  } else {
-    const auto agrees = [&](double other) { return factor_between(area, other) < agreement; };
-    if (!std::all_of(doubted_.begin(), doubted_.end(), agrees)) doubted_.clear();
-    doubted_.push_back(area);
-    if (doubted_.size() < enough) {
-      inner_->reset();
-      char reason[100];
-      std::snprintf(reason, sizeof(reason), "the outline's area jumps to %.2f times that of the frames before",
-                    area / before);
-      return {{}, reason};
-    }
-    believed_.swap(doubted_);
-    doubted_.clear();
+    believed_.push_back(area);
+    if (believed_.size() > memory) believed_.pop_front();
     return found;
   }
-  believed_.push_back(area);
-  if (believed_.size() > memory) believed_.pop_front();
-  return found;
+  const auto agrees = [&](double other) { return factor_between(area, other) < agreement; };
+  if (!std::all_of(doubted_.begin(), doubted_.end(), agrees)) doubted_.clear();
+  doubted_.push_back(area);
+  if (doubted_.size() == enough) {
+    believed_ = std::exchange(doubted_, {});
+    return found;
+  }
+  inner_->reset();
+  char reason[100];
+  std::snprintf(reason, sizeof(reason), "the outline's area jumps to %.2f times that of the frames before", area / before);
+  return {{}, reason};
 }
 
 void AreaWatch::reset() {

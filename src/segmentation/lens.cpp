@@ -8,6 +8,7 @@
 #include <opencv2/core/eigen.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "segmentation/outline.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
@@ -47,15 +48,6 @@ cv::Mat coefficients_of(const Camera& camera) {
 std::vector<cv::Point2d> to_points(const Eigen::Matrix2Xd& points) {
   std::vector<cv::Point2d> out;
   for (Eigen::Index i = 0; i < points.cols(); ++i) out.emplace_back(points(0, i), points(1, i));
-  return out;
-}
-
-Eigen::Matrix2Xd to_matrix(const std::vector<cv::Point2d>& points) {
-  Eigen::Matrix2Xd out(2, static_cast<Eigen::Index>(points.size()));
-  for (Eigen::Index i = 0; i < out.cols(); ++i) {
-    const cv::Point2d& p = points[static_cast<std::size_t>(i)];
-    out.col(i) << p.x, p.y;
-  }
   return out;
 }
 

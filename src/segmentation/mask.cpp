@@ -87,15 +87,6 @@ int find_body(const Parts& parts, const SegmentationSettings& settings, std::str
   return found[0];
 }
 
-Eigen::Matrix2Xd to_matrix(const std::vector<cv::Point>& points) {
-  Eigen::Matrix2Xd result(2, static_cast<Eigen::Index>(points.size()));
-  for (Eigen::Index i = 0; i < result.cols(); ++i) {
-    const cv::Point& p = points[static_cast<std::size_t>(i)];
-    result.col(i) << p.x, p.y;
-  }
-  return result;
-}
-
 /// Returns the offset along `normal` at which `soft` falls below a half, the one nearest to 0, or NaN.
 double fall_along(const cv::Mat& soft, const Eigen::Vector2d& point, const Eigen::Vector2d& normal) {
   const auto at = [&](double t) {

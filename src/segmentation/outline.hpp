@@ -8,6 +8,17 @@ namespace tissue_stiffness {
 
 // Closed curves are 2 x n matrices of pixel coordinates. The last point is joined to the first.
 
+/// Converts OpenCV's points to columns.
+template <typename Point>
+Eigen::Matrix2Xd to_matrix(const std::vector<Point>& points) {
+  Eigen::Matrix2Xd out(2, static_cast<Eigen::Index>(points.size()));
+  for (Eigen::Index i = 0; i < out.cols(); ++i) {
+    const Point& p = points[static_cast<std::size_t>(i)];
+    out.col(i) << static_cast<double>(p.x), static_cast<double>(p.y);
+  }
+  return out;
+}
+
 /// Converts CV_8UC1 or CV_8UC3 (BGR) to grey CV_32FC1. Throws InputError for another type or an empty image.
 cv::Mat to_grey(const cv::Mat& image);
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 #include <vector>
 
 #include "segmentation/outline.hpp"
@@ -76,13 +77,12 @@ BrightRegion sharpest_region(const cv::Mat& grey, const std::optional<Eigen::Vec
   cv::minMaxLoc(small, &lowest, &highest);
   lowest = std::max(lowest, least);
 
-  Candidate best;
   std::vector<Candidate> candidates;
   for (int k = 1; k < thresholds && lowest < highest; ++k) {
     cv::Mat mask = small > lowest + (highest - lowest) * k / thresholds;
     std::vector<Border> borders;
     cv::findContours(mask, borders, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
-    for (const Border& border : borders) {
+    for (Border& border : borders) {
       const double area = cv::contourArea(border) / static_cast<double>(small.total());
       if (area < smallest_area || area > largest_area) continue;
       if (seed) {
@@ -92,18 +92,16 @@ BrightRegion sharpest_region(const cv::Mat& grey, const std::optional<Eigen::Vec
       }
       double score = border_gradient(border, gradient);
       if (previous.cols() > 0) score *= 0.2 + 0.8 * overlap(border, before);
-      candidates.push_back({border, area, score});
-      if (score > best.score) best = candidates.back();
+      candidates.push_back({std::move(border), area, score});
     }
   }
   BrightRegion region;
-  region.border.resize(2, static_cast<Eigen::Index>(best.border.size()));
-  for (Eigen::Index i = 0; i < region.border.cols(); ++i) {
-    const cv::Point& p = best.border[static_cast<std::size_t>(i)];
-    region.border.col(i) << (p.x + 0.5) / scale - 0.5, (p.y + 0.5) / scale - 0.5;
-  }
+  const auto best = std::max_element(candidates.begin(), candidates.end(),
+                                     [](const Candidate& a, const Candidate& b) { return a.score < b.score; });
+  if (best == candidates.end() || !(best->score > 0.0)) return region;
+  region.border = ((to_matrix(best->border).array() + 0.5) / scale - 0.5).matrix();
   region.has_rival =
-      std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& other) { return is_rival(other, best); });
+      std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& other) { return is_rival(other, *best); });
   return region;
 }
 
