@@ -1,5 +1,6 @@
 // VTK's XML format, for ParaView, by VTK's own writer. GetPointer() is for VTK 7, whose vtkNew does not convert.
 #include <vtkCellData.h>
+#include <vtkCellType.h>
 #include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
 #include <vtkIntArray.h>
@@ -15,8 +16,7 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr int kTetra = 10, kQuadraticTetra = 24;  // VTK's cell types; their node order is TetMesh's
-
+// The node order of these cells is TetMesh's.
 void add_grid(const TetMesh& mesh, vtkUnstructuredGrid& grid) {
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
@@ -26,7 +26,7 @@ void add_grid(const TetMesh& mesh, vtkUnstructuredGrid& grid) {
   std::vector<vtkIdType> nodes(static_cast<std::size_t>(size));
   for (int tet = 0; tet < mesh.tet_count(); ++tet) {
     for (int i = 0; i < size; ++i) nodes[static_cast<std::size_t>(i)] = mesh.tets(i, tet);
-    grid.InsertNextCell(mesh.quadratic() ? kQuadraticTetra : kTetra, size, nodes.data());
+    grid.InsertNextCell(mesh.quadratic() ? VTK_QUADRATIC_TETRA : VTK_TETRA, size, nodes.data());
   }
 }
 
