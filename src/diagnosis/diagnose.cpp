@@ -232,10 +232,9 @@ class ModelSearch {
   void exchange(std::vector<Leader>& leaders) {
     const std::vector<std::string> set = finding_.comparison.best().effects;
     const auto is = [](const std::string& name) { return [name](const auto& x) { return x.effect == name; }; };
-    const auto best = std::find_if(finding_.refits.begin(), finding_.refits.end(), is(set.front()));
     const std::vector<MissingEffect::Confusable> alike =
         std::find_if(finding_.effects.begin(), finding_.effects.end(), is(set.front()))->confusable_with;
-    const Eigen::VectorXd explained = explained_.error - best->explained->error;
+    const Eigen::VectorXd explained = explained_.error - refit_of(finding_, set.front())->explained->error;
     for (Refit& refit : finding_.refits) {
       const bool tried = std::any_of(leaders.begin(), leaders.end(), is(refit.effect));
       if (tried || std::count(set.begin(), set.end(), refit.effect) > 0) continue;
