@@ -48,12 +48,13 @@ InitialSegmentFit fit_initial_segment(const FittedModel& base, const Candidate& 
   const Eigen::VectorXd spread = recording_fit.spread_beyond(known);
   std::vector<RecordingFit::Place> places;
   for (const Eigen::VectorXd& start : strengths(recording_fit, w, candidate))
-    places.push_back(recording_fit.scan_near(start, tuning, kInitialSegment));
+    places.push_back(recording_fit.scan_prior(start, tuning, kInitialSegment));
   std::stable_sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
   places.resize(std::min(places.size(), kMostStarts));
   BatchFit fit;
   for (const RecordingFit::Place& place : places) {
-    BatchFit now = recording_fit.quick_fit(place.w, spread, kInitialSegment);
+    const Eigen::VectorXd near = recording_fit.scan_near(place.w, tuning, kInitialSegment).w;
+    BatchFit now = recording_fit.quick_fit(near, spread, kInitialSegment);
     if (fit.w.size() == 0 || now.cost < fit.cost) fit = std::move(now);
   }
   InitialSegmentFit out;

@@ -228,20 +228,29 @@ BatchFit RecordingFit::fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd s
 }
 
 Eigen::VectorXd RecordingFit::scan(const Eigen::VectorXd& start) const {
-  const FitProblem train = problem(quick(), training_);
-  return scan_coordinates([&](const Eigen::VectorXd& w) { return free_fit(train, w).cost; }, start,
-                          model_.parameters().prior_mean(), model_.parameters().prior_std(), kScanPoints)
+  return scan_coordinates(cost_of(1.0), start, model_.parameters().prior_mean(), model_.parameters().prior_std(),
+                          kScanPoints)
       .best;
 }
 
 RecordingFit::Place RecordingFit::scan_near(const Eigen::VectorXd& start, const std::vector<Eigen::Index>& coordinates,
                                             double share) const {
-  std::vector<Frame> room;
-  const std::vector<Frame>& frames = first_of_training(share, room);
-  const FitProblem train = problem(quick(), frames);
-  const auto cost = [&](const Eigen::VectorXd& w) { return free_fit(train, w).cost; };
-  const ScanResult nearest = scan_around(cost, start, model_.parameters().prior_std(), coordinates);
+  const ScanResult nearest = scan_around(cost_of(share), start, model_.parameters().prior_std(), coordinates);
   return {nearest.best, nearest.lowest};
+}
+
+RecordingFit::Place RecordingFit::scan_prior(const Eigen::VectorXd& start, const std::vector<Eigen::Index>& coordinates,
+                                             double share) const {
+  Eigen::VectorXd std = Eigen::VectorXd::Zero(start.size());
+  for (const Eigen::Index i : coordinates) std[i] = model_.parameters().prior_std()[i];
+  const ScanResult far = scan_coordinates(cost_of(share), start, model_.parameters().prior_mean(), std, kScanPoints);
+  return {far.best, far.lowest};
+}
+
+std::function<double(const Eigen::VectorXd&)> RecordingFit::cost_of(double share) const {
+  const auto room = std::make_shared<std::vector<Frame>>();
+  const std::vector<Frame>& frames = first_of_training(share, *room);
+  return [this, room, &frames](const Eigen::VectorXd& w) { return free_fit(problem(quick(), frames), w).cost; };
 }
 
 std::vector<Eigen::Index> RecordingFit::shared_with(const RecordingFit& base) const {

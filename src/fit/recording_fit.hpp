@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -76,6 +77,8 @@ class RecordingFit {
     double cost = 0.0;  ///< sum of squared errors over those frames [sigma^2]
   };
   Place scan_near(const Eigen::VectorXd& start, const std::vector<Eigen::Index>& coordinates, double share = 1.0) const;
+  /// Returns the best place of a coarse scan of these coordinates over their whole prior, the others held at `start`.
+  Place scan_prior(const Eigen::VectorXd& start, const std::vector<Eigen::Index>& coordinates, double share) const;
 
   /// Returns what is linear in the model, in a reduced basis.
   std::shared_ptr<const ReducedModel> reduced() const;
@@ -98,6 +101,8 @@ class RecordingFit {
   FitProblem problem(const ForwardModel& forward, const std::vector<Frame>& frames) const;
   /// Returns all training frames, or the first of them copied into `room`.
   const std::vector<Frame>& first_of_training(double share, std::vector<Frame>& room) const;
+  /// Returns the cost of a free run over the first `share` of the training frames.
+  std::function<double(const Eigen::VectorXd&)> cost_of(double share) const;
   BatchFit fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd spread, double rival);
   const ForwardModel& quick() const { return surrogate_ ? *surrogate_ : quick_ ? *quick_ : *forward_; }
 

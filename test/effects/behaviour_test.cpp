@@ -149,6 +149,55 @@ TEST(Foundation, HoldsTheSideThatFacesADirection) {
   EXPECT_NE(refusal([] { held_area("facing: [0, 0, 0], "); }), "");
 }
 
+// Static displacement under the loads at time 0.
+Eigen::VectorXd sag(const std::vector<std::string>& clamps) {
+  std::vector<std::string> effects{kInertia, kLinear, "gravity: {acceleration: [0, 0, -9.81]}"};
+  effects.insert(effects.end(), clamps.begin(), clamps.end());
+  const Model model(box_settings(effects), bar_mesh(8));
+  const ModelSystem system(model, prior(model));
+  SparseMatrix k = model.stiffness(prior(model));
+  Eigen::VectorXd f = system.force(0.0, zero(model), zero(model));
+  for (Eigen::Index i = 0; i < f.size(); ++i) {
+    if (system.fixed()[static_cast<std::size_t>(i)] != 0) f[i] = 0.0;
+  }
+  fix_dofs(k, system.fixed(), k.diagonal().mean());
+  SparseSolver solver;
+  solver.factorize(k);
+  return solver.solve(f);
+}
+
+// A clamp that is drawn over half of the bar, and that holds only its end.
+TEST(ElasticSupport, ReleasesAClampNearItsEdge) {
+  const Eigen::VectorXd whole = sag({"fixed: {region: clamp}"}), half = sag({"fixed: {region: near}"});
+  const std::string free = "compliance: 1.0}";
+  const Eigen::VectorXd released = sag({"fixed: {region: near}", "elastic_support: {region: near, within: 0.05, " + free});
+  EXPECT_LT((released - whole).norm(), 1e-3 * whole.norm());
+  EXPECT_GT((half - whole).norm(), 0.5 * whole.norm()) << "no test: the clamp's depth makes no difference";
+  const Eigen::VectorXd rigid =
+      sag({"fixed: {region: near}", "elastic_support: {region: near, within: 0.05, compliance: 0}"});
+  EXPECT_LT((rigid - half).norm(), 1e-9 * half.norm());
+  const auto too_little = [&] { sag({"fixed: {region: near}", "elastic_support: {region: near, within: 0.001, " + free}); };
+  EXPECT_NE(refusal(too_little).find("elastic_support.within: found 0.001; allowed: at least 0.006"), std::string::npos)
+      << refusal(too_little);
+}
+
+// A flat end of which a half is held: the other half lies beside it in its plane.
+TEST(Foundation, HoldsWhatLiesBesideAClampInItsPlane) {
+  ModelSettings settings =
+      box_settings({kInertia, kLinear, "fixed: {region: clamp}", "foundation: {level_with: clamp, stiffness: 500}"});
+  settings.regions.front().shape = BoxShape{{-1.0, -1.0, -1.0}, {1e-6, 0.011, 1.0}};
+  const TetMesh mesh = bar_mesh(4, 2, 2);
+  const Model resting(settings, mesh);
+  settings.effects.pop_back();
+  const Model bare(settings, mesh);
+  Eigen::VectorXd shift = zero(bare);
+  for (int i = 0; i < mesh.node_count(); ++i) shift[3 * i + 1] = 1.0;
+  const double held = shift.dot(resting.stiffness(prior(resting)) * shift - bare.stiffness(prior(bare)) * shift) / 500.0;
+  EXPECT_NEAR(held, 0.02 * 0.01, 1e-9);
+  EXPECT_NE(refusal([] { held_area("level_with: clamp, "); }).find("foundation.level_with"), std::string::npos);
+  EXPECT_NE(refusal([] { held_area("level_with: skin, "); }).find("a flat region"), std::string::npos);
+}
+
 TEST(Pressure, OnAPatchIsPressureTimesArea) {
   const TetMesh mesh = bar_mesh();
   Model model(box_settings({kInertia, kLinear, "pressure: {region: top, topic: /p, scale: 0.5}"}), mesh);

@@ -205,6 +205,32 @@ TEST(Proposals, TestADeclaredGravityButNoEstimatedOne) {
   }
 }
 
+// A clamp may be drawn too large or too small.
+TEST(Proposals, DoubtTheExtentOfAClamp) {
+  const TetMesh mesh = bar_mesh(4, 2, 2);
+  ModelSettings settings = box_settings(kBase, kObservations);
+  settings.regions.front().shape = BoxShape{{-1.0, -1.0, -1.0}, {0.03, 0.011, 1.0}};
+  const auto kinds = [](const std::vector<Proposal>& list) {
+    std::vector<std::string> out;
+    for (const Proposal& proposal : list) out.push_back(proposal.kind());
+    return out;
+  };
+  const Model deep(settings, mesh);
+  const std::vector<std::string> supports = kinds(proposals_of("elastic_support", deep));
+  ASSERT_GE(supports.size(), 3U);
+  EXPECT_EQ(supports.front(), "clamp");
+  EXPECT_EQ(supports.back().rfind("clamp ", 0), 0U) << supports.back();
+  const auto beside = [&](const Model& model) {
+    const std::vector<Proposal> list = proposals_of("foundation", model);
+    const auto level = [](const Proposal& p) { return to_yaml(p.entry).find("level_with") != std::string::npos; };
+    return std::count_if(list.begin(), list.end(), level);
+  };
+  EXPECT_EQ(beside(deep), 0) << "a clamp with corners is not flat";
+  settings.regions.front().shape = BoxShape{{-1.0, -1.0, -1.0}, {1e-6, 0.011, 1.0}};
+  EXPECT_EQ(beside(Model(settings, mesh)), 1);
+  EXPECT_EQ(beside(Model(box_settings(kBase, kObservations), mesh)), 0) << "the whole end is held";
+}
+
 TEST(Proposals, NeedWhatTheyActOn) {
   const TetMesh mesh = bar_mesh(2);
   const Model loose(box_settings({kBase[0], kBase[1], "gravity: {acceleration: [0, 0, -9.81]}"}), mesh);
