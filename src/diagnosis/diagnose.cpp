@@ -50,11 +50,12 @@ FittedModel fit_model(const ModelSettings& settings, const TetMesh& mesh, const 
   return fit_recording(std::move(recording_fit), start, kBaseSpread);
 }
 
-// Returns the refit's model, run in full where that was not worth it before.
+// Returns the refit's model, run in full where that was not worth it before. It has the priors of the refit: those around
+// its fit would hold it to what it was while something else was missing.
 FittedModel extended(const FittedModel& base, const Refit& refit) {
   if (refit.model) return std::move(*refit.model);
-  auto recording_fit = std::make_unique<RecordingFit>(extend_model(base.recording_fit->model().settings(), {refit.entry}),
-                                                      *base.recording_fit);
+  auto recording_fit = std::make_unique<RecordingFit>(
+      extend_model(base.recording_fit->model().settings(), {refit.proposed}), *base.recording_fit);
   const Model& model = recording_fit->model();
   return fit_recording(std::move(recording_fit),
                        model.parameters().coordinates(refit.parameters, model.parameters().prior_mean()), kAddedSpread);
@@ -187,7 +188,7 @@ class ModelSearch {
   Finding examine(
       FittedModel& model, const PreviousRound& previous, bool& moved,
       const CandidatesSoFar& so_far = [](std::vector<MissingEffect>) {}) {
-    const int most = previous.tangents_only ? 1 : kMostBases;
+    const int most = previous.beside_another ? 1 : kMostBases;
     Finding out = diagnose_once(model, {}, options_, previous, so_far);
     moved = out.base_moved;
     for (int k = 1; out.to_repeat; ++k) {
@@ -214,6 +215,7 @@ class ModelSearch {
       if (cost - finding_.refits[i].cost > kComparison.promising * structured)
         examine_beside(finding_.refits[i], {}, leaders);
     }
+    if (finding_.verdict != Verdict::missing) turn(leaders);
     if (finding_.verdict != Verdict::missing) return;
     exchange(leaders);
     const std::string best = finding_.comparison.best().effects.front();
@@ -225,6 +227,25 @@ class ModelSearch {
     finding_.take_over(best, leader->deeper.effects);
     finding_.believe(Comparison(finding_.comparison));
     grown_ = std::move(leader->deeper);
+  }
+
+  // The leader of a pair was fitted while the other effect was missing, which may have led it astray. So the pair that fits
+  // best is fitted the other way round: all variants of its leader are tried beside the other effect.
+  void turn(std::vector<Leader>& leaders) {
+    const auto cost = [](const Leader& l) { return l.deeper.refits.empty() ? no_rival : l.deeper.refits.front().cost; };
+    const auto best = std::min_element(leaders.begin(), leaders.end(),
+                                       [&](const Leader& a, const Leader& b) { return cost(a) < cost(b); });
+    if (best == leaders.end() || best->deeper.refits.empty()) return;
+    const Refit& second = best->deeper.refits.front();
+    for (Refit& refit : finding_.refits) {
+      if (refit.effect != second.effect) continue;
+      refit.proposed = second.proposed;
+      refit.entry = second.entry;
+      refit.parameters = second.parameters;
+      refit.model.reset();
+      examine_beside(refit, {best->effect}, leaders);
+      return;
+    }
   }
 
   // What is confusable with the best set's leader is tried in its place: by its tangent, or because each alone explains the

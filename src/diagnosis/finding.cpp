@@ -103,7 +103,7 @@ Finding diagnose_once(FittedModel& base, const std::vector<std::string>& wanted,
   if (wanted.empty()) {
     out.to_repeat = search_refits(screening, refits);
   } else {
-    refit_effects(screening, wanted, refits);
+    refit_effects(screening, refits);
   }
   out.models = std::make_shared<const ModelComparison>(refits.comparison());
   out.effects = describe_candidate(screening, refits);
@@ -112,7 +112,7 @@ Finding diagnose_once(FittedModel& base, const std::vector<std::string>& wanted,
   out.failure = refits.failure();
   out.discretisation_error = screening.discretisation_error;
   const Library& library = wanted.empty() ? screening.library : previous.library;  // that of few effects serves nobody
-  out.previous = {screening.finer.recording_fit, out.models, library, screening.tangents_only};
+  out.previous = {screening.finer.recording_fit, out.models, library, screening.beside_another};
   out.base_moved = refits.base_moved();
   return out;
 }

@@ -136,7 +136,8 @@ Refit refit_with(const FittedModel& base, const RefitTask& task, double rival) {
   Refit out;
   out.effect = task.effect();
   out.candidate = task.candidate;
-  std::vector<EffectEntry> entries{task.candidate->proposal.refine};
+  out.proposed = task.candidate->proposal.refine;
+  std::vector<EffectEntry> entries{out.proposed};
   fit_entries(entries, model, fitted->fit);
   out.entry = entries.front();
   out.parameters = model.parameters().values(fitted->fit.w);

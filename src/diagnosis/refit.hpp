@@ -35,6 +35,7 @@ InitialSegmentFit fit_initial_segment(const FittedModel& base, const Candidate& 
 struct Refit {
   std::string effect;
   const Candidate* candidate = nullptr;  ///< it was fitted with this one's entry `refine`; valid as long as its screening
+  EffectEntry proposed;                  ///< it was fitted with this entry's priors
   EffectEntry entry;                     ///< for the model file: priors around the fit of the estimated parameters
   std::map<std::string, double> parameters;    ///< of the whole model, by name
   double held_out_rms = 0.0;                   ///< [m]

@@ -18,13 +18,25 @@ class RefitSearch {
  public:
   RefitSearch(const Screening& screening, RefitList& refits) : screening_(screening), refits_(refits) {}
 
+  /// See refit_effects.
+  void all_in_full() {
+    std::vector<RefitTask> list;
+    for (const Ranked& r : screening_.ranked) {
+      list.push_back({r.best, r.score.amplitude});
+      list.back().in_full = true;
+    }
+    refits_.add(list);
+    if (screening_.beside_another && wide() && !explained()) refit_from_initial_segment();
+  }
+
   /// See search_refits.
-  bool operator()() {
+  bool all() {
     refit_from_tangents();
     if (!screening_.settled && refits_.move_to_better_base()) return verdict() == Verdict::unexplained;
-    if (screening_.tangents_only || !wide()) return false;
-    if (!explained()) refit_other_variants();
+    if (!wide()) return false;
+    if (!screening_.beside_another && !explained()) refit_other_variants();
     if (!explained()) refit_from_initial_segment();
+    if (screening_.beside_another) return false;
     if (!explained()) refit_other_kinds();
     if (!explained()) refit_faint_nonlinear_effects();
     return false;
@@ -41,7 +53,7 @@ class RefitSearch {
   /// Returns whether something is to be explained that tangents may not show. What a model that already has an effect
   /// leaves is small once it passes its test, and tangents are taken at the right place.
   bool wide() const {
-    return screening_.tangents_only ? !screening_.given.test.passes() : screening_.given.test.discrepancy() > 0.0;
+    return screening_.beside_another ? !screening_.given.test.passes() : screening_.given.test.discrepancy() > 0.0;
   }
   /// Returns whether the tangent of a nonlinear effect explains little. Fits of such effects take long.
   bool faint(const Ranked& r) const {
@@ -164,17 +176,11 @@ std::vector<const Candidate*> RefitSearch::most_evident_initially() const {
 }  // namespace
 
 bool search_refits(const Screening& screening, RefitList& refits) {
-  return RefitSearch(screening, refits)();
+  return RefitSearch(screening, refits).all();
 }
 
-void refit_effects(const Screening& screening, const std::vector<std::string>& effects, RefitList& refits) {
-  std::vector<RefitTask> list;
-  for (const Ranked& r : screening.ranked) {
-    if (std::find(effects.begin(), effects.end(), r.effect) == effects.end()) continue;
-    list.push_back({r.best, r.score.amplitude});
-    list.back().in_full = true;
-  }
-  refits.add(list);
+void refit_effects(const Screening& screening, RefitList& refits) {
+  RefitSearch(screening, refits).all_in_full();
 }
 
 }  // namespace tissue_stiffness

@@ -13,7 +13,8 @@ namespace tissue_stiffness {
 /// there.
 bool search_refits(const Screening& screening, RefitList& refits);
 
-/// Refits these effects only, in full whatever they promise.
-void refit_effects(const Screening& screening, const std::vector<std::string>& effects, RefitList& refits);
+/// Refits all that was screened, in full whatever it promises. Beside another effect it continues with the initial segment
+/// while nothing explains the recording.
+void refit_effects(const Screening& screening, RefitList& refits);
 
 }  // namespace tissue_stiffness

@@ -45,7 +45,7 @@ Screening::Screening(FittedModel& fitted, const DiagnosisOptions& options, Previ
                      const std::vector<std::string>& wanted)
     : base(fitted),
       cost(fitted.rows.error.squaredNorm()),
-      tangents_only(previous.tangents_only),
+      beside_another(previous.beside_another),
       settled(previous.settled),
       library(wanted.empty() ? std::move(previous.library) : Library()),
       explained(compared_residual(base)),

@@ -18,8 +18,8 @@ struct PreviousRound {
   std::shared_ptr<const RecordingFit> finer = nullptr;      ///< the model on a finer mesh; null: none yet
   std::shared_ptr<const ModelComparison> models = nullptr;  ///< their noise is known; null: none yet
   Library library = {};                                     ///< see read_tangents
-  bool tangents_only = false;  ///< the model has an effect that was found: refits from tangents are the only search
-  bool settled = false;        ///< the model keeps its fit, even where another would be better
+  bool beside_another = false;  ///< the model has an effect that was found: less of the search is repeated
+  bool settled = false;         ///< the model keeps its fit, even where another would be better
 };
 
 /// A screening shows what a fitted model's error tells before anything is refitted: the library, ranked by its tangents,
@@ -33,13 +33,13 @@ struct Screening {
   void move_base(const BatchFit& fit);
 
   FittedModel& base;
-  double cost;                        ///< sum of squared errors [sigma^2]
-  const bool tangents_only, settled;  ///< see PreviousRound
-  std::size_t effect_count = 0;       ///< number of effects that the library proposes, wanted or not
-  std::vector<Candidate> candidates;  ///< their tangents are whitened
-  Library library;                    ///< of models that the tangents were read from
-  Eigen::VectorXd error;              ///< of the base, whitened
-  Eigen::MatrixXd nuisance_tangents;  ///< of the base's parameters, and the directions of the mesh's error; whitened
+  double cost;                         ///< sum of squared errors [sigma^2]
+  const bool beside_another, settled;  ///< see PreviousRound
+  std::size_t effect_count = 0;        ///< number of effects that the library proposes, wanted or not
+  std::vector<Candidate> candidates;   ///< their tangents are whitened
+  Library library;                     ///< of models that the tangents were read from
+  Eigen::VectorXd error;               ///< of the base, whitened
+  Eigen::MatrixXd nuisance_tangents;   ///< of the base's parameters, and the directions of the mesh's error; whitened
   FinerMesh finer;
   double discretisation_error = 0.0;  ///< rms of what the base's parameters leave of the mesh's change [sigma]
   std::unique_ptr<Scorer> scorer;
