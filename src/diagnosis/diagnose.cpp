@@ -22,6 +22,7 @@
 #include "forward/extra_force.hpp"
 #include "settings/extend_model.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "types/repeated_observation.hpp"
 #include "types/stop_request.hpp"
 
 namespace tissue_stiffness {
@@ -33,6 +34,27 @@ constexpr double kShares[] = {0.1, 0.2, 0.4};  // of the training frames
 constexpr int kMostBases = 3;                  // rounds that are repeated because the model fits better elsewhere
 constexpr std::size_t kGrown = 2;              // leaders that are tried as one of several effects
 constexpr double kAddedSpread = 0.02;          // prior standard deviations, of those of a model that starts from a refit
+
+// Returns the recording as the estimator would take it: without the frames during which a load was silent, and without
+// observations that came twice.
+Recording usable_part(const ModelSettings& settings, const TetMesh& mesh, const Recording& recording,
+                      std::string& left_out) {
+  Model model(settings, mesh);
+  model.loads().drive(recording.first_stamp, recording.loads);
+  Recording out = recording;
+  std::string why;
+  const auto silent = [&](const Frame& frame) {
+    const std::string silence = model.loads().silence(frame.time);
+    if (!silence.empty()) why = silence;
+    return !silence.empty();
+  };
+  out.frames.erase(std::remove_if(out.frames.begin(), out.frames.end(), silent), out.frames.end());
+  for (Frame& frame : out.frames) leave_out_repeats(frame);
+  if (why.empty()) return out;
+  const std::size_t all = recording.frames.size();
+  left_out = std::to_string(all - out.frames.size()) + " of " + std::to_string(all) + " frames (" + why + ")";
+  return out;
+}
 
 // A scan of the modulus over all frames says nothing while it is not known how the body starts. The first frames tell both,
 // whatever the prior, so such a model is fitted to more and more of them.
@@ -386,13 +408,15 @@ class ModelSearch {
 
 Diagnosis diagnose(const ModelSettings& settings, const TetMesh& mesh, const Recording& recording,
                    const DiagnosisOptions& options) {
-  if (recording.frames.size() < kFewestFrames) {
-    throw InputError(settings.name, std::to_string(recording.frames.size()) + " usable frames",
-                     "at least " + std::to_string(kFewestFrames) + " to hold some of them out");
-  }
   for (const std::string& name : options.ignore) effect_spec({name, name, {}});  // throws for an unknown effect
   Diagnosis out;
-  ModelSearch search(recording, options, out);
+  const Recording usable = usable_part(settings, mesh, recording, out.left_out);
+  if (usable.frames.size() < kFewestFrames) {
+    const std::string why = out.left_out.empty() ? "" : "; left out: " + out.left_out;
+    throw InputError(settings.name, std::to_string(usable.frames.size()) + " usable frames" + why,
+                     "at least " + std::to_string(kFewestFrames) + " to hold some of them out");
+  }
+  ModelSearch search(usable, options, out);
   try {
     search.judge_given(settings, mesh);
     search.add_effects();

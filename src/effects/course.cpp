@@ -9,6 +9,13 @@
 #include "types/read_table.hpp"
 
 namespace tissue_stiffness {
+namespace {
+
+constexpr std::ptrdiff_t kFewest = 3, kMost = 31;  // intervals whose median is the load's
+constexpr double kPauses = 5.0;                    // intervals; a shorter pause is no silence
+
+}  // namespace
+
 Course Course::from_csv(const std::string& file, LoadInput::Kind kind) {
   Course course(kind);
   const bool poses = kind == LoadInput::Kind::pose;
@@ -53,6 +60,21 @@ std::optional<double> Course::last() const {
   const std::shared_lock<std::shared_mutex> lock(mutex_);
   if (times_.empty()) return std::nullopt;
   return times_.back() + offset_;
+}
+
+std::optional<Course::Silence> Course::silence(double time) const {
+  const std::shared_lock<std::shared_mutex> lock(mutex_);
+  const auto next = std::upper_bound(times_.begin(), times_.end(), time - offset_);
+  const std::ptrdiff_t before = next - times_.begin();
+  if (from_file_ || before <= kFewest) return std::nullopt;
+  std::vector<double> intervals;
+  for (auto sample = next - 1; sample != next - 1 - std::min(before - 1, kMost); --sample) {
+    intervals.push_back(*sample - *(sample - 1));
+  }
+  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+  std::nth_element(intervals.begin(), middle, intervals.end());
+  const Silence out{time - offset_ - *(next - 1), *middle};
+  return out.since > kPauses * out.interval ? std::optional(out) : std::nullopt;
 }
 
 void Course::add(double time, const Eigen::VectorXd& value) {

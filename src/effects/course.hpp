@@ -44,6 +44,13 @@ class Course {
   void set_tolerance(const LoadTolerance& tolerance) { tolerance_ = tolerance; }
   /// Returns the time of the last sample [s]; empty before the first.
   std::optional<double> last() const;
+  /// How long ago the last sample was, and how far apart samples are then: the median of the last intervals [s].
+  struct Silence {
+    double since, interval;
+  };
+  /// Returns the silence at a time: the last sample until then is older than five intervals. There is none before the
+  /// first sample, while fewer than three intervals are known, and of a course from a file.
+  std::optional<Silence> silence(double time) const;
   void clear();
   bool empty() const;
   int components() const { return components_; }

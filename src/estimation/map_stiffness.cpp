@@ -8,6 +8,7 @@
 
 #include "estimation/map_level.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "types/repeated_observation.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -23,7 +24,10 @@ std::vector<Frame> usable(const std::vector<Frame>& frames, double rest) {
     if (frame.time >= rest) after.push_back(frame);
   }
   const std::size_t count = std::min(after.size(), kMostFrames);
-  for (std::size_t k = 0; k < count; ++k) kept.push_back(after[k * after.size() / count]);
+  for (std::size_t k = 0; k < count; ++k) {
+    kept.push_back(after[k * after.size() / count]);
+    leave_out_repeats(kept.back());
+  }
   return kept;
 }
 

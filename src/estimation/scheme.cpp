@@ -10,6 +10,7 @@
 #include "forward/reduced_model.hpp"
 #include "observation/frame_misfit.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "types/repeated_observation.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -83,6 +84,15 @@ void Scheme::add_load(const LoadSample& sample) {
 }
 
 StepResult Scheme::step(const Frame& frame) {
+  if (!holds_repeats(frame)) return step_once(frame);
+  Frame once = frame;
+  const int repeated = leave_out_repeats(once);
+  StepResult result = step_once(once);
+  result.repeated = repeated;
+  return result;
+}
+
+StepResult Scheme::step_once(const Frame& frame) {
   StepResult result;
   result.estimate = estimate_;
   const auto refuse = [&result](const std::string& reason) {
@@ -95,11 +105,26 @@ StepResult Scheme::step(const Frame& frame) {
   if (last_time_ && frame.time <= *last_time_) return refuse("late: not newer than the frame before");
   try {
     if (!seen(frame)) return refuse("nothing was observed");
+    const std::string silence = model_->loads().silence(frame.time);
+    if (!silence.empty()) return refuse_silence(frame.time, silence);
     last_time_ = frame.time;
     return process(frame);
   } catch (const std::exception& error) {
     return refuse(error.what());
   }
+}
+
+// The estimate is of the last frame that was used, and says so when that was too long ago.
+StepResult Scheme::refuse_silence(double time, const std::string& silence) {
+  const std::string stale = stale_load(time);
+  if (!stale.empty() && estimate_.state != EstimateState::no_data) {
+    estimate_.state = EstimateState::stale;
+    estimate_.state_reason = stale;
+  }
+  StepResult result;
+  result.estimate = estimate_;
+  result.reason = silence;
+  return result;
 }
 
 std::optional<StepResult> Scheme::catch_up() {

@@ -83,6 +83,8 @@ class Scheme {
   void extend_output_to(const Frame& frame);
 
  private:
+  StepResult step_once(const Frame& frame);
+  StepResult refuse_silence(double time, const std::string& silence);
   /// Returns whether the frame holds anything to compare. Throws InputError for an observation that does not fit the model.
   bool seen(const Frame& frame) const;
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "effects/course.hpp"
@@ -24,6 +25,10 @@ class Loads {
   double first_stamp() const { return first_stamp_; }
   /// Sets the first stamp and adds the loads of a whole recording. Loads of topics that the model does not use are skipped.
   void drive(double first_stamp, const std::vector<LoadSample>& samples);
+
+  /// Returns which load is silent at a time, as a sentence; empty: none. The model holds a load that falls silent, and the
+  /// motion meanwhile says nothing of the body (see Course::silence).
+  std::string silence(double time) const;
 
   /// Returns the value of a load term at a time: measured, from a rhythm, or 1. A measured load includes `factor`, and a
   /// prescribed motion does not.

@@ -9,7 +9,6 @@
 #include "estimation/patch_model.hpp"
 #include "nodes/message_conversions.hpp"
 #include "nodes/node_keys.hpp"
-#include "nodes/repeated_observation.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
@@ -213,8 +212,7 @@ void EstimatorNode::run_again() {
 void EstimatorNode::start_epoch(const ros::Time& first_stamp) {
   const Estimate previous = estimator_->estimate();
   estimator_->reset();
-  loads_.clear();
-  left_out_.clear();
+  why_skipped_.clear();
   if (previous.state != EstimateState::no_data) {
     ROS_INFO("starting again from the prior; the run before found %s", shown(previous).c_str());
     diagnostics_.set("previous_estimate", shown(previous));
@@ -241,22 +239,11 @@ bool EstimatorNode::process(const FrameQueue::Work& work) {
       const LoadSample sample = load();
       estimator_->add_load(sample);
       services_->check().add(sample);
-      loads_.add(sample);
     });
   Frame frame;
   frame.time = work.stamp.toSec();
-  for (const auto& make : work.observations)
-    left_out([&] {
-      Observation observation = make();
-      if (is_repeated(observation, frame.observations)) return diagnostics_.count("repeated messages");
-      frame.observations.push_back(std::move(observation));
-    });
+  for (const auto& make : work.observations) left_out([&] { frame.observations.push_back(make()); });
   if (frame.observations.empty()) return false;
-  left_out_ = loads_.find(frame.time);
-  if (!left_out_.empty()) {
-    skipped(left_out_);
-    return false;
-  }
   const StepResult result = estimator_->step(frame);
   report(result);
   if (!result.used) return false;
@@ -299,9 +286,11 @@ void EstimatorNode::mark_stale() {
 Estimate EstimatorNode::stale(Estimate estimate) const {
   std::ostringstream why;
   why << "no measurement could be used for " << running_.stale_after << " s";
-  if (!left_out_.empty()) why << " (" << left_out_ << ")";
-  why << "; the state was " << to_string(estimate.state);
-  if (!estimate.state_reason.empty()) why << " (" << estimate.state_reason << ")";
+  if (!why_skipped_.empty()) why << " (" << why_skipped_ << ")";
+  if (estimate.state != EstimateState::stale) {
+    why << "; the state was " << to_string(estimate.state);
+    if (!estimate.state_reason.empty()) why << " (" << estimate.state_reason << ")";
+  }
   estimate.state = EstimateState::stale;
   estimate.state_reason = why.str();
   return estimate;
@@ -316,18 +305,18 @@ void EstimatorNode::show_state(const Estimate& estimate) {
   diagnostics_.state(good ? DiagnosticStatus::OK : level, to_string(estimate.state) + why);
 }
 
-void EstimatorNode::skipped(const std::string& reason) {
-  ROS_WARN_STREAM_THROTTLE(1.0, "frame skipped: " << reason);
-  diagnostics_.count("frames skipped");
-  diagnostics_.set("last reason for skipping", reason);
-}
-
 void EstimatorNode::report(const StepResult& result) {
   diagnostics_.set("frames dropped", std::to_string(queue_.dropped()));
   if (queue_.broken_stamps() > 0) {
     diagnostics_.set("broken stamps", std::to_string(queue_.broken_stamps()) + ", last " + queue_.last_broken_stamp());
   }
-  if (!result.used) return skipped(result.reason);
+  for (int k = 0; k < result.repeated; ++k) diagnostics_.count("repeated messages");
+  why_skipped_ = result.reason;
+  if (!result.used) {
+    ROS_WARN_STREAM_THROTTLE(1.0, "frame skipped: " << result.reason);
+    diagnostics_.count("frames skipped");
+    return diagnostics_.set("last reason for skipping", result.reason);
+  }
   diagnostics_.count("frames used");
   diagnostics_.set("estimate", shown(result.estimate));
   if (const auto error = estimator_->basis_error()) diagnostics_.set("basis error [m]", std::to_string(*error));

@@ -14,7 +14,6 @@
 
 #include "nodes/estimator_inputs.hpp"
 #include "nodes/estimator_outputs.hpp"
-#include "nodes/load_silence.hpp"
 #include "nodes/map_publisher.hpp"
 #include "nodes/model_services.hpp"
 #include "nodes/ros_settings.hpp"
@@ -35,8 +34,8 @@ namespace tissue_stiffness {
 ///
 /// Private parameters: `model` (a file) or the model's keys; `model_frame` ("model"), `load_timeout` (0.1 s),
 /// `transform_timeout` (0.1 s), `queue_size` (100 frames), `diagnosis_period` (10 s; 0: on request only),
-/// `diagnosis_window` (20 s). A frame waits for `load_timeout` for the loads and other sensors up to its stamp. It is left
-/// out when a load is silent then (LoadSilence). A check uses the frames of `diagnosis_window`.
+/// `diagnosis_window` (20 s). A frame waits for `load_timeout` for the loads and other sensors up to its stamp. A
+/// check uses the frames of `diagnosis_window`.
 class EstimatorNode {
  public:
   EstimatorNode(ros::NodeHandle node, const ros::NodeHandle& private_node);
@@ -71,7 +70,6 @@ class EstimatorNode {
   Estimate stale(Estimate estimate) const;
   void show_state(const Estimate& estimate);
   void report(const StepResult& result);
-  void skipped(const std::string& reason);
 
   const ModelSettings settings_;  ///< as it was given
   std::uint32_t queue_size_;
@@ -84,8 +82,7 @@ class EstimatorNode {
   SetupWatch watch_;
   ModelSettings running_;  ///< with added effects; used only by the worker, like the estimator
   std::unique_ptr<Estimator> estimator_;
-  LoadSilence loads_;
-  std::string left_out_;       ///< why the last frame was left out for its loads; empty: it was not
+  std::string why_skipped_;    ///< of the last frame; empty: it was used
   std::optional<Frame> last_;  ///< last frame that was used
   ros::Time last_stamp_;
   std::chrono::steady_clock::time_point arrival_;  ///< of the last frame that was used

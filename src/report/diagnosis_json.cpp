@@ -133,6 +133,7 @@ std::string diagnosis_json(const Diagnosis& d) {
                {"next_experiment", d.next_experiment},
                {"final", final},
                {"seconds", number(d.seconds)}};
+  if (!d.left_out.empty()) root["left_out"] = d.left_out;
   if (!d.failure.empty()) root["failure"] = d.failure;
   if (!d.interrupted.empty()) root["interrupted_during"] = d.interrupted;
   return root.dump(2, ' ', false, json::error_handler_t::replace) + "\n";

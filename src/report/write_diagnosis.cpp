@@ -92,7 +92,8 @@ std::string verdict_sentence(const Diagnosis& d) {
 
 std::string diagnosis_sentence(const Diagnosis& d) {
   const std::string failure = d.failure.empty() ? "" : " But " + d.failure + ".";
-  return verdict_sentence(d) + traces(d) + failure;
+  const std::string left_out = d.left_out.empty() ? "" : " Left out: " + d.left_out + ".";
+  return verdict_sentence(d) + traces(d) + failure + left_out;
 }
 
 void write_diagnosis(const Diagnosis& d, const DiagnosisTexts& texts, const Showing& showing,

@@ -66,6 +66,27 @@ TEST(Diagnose, NamesHiddenDampingAndAddsIt) {
   EXPECT_EQ(d.final_verdict, Verdict::adequate);
 }
 
+// A load that the recorder missed for a while is held by the model. What the body does meanwhile is no effect.
+TEST(Diagnose, LeavesOutFramesDuringWhichALoadWasSilent) {
+  std::vector<std::string> effects = bar("{prior: 35.0e3, factor: 3}");
+  effects.back() = "traction: {region: tip, topic: /wrench}";
+  Experiment experiment(box_settings(effects), bar_mesh(), {kTruth});
+  Recording recording;
+  for (int k = 0; k < 260; ++k) {
+    const double t = 0.005 * k;
+    LoadSample sample{"/wrench", t, Eigen::VectorXd::Zero(6)};
+    sample.value[2] = -6e-3 * (1.0 - std::cos(9.0 * t));
+    experiment.add_load(sample);
+    if (t < 0.52 || t > 0.83) recording.loads.push_back(sample);
+  }
+  recording.frames = see_all(experiment, experiment.film(0.0, 0.02, 60), kNoise, 1);
+  recording.frames.back().observations.push_back(recording.frames.back().observations.front());
+  const Diagnosis d = diagnose(box_settings(effects), bar_mesh(), recording, {});
+  EXPECT_EQ(d.left_out, "14 of 60 frames (no load on /wrench for 0.305 s, where one comes every 0.005 s)");
+  EXPECT_EQ(d.verdict, Verdict::adequate);
+  EXPECT_NEAR(d.steps.front().parameters.at("elasticity.young_modulus") / kTruth, 1.0, 0.02);
+}
+
 // A larger model that finds another minimum shows the given one where to start: nothing is missing there.
 TEST(Diagnose, StartsTheGivenModelWhereARefitEnds) {
   const Recording recording = film({}, 1);

@@ -55,6 +55,65 @@ TEST(Course, ForgetsWhatItWasFed) {
   EXPECT_EQ(course.value(1.0, 0), 0.0);
 }
 
+class CourseSilence : public testing::Test {
+ protected:
+  static constexpr double kInterval = 0.005;  // [s]
+  Course course{LoadInput::Kind::pressure};
+
+  void add(double time) { course.add(time, one(1.0)); }
+  void add(int from, int to) {
+    for (int k = from; k < to; ++k) add(k * kInterval);
+  }
+  bool silent(double time) { return course.silence(time).has_value(); }
+};
+
+TEST_F(CourseSilence, IsFiveIntervalsLong) {
+  add(0, 100);
+  EXPECT_FALSE(silent(0.495 + 0.024));
+  EXPECT_TRUE(silent(0.495 + 0.026));
+  EXPECT_NEAR(course.silence(0.795)->since, 0.3, 1e-12);
+  EXPECT_NEAR(course.silence(0.795)->interval, kInterval, 1e-12);
+}
+
+TEST_F(CourseSilence, EndsWithTheNextSampleAndIsKnownAfterwards) {
+  add(0, 100);
+  add(200, 500);  // these came before the frames, as after a stall
+  EXPECT_FALSE(silent(0.4));
+  EXPECT_TRUE(silent(0.7));
+  EXPECT_TRUE(silent(0.999));
+  EXPECT_FALSE(silent(1.001));
+  EXPECT_FALSE(silent(2.4));
+}
+
+// A stamp that is ahead, or a sample that comes late, makes neither a silence nor a longer interval.
+TEST_F(CourseSilence, IsNotMadeByBrokenStamps) {
+  add(0, 50);
+  add(0.9);
+  EXPECT_FALSE(silent(0.25));
+  add(51, 100);
+  add(50 * kInterval);
+  EXPECT_FALSE(silent(0.255));
+  EXPECT_FALSE(silent(0.49));
+  EXPECT_TRUE(silent(0.6));
+}
+
+TEST_F(CourseSilence, IsNotKnownOfALoadThatHasHardlyBegun) {
+  EXPECT_FALSE(silent(1.0));
+  add(0, 3);
+  EXPECT_FALSE(silent(1.0));
+  add(3, 5);
+  EXPECT_TRUE(silent(1.0));
+  EXPECT_FALSE(silent(-1.0));
+  course.clear();
+  EXPECT_FALSE(silent(1.0));
+}
+
+TEST_F(CourseSilence, ASlowLoadMayPauseForLonger) {
+  for (int k = 0; k < 10; ++k) add(double(k));
+  EXPECT_FALSE(silent(13.9));
+  EXPECT_TRUE(silent(14.1));
+}
+
 class CsvCourse : public testing::Test {
  protected:
   ~CsvCourse() override { std::remove(file_.c_str()); }

@@ -48,6 +48,39 @@ TEST(Loads, AreAskedForByTopic) {
   EXPECT_EQ(estimator.load_inputs()[0].kind, LoadInput::Kind::wrench);
 }
 
+// The wrench is not known from 0.2 to 0.3 s: the model would hold it, and take the motion for the body's.
+TEST(Loads, ThatAreSilentLeaveOutTheFrames) {
+  const std::vector<Frame> frames = recording();
+  Estimator estimator(box_settings(kPushed), bar_mesh());
+  estimator.set_first_stamp(0.0);
+  for (const LoadSample& sample : wrenches()) {
+    if (sample.time < 0.2 || sample.time > 0.3) estimator.add_load(sample);
+  }
+  int left_out = 0;
+  for (const Frame& frame : frames) {
+    const StepResult result = estimator.step(frame);
+    EXPECT_EQ(result.used, frame.time < 0.196 + 5 * 0.007 || frame.time > 0.301) << frame.time << " s: " << result.reason;
+    if (result.used) continue;
+    ++left_out;
+    EXPECT_EQ(result.reason.find("no load on /wrench for 0."), 0U) << result.reason;
+    EXPECT_NE(result.estimate.state, EstimateState::stale);
+  }
+  EXPECT_EQ(left_out, 4);
+  EXPECT_TRUE(holds(estimator.estimate().parameters.front(), kTruth));
+}
+
+TEST(Observations, ThatComeTwiceCountOnce) {
+  const std::vector<Frame> frames = recording();
+  Estimator estimator(box_settings(kPushed), bar_mesh());
+  estimator.set_first_stamp(0.0);
+  for (const LoadSample& sample : wrenches()) estimator.add_load(sample);
+  for (Frame frame : frames) {
+    frame.observations.push_back(frame.observations.front());
+    EXPECT_EQ(estimator.step(frame).repeated, 1);
+  }
+  EXPECT_TRUE(bytes(estimator) == in_order(frames));
+}
+
 TEST(Loads, OutOfOrderGiveTheSameResult) {
   const std::vector<Frame> frames = recording();
   std::vector<LoadSample> samples = wrenches();

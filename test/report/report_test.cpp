@@ -284,6 +284,9 @@ TEST(DiagnosisSentence, NamesWhatIsMissingAndWhatFitsAsWell) {
   d.failure = "rigid_drift cannot be added: tetrahedron 3 turned inside out";
   EXPECT_NE(diagnosis_sentence(d).find("two modes. But rigid_drift cannot be added: tetrahedron 3 turned inside out."),
             std::string::npos);
+  d.left_out = "12 of 60 frames (no load on /wrench for 0.3 s)";
+  EXPECT_NE(diagnosis_sentence(d).find(" Left out: 12 of 60 frames (no load on /wrench for 0.3 s)."), std::string::npos);
+  EXPECT_NE(diagnosis_json(d).find("\"left_out\": \"12 of 60 frames"), std::string::npos);
 }
 
 TEST(DiagnosisHtml, TellsTheStoryInOrder) {

@@ -24,6 +24,7 @@ struct ReuseSources;
 struct StepResult {
   bool used = false;  ///< false: the frame was skipped for `reason`, and the estimate is unchanged
   std::string reason;
+  int repeated = 0;  ///< number of observations that were left out because they equal another one of the frame
   Estimate estimate;
   Misfit misfit;
   std::map<std::string, double> seconds;  ///< wall time of each stage [s]: predict, observe, update, reprocess, ...
@@ -61,8 +62,8 @@ class Estimator {
   /// outside they are held.
   void add_load(const LoadSample& sample);
 
-  /// Predicts, observes and updates. A frame that is late, empty or makes the model diverge is skipped with the reason. It
-  /// never throws on data.
+  /// Predicts, observes and updates. A frame is skipped with the reason when it is late, empty or makes the model diverge,
+  /// and when a load is silent: its last sample is older than five of its intervals. It never throws on data.
   StepResult step(const Frame& frame);
 
   /// Returns what a reprocessing that ended after the last frame makes of that frame; empty when there is nothing new. A

@@ -125,7 +125,8 @@ struct Diagnosis {
   /// Effects that may act in addition to the last model without being missed. The test does not require them, but their
   /// evidence is in their favour.
   std::vector<RivalExplanation> traces;
-  std::string failure;  ///< an effect that could not be added, or what is left could not be judged, and why; empty: none
+  std::string left_out;  ///< how many frames were left out because a load was silent, and which; empty: none
+  std::string failure;   ///< an effect that could not be added, or what is left could not be judged, and why; empty: none
   std::string interrupted;  ///< the step during which the work was interrupted; empty: the work was finished
   double seconds = 0.0;
   /// Estimate of the last step's model, mixed over rivals and traces. It is an estimator's, or the fit's own with state

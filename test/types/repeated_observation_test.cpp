@@ -1,6 +1,8 @@
-#include "nodes/repeated_observation.hpp"
+#include "types/repeated_observation.hpp"
 
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 namespace tissue_stiffness {
 namespace {
@@ -22,11 +24,32 @@ Observation outline(double u) {
   return out;
 }
 
+bool is_repeated(const Observation& observation, std::vector<Observation> others) {
+  others.push_back(observation);
+  Frame frame{1.0, others};
+  const bool repeats = holds_repeats(frame);
+  EXPECT_EQ(leave_out_repeats(frame), repeats ? 1 : 0);
+  EXPECT_EQ(frame.observations.size(), others.size() - (repeats ? 1 : 0));
+  return repeats;
+}
+
 TEST(RepeatedObservation, IsEqualInAllThatWasMeasured) {
   EXPECT_FALSE(is_repeated(cloud(), {}));
   EXPECT_TRUE(is_repeated(cloud(), {outline(1.0), cloud()}));
   EXPECT_TRUE(is_repeated(outline(1.0), {outline(2.0), outline(1.0)}));
   EXPECT_FALSE(is_repeated(outline(1.0), {outline(2.0), cloud()}));
+  Observation holed = cloud();
+  holed.points(1, 0) = std::nan("");  // a point that the tracker has lost
+  EXPECT_TRUE(is_repeated(holed, {holed}));
+  EXPECT_FALSE(is_repeated(cloud(), {holed}));
+}
+
+TEST(RepeatedObservation, TheFirstOfThemStays) {
+  Frame frame{1.0, {cloud(), outline(1.0), cloud(), cloud(), outline(2.0), outline(1.0)}};
+  EXPECT_EQ(leave_out_repeats(frame), 3);
+  ASSERT_EQ(frame.observations.size(), 3U);
+  EXPECT_EQ(frame.observations[1].contour->points(0, 0), 1.0);
+  EXPECT_EQ(frame.observations[2].contour->points(0, 0), 2.0);
 }
 
 // A tracker may send the points of one instant in several messages, and two sensors may agree.
