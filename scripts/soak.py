@@ -146,7 +146,7 @@ def start_injector(arguments, rate):
 
 def start_nodes(bag, rate, log):
     return subprocess.Popen(['roslaunch', '-p', os.environ['ROS_MASTER_URI'].rsplit(':', 1)[1], 'tissue_stiffness', 'replay.launch',
-                             'options:=--loop --prefix=/sensors', 'rate:=%g' % rate, 'model:=' + fault_runs.MODEL, 'bag:=' + bag,
+                             'options:=--loop --prefix=/sensors', 'rate:=%g' % rate, 'model:=' + fault_runs.MODEL, 'allow_outside:=true', 'bag:=' + bag,
                              'load_timeout:=0.2'], stdout=log, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL)
 
 

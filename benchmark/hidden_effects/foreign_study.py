@@ -57,7 +57,7 @@ def draw(task):
     try:
         truth = foreign_draws.write_draw(drawn, truth_folder(arguments, drawn['truth']), folder)
         command = [arguments.diagnose, os.path.join(folder, 'model.yaml'), os.path.join(folder, 'recording.bag'),
-                   '--auto', '--quiet', '--output', folder]
+                   '--auto', '--quiet', '--allow-outside', '--output', folder]
         for effect in ignored(drawn):
             command += ['--ignore', effect]
         call(command)

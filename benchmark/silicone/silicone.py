@@ -62,7 +62,7 @@ class Beam:
         path = os.path.join(self.folder, name + '.yaml')
         with open(path, 'w') as file:
             yaml.safe_dump(model, file)
-        tool(self.root, 'estimate', path, case + '/recording.bag', '--output', self.folder)
+        tool(self.root, 'estimate', path, case + '/recording.bag', '--output', self.folder, '--allow-outside')
         return read(self.folder, 'results.json')
 
 

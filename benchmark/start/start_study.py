@@ -65,7 +65,7 @@ def estimated(args, model, bag, folder, name):
     with open(path, 'w') as file:
         yaml.safe_dump(model, file, sort_keys=False)
     output = os.path.join(folder, name)
-    run = subprocess.run([args.estimate, path, bag, '--output', output], capture_output=True, text=True, check=False)
+    run = subprocess.run([args.estimate, path, bag, '--output', output, '--allow-outside'], capture_output=True, text=True, check=False)
     results = os.path.join(output, 'results.json')
     if not os.path.exists(results):
         return None, run.stderr.strip()[-200:]
@@ -76,7 +76,7 @@ def estimated(args, model, bag, folder, name):
 def diagnosed(args, bag, folder, name):
     """The verdict on the right model, whose recording hides nothing."""
     output = os.path.join(folder, 'diagnosis')
-    subprocess.run([os.path.join(os.path.dirname(args.estimate), 'diagnose'), os.path.join(folder, name + '.yaml'), bag, '--output',
+    subprocess.run([os.path.join(os.path.dirname(args.estimate), 'diagnose'), os.path.join(folder, name + '.yaml'), bag, '--allow-outside', '--output',
                     output], capture_output=True, check=False)
     with open(os.path.join(output, 'diagnosis.json')) as file:
         return json.load(file)['verdict']

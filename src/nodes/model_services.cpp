@@ -21,16 +21,6 @@ void require_known_topics(const ModelSettings& before, const ModelSettings& afte
   }
 }
 
-// An error in a file is shown with the line, so a caller could read any file.
-void require_files_inside(const Value& value, const std::string& folder) {
-  if (value.type() != Value::Type::map) return;
-  for (const std::string& key : value.keys()) {
-    const Value& entry = value.at(key);
-    if (key == "file") require_inside(entry.as_text(), folder, entry.path());
-    require_files_inside(entry, folder);
-  }
-}
-
 }  // namespace
 
 ModelServices::ModelServices(const ros::NodeHandle& node, std::string directory, std::string model_frame,

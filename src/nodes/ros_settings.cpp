@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "settings/inside_folder.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
@@ -66,6 +67,7 @@ NodeSettings read_node_settings(const ros::NodeHandle& private_node, const std::
   const std::string where = "parameters of " + private_node.getNamespace();
   XmlRpcValue parameters;
   Entries model, own;
+  bool allow_outside = false;
   std::string file, directory = std::filesystem::current_path().string();
   if (private_node.getParam("", parameters) && parameters.getType() == XmlRpcValue::TypeStruct) {
     for (auto& [key, parameter] : parameters) {
@@ -74,6 +76,8 @@ NodeSettings read_node_settings(const ros::NodeHandle& private_node, const std::
         file = value.as_text();
       } else if (key == "directory") {
         directory = value.as_text();
+      } else if (key == "allow_outside") {
+        allow_outside = value.as_boolean();
       } else if (contains(own_keys, key)) {
         own.emplace_back(key, std::move(value));
       } else {
@@ -87,6 +91,7 @@ NodeSettings read_node_settings(const ros::NodeHandle& private_node, const std::
     throw InputError(model.front().second.path(), model.front().second.shown(),
                      "either `model` (here " + file + ") or the model's keys, not both");
   }
+  if (!allow_outside) require_files_inside(file, ", or the parameter allow_outside");
   return {load_yaml(file), std::filesystem::absolute(file).parent_path().string(), std::move(own_map)};
 }
 

@@ -9,17 +9,19 @@
 namespace tissue_stiffness {
 namespace {
 
-// Makes the paths of all `file` keys absolute, at any depth: that of the mesh, those of courses.
-void make_absolute(YAML::Node node, const std::string& directory) {
+using Place = std::function<std::string(const std::string&)>;
+
+// Places the files of all `file` keys, at any depth: that of the mesh, those of courses.
+void place_files(YAML::Node node, const std::string& directory, const Place& place) {
   if (node.IsSequence()) {
-    for (YAML::Node item : node) make_absolute(item, directory);
+    for (YAML::Node item : node) place_files(item, directory, place);
   }
   if (!node.IsMap()) return;
   for (auto entry : node) {
     if (entry.first.Scalar() == "file" && entry.second.IsScalar()) {
-      entry.second = (std::filesystem::absolute(directory) / entry.second.Scalar()).lexically_normal().string();
+      entry.second = place((std::filesystem::absolute(directory) / entry.second.Scalar()).lexically_normal().string());
     } else {
-      make_absolute(entry.second, directory);
+      place_files(entry.second, directory, place);
     }
   }
 }
@@ -36,10 +38,11 @@ ModelSettings extend_model(ModelSettings model, const std::vector<std::string>& 
   return model;
 }
 
-std::string extend_model(const std::string& text, const std::vector<std::string>& entries, const std::string& directory) {
+std::string extend_model(const std::string& text, const std::vector<std::string>& entries, const std::string& directory,
+                         const Place& place) {
   try {
     YAML::Node model = YAML::Load(text);
-    make_absolute(model, directory);
+    place_files(model, directory, place);
     for (const std::string& entry : entries) {
       YAML::Node effect = YAML::Load(entry);
       effect.begin()->second.SetStyle(YAML::EmitterStyle::Flow);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,11 @@ namespace tissue_stiffness {
 ModelSettings extend_model(ModelSettings model, const std::vector<EffectEntry>& entries);
 ModelSettings extend_model(ModelSettings model, const std::vector<std::string>& entries);
 
-/// Returns the text of a model file with `entries` appended to its effects. Paths relative to `directory` become absolute,
-/// so that the text can be saved anywhere. Throws InputError if the text is not a model.
-std::string extend_model(const std::string& text, const std::vector<std::string>& entries, const std::string& directory);
+/// Returns the text of a model file with `entries` appended to its effects. `place` returns what the text shall call a file
+/// that lies at an absolute path, so that the text can be saved elsewhere; it may also bring the file there. Throws
+/// InputError if the text is not a model.
+std::string extend_model(
+    const std::string& text, const std::vector<std::string>& entries, const std::string& directory,
+    const std::function<std::string(const std::string&)>& place = [](const std::string& path) { return path; });
 
 }  // namespace tissue_stiffness

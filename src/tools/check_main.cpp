@@ -1,20 +1,22 @@
 #include <string>
 
 #include "tools/check_setup.hpp"
+#include "tools/model_option.hpp"
 #include "tools/run_tool.hpp"
 
 int main(int argc, char** argv) {
   using namespace tissue_stiffness;
   CLI::App app("Says what is wrong with a model file, and with a recording for it, before anything is estimated.", "check");
-  std::string model, recording;
+  ModelOption model;
+  std::string recording;
   bool quiet = false;
-  app.add_option("MODEL", model, "model file (YAML)")->required();
+  model.add_to(app);
   app.add_option("RECORDING", recording, "rosbag; without it the model file and the mesh are checked");
   app.add_flag("--quiet", quiet, "nothing where nothing is wrong");
   app.footer("Example: check model.yaml recording.bag");
   std::size_t found = 0;
   const int code = run_tool(app, argc, argv, [&] {
-    const SetupFindings findings = check_setup(load_model(model), recording);
+    const SetupFindings findings = check_setup(model.load(), recording);
     for (const SetupFinding& finding : findings) std::cout << finding.sentence << "\n";
     if (findings.empty() && !quiet) std::cout << "nothing found\n";
     found = findings.size();

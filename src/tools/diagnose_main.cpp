@@ -16,6 +16,8 @@
 #include "tissue_stiffness/diagnosis/diagnose.hpp"
 #include "tissue_stiffness/types/error.hpp"
 #include "tools/check_setup.hpp"
+#include "tools/gathered_files.hpp"
+#include "tools/model_option.hpp"
 #include "tools/print_diagnosis.hpp"
 #include "tools/progress.hpp"
 #include "tools/recording_reader.hpp"
@@ -67,12 +69,13 @@ void run_once_more(Diagnosis& diagnosis, FittedModel& given, FittedModel& last, 
 int main(int argc, char** argv) {
   StopRequest& stop = stop_on_signals();
   CLI::App app("Compares a model with a recording and says which physical effect it misses.", "diagnose");
+  ModelOption model;
   DiagnosisTexts texts;
   DiagnosisOptions options;
   std::string output;
   double time_limit = 0.0;
   bool quiet = false, json = false;
-  app.add_option("MODEL", texts.model, "model file (YAML)")->required();
+  model.add_to(app);
   app.add_option("RECORDING", texts.recording, "rosbag")->required();
   app.add_option("--output", output, "folder for diagnosis.json, model_next.yaml and report.html")->required();
   app.add_option("--add", options.add, "add this effect and fit again (may be given several times)")->take_all();
@@ -90,7 +93,8 @@ int main(int argc, char** argv) {
     options.so_far = [&](const Diagnosis& known) { write_text(output + "/diagnosis.json", diagnosis_json(known)); };
     make_folder(output);
     options.so_far(diagnosis);
-    const ModelSettings settings = load_model(texts.model);
+    const ModelSettings settings = model.load();
+    texts.model = model.file;
     StepProgress progress(std::cerr, Progress::style_of_stderr(quiet || json), "diagnose");
     options.progress = [&](const std::string& what, std::size_t done, std::size_t total) {
       progress.show(what, done, total);
@@ -111,7 +115,7 @@ int main(int argc, char** argv) {
     }
     for (int i = 0; i < argc; ++i) texts.command_line += (i > 0 ? " " : "") + std::string(i > 0 ? argv[i] : "diagnose");
     texts.model_text = read_text(texts.model);
-    texts.next_model_text = extend_model(texts.model_text, diagnosis.entries, settings.directory);
+    texts.next_model_text = extend_model(texts.model_text, diagnosis.entries, settings.directory, GatheredFiles(output));
     texts.versions = versions();
     write_diagnosis(diagnosis, texts, showing, output);
     progress.finish();

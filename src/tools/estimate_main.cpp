@@ -4,6 +4,7 @@
 #include "tissue_stiffness/types/error.hpp"
 #include "tools/check_setup.hpp"
 #include "tools/estimate_recording.hpp"
+#include "tools/model_option.hpp"
 #include "tools/progress.hpp"
 #include "tools/run_tool.hpp"
 #include "tools/stop_on_signals.hpp"
@@ -22,11 +23,12 @@ int main(int argc, char** argv) {
   using namespace tissue_stiffness;
   StopRequest& stop = stop_on_signals();
   CLI::App app("Estimates the unknown parameters of a model, Young's modulus first, from a recording.", "estimate");
-  std::string model, recording, output;
+  ModelOption model;
+  std::string recording, output;
   std::size_t frames = 0;
   double time_limit = 0.0;
   bool quiet = false, json = false;
-  app.add_option("MODEL", model, "model file (YAML)")->required();
+  model.add_to(app);
   app.add_option("RECORDING", recording, "rosbag")->required();
   app.add_option("--output", output, "folder for results.json, estimates.csv, report.html and map.vtk")->required();
   app.add_option("--frames", frames, "stop after so many frames (default: all)")->check(CLI::PositiveNumber);
@@ -44,9 +46,10 @@ int main(int argc, char** argv) {
     Progress progress(std::cerr, Progress::style_of_stderr(quiet || json), "estimate");
     const auto show = [&](std::size_t done, std::size_t total) { progress.show(done, total); };
     try {
+      const ModelSettings settings = model.load();
       warn_of_setup(
-          "estimate", load_model(model), recording, [&] { stop.check(); }, std::cerr);
-      run = estimate_recording(model, recording, frames, show, stop);
+          "estimate", settings, recording, [&] { stop.check(); }, std::cerr);
+      run = estimate_recording(settings, recording, frames, show, stop);
     } catch (const Interrupted&) {
     }
     progress.finish();

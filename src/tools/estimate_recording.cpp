@@ -178,9 +178,8 @@ class Run {
 
 }  // namespace
 
-EstimationRun estimate_recording(const std::string& model_file, const std::string& recording_file, std::size_t max_frames,
+EstimationRun estimate_recording(const ModelSettings& settings, const std::string& recording_file, std::size_t max_frames,
                                  const ProgressCallback& progress, const StopRequest& stop) {
-  const ModelSettings settings = load_model(model_file);
   RecordingReader recording(recording_file, settings, [&] { stop.check(); });
   const std::size_t all = recording.reader().frame_count();
   const std::size_t total = max_frames > 0 ? std::min(max_frames, all) : all;
@@ -204,9 +203,9 @@ EstimationRun estimate_recording(const std::string& model_file, const std::strin
   EstimationRun result = run.finish();
   result.seconds = seconds;
   if (!interrupted.empty()) result.results.interrupted = interrupted;
-  result.results.model = model_file;
+  result.results.model = settings.name;
   result.results.recording = recording_file;
-  result.results.model_text = read_text(model_file);
+  result.results.model_text = read_text(settings.name);
   result.results.versions = versions();
   return result;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "report/results.hpp"
+#include "tissue_stiffness/settings/model_settings.hpp"
 #include "tools/paint.hpp"
 #include "types/replay.hpp"
 #include "types/stop_request.hpp"
@@ -30,11 +31,12 @@ struct EstimationRun {
 using ProgressCallback = std::function<void(std::size_t done, std::size_t total)>;
 
 /// Runs the estimator over a recording, at most `max_frames` frames of it (0: all). Only wall times are not deterministic.
-/// Throws InputError for a wrong model or recording, and when no frame could be used.
+/// The model is that of the file `settings.name`. Throws InputError for a wrong model or recording, and when no frame could
+/// be used.
 ///
 /// When it is asked to stop, it ends after the present frame, without the free run and the map. The results are then the
 /// last frame's and are marked as interrupted. Throws Interrupted if the first frame could not be read before.
-EstimationRun estimate_recording(const std::string& model_file, const std::string& recording, std::size_t max_frames,
+EstimationRun estimate_recording(const ModelSettings& settings, const std::string& recording, std::size_t max_frames,
                                  const ProgressCallback& progress, const StopRequest& stop);
 
 /// Prints the final table of `estimate`: parameters with interval and identifiability, error against noise, speed by stage.

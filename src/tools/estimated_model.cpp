@@ -114,12 +114,14 @@ std::vector<std::string> doubts(const SavedResults& results) {
 
 }  // namespace
 
-EstimatedModel load_estimated_model(const std::string& results, const std::string& model, const std::string& recording) {
+EstimatedModel load_estimated_model(const std::string& results, const ModelOption& given, const std::string& recording) {
   EstimatedModel out;
   out.results = read_results(results);
-  const std::string file = existing(model, out.results.model, out.results.file, "model");
+  const std::string file = existing(given.file, out.results.model, out.results.file, "model");
   const fs::path folder = fs::absolute(file).parent_path();
-  const ModelSettings settings = read_model(parse_yaml(out.results.model_text, file), folder.string());
+  const Value text = parse_yaml(out.results.model_text, file);
+  if (!given.allow_outside) require_files_inside(text, folder.string(), ", or --allow-outside");
+  const ModelSettings settings = read_model(text, folder.string());
   Drive drive = read_drive(settings, out.results, recording);
   if (drive.mesh.node_count() != out.results.nodes || drive.mesh.tet_count() != out.results.tetrahedra) {
     throw InputError(file + ": mesh", std::to_string(drive.mesh.node_count()) + " nodes",

@@ -7,6 +7,7 @@
 
 #include "forward/model.hpp"
 #include "report/read_results.hpp"
+#include "tools/model_option.hpp"
 
 namespace tissue_stiffness {
 
@@ -24,7 +25,7 @@ struct EstimatedModel {
 /// Rebuilds the model from a results.json or its folder. `model` and `recording` say where these files are now; empty:
 /// where the results say. The recording is read for measured loads, and for a mesh that comes from an outline. Throws
 /// InputError for what is missing or does not fit.
-EstimatedModel load_estimated_model(const std::string& results, const std::string& model = "",
+EstimatedModel load_estimated_model(const std::string& results, const ModelOption& model = {},
                                     const std::string& recording = "");
 
 }  // namespace tissue_stiffness

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "tools/model_option.hpp"
 #include "tools/progress.hpp"
 #include "tools/run_tool.hpp"
 #include "tools/simulate_scene.hpp"
@@ -9,9 +10,10 @@
 int main(int argc, char** argv) {
   using namespace tissue_stiffness;
   CLI::App app("Makes a recording of a body whose properties are known: a model file with `simulation`.", "simulate");
-  std::string file, output, truth;
+  ModelOption option;
+  std::string output, truth;
   bool quiet = false, json = false, force = false;
-  app.add_option("SCENE", file, "scene file (YAML)")->required();
+  option.add_to(app, "SCENE", "scene file (YAML)");
   app.add_option("--output", output, "rosbag to write")->required();
   app.add_option("--truth", truth, "file for the scene's numbers (YAML)");
   app.add_flag("--force", force, "simulate it however long that takes");
@@ -19,7 +21,8 @@ int main(int argc, char** argv) {
   app.add_flag("--json", json, "print the summary as JSON");
   app.footer("Example: simulate scene.yaml --output recording.bag --truth truth.yaml");
   return run_tool(app, argc, argv, [&] {
-    const Scene scene = load_scene(file);
+    option.check();
+    const Scene scene = load_scene(option.file);
     if (!force) require_moderate(scene);
     Progress progress(std::cerr, Progress::style_of_stderr(quiet || json), "simulate");
     const SimulationSummary summary =

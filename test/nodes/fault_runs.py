@@ -34,7 +34,7 @@ def write_recording(seconds, bag):
         with open(file, 'w') as stream:
             yaml.safe_dump(scene(seconds), stream)
         simulate = roslib.packages.find_node('tissue_stiffness', 'simulate')[0]
-        subprocess.run([simulate, file, '--output', bag], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run([simulate, file, '--allow-outside', '--output', bag], check=True, stdout=subprocess.DEVNULL)
 
 
 def broken(estimate):

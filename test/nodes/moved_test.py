@@ -91,7 +91,7 @@ class MovedTest(unittest.TestCase):
             scene, plain, arm = (os.path.join(folder, name) for name in ('scene.yaml', 'plain.bag', 'arm.bag'))
             write_scene(scene)
             simulate = roslib.packages.find_node('tissue_stiffness', 'simulate')[0]
-            subprocess.run([simulate, scene, '--output', plain], check=True, stdout=subprocess.DEVNULL)
+            subprocess.run([simulate, scene, '--allow-outside', '--output', plain], check=True, stdout=subprocess.DEVNULL)
             turned(plain, arm)
             player = roslib.packages.find_node('rosbag', 'play')[0]
             subprocess.run([player, '--clock', '--wait-for-subscribers', '--quiet', '--rate=0.5', arm], timeout=80,

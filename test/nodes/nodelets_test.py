@@ -31,7 +31,7 @@ class Replay:
         self.estimates, self.enough, self.listeners = [], threading.Event(), set()
         subscriber = rospy.Subscriber('/stiffness', StiffnessEstimate, self.on_estimate, queue_size=100)
         launch = subprocess.Popen(
-            ['roslaunch', 'tissue_stiffness', 'replay.launch', 'model:=' + MODEL, 'bag:=' + bag, 'rate:=0.5',
+            ['roslaunch', 'tissue_stiffness', 'replay.launch', 'model:=' + MODEL, 'allow_outside:=true', 'bag:=' + bag, 'rate:=0.5',
              'diagnosis_period:=0', 'nodelets:=' + ('true' if nodelets else 'false')],
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
         try:
@@ -59,7 +59,7 @@ class NodeletsTest(unittest.TestCase):
         cls.folder = tempfile.TemporaryDirectory()
         bag = os.path.join(cls.folder.name, 'camera.bag')
         simulate = roslib.packages.find_node('tissue_stiffness', 'simulate')[0]
-        subprocess.run([simulate, SCENE, '--output', bag], check=True, timeout=120, stdout=subprocess.PIPE)
+        subprocess.run([simulate, SCENE, '--allow-outside', '--output', bag], check=True, timeout=120, stdout=subprocess.PIPE)
         cls.nodes, cls.nodelets = Replay(bag, False), Replay(bag, True)
 
     @classmethod

@@ -26,5 +26,28 @@ TEST(InsideFolder, ResolvesWhatIsInsideAndRefusesTheRest) {
   fs::remove_all(root);
 }
 
+TEST(InsideFolder, IsAskedOfEveryFileOfAModel) {
+  const auto refused = [](const std::string& text) {
+    try {
+      require_files_inside(parse_yaml(text, "model.yaml"), "/data/case", ", or --allow-outside");
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refused("mesh: {file: mesh.vtk}\neffects:\n- traction: {course: {file: /data/case/push.csv}}\n"), "");
+  EXPECT_EQ(refused("mesh: {file: ../mesh.vtk}\n"),
+            "model.yaml:1: mesh.file: found ../mesh.vtk; allowed: a file in the folder /data/case, or --allow-outside");
+  EXPECT_NE(refused("effects:\n- traction: {course: {file: /etc/passwd}}\n").find("effects[0].traction.course.file"),
+            std::string::npos);
+  EXPECT_NE(refused("simulation: {loads: {/p: {terms: [{csv: {file: ../a.csv}}]}}}\n").find("../a.csv"), std::string::npos);
+}
+
+TEST(InsideFolder, LeavesUnknownKeysUnread) {
+  const Value model = parse_yaml("inertia: {file: a.csv}\n", "model.yaml");
+  require_files_inside(model, "/data");
+  EXPECT_THROW(model.require_all_read(), InputError);
+}
+
 }  // namespace
 }  // namespace tissue_stiffness

@@ -136,6 +136,36 @@ TEST_F(Executables, GoFromSceneToResults) {
   const Outcome estimated = call(estimate + path("out"));
   ASSERT_EQ(estimated.code, 0) << estimated.text;
   EXPECT_NE(estimated.text.find("elasticity.young_modulus"), std::string::npos) << estimated.text;
+TEST_F(Executables, ReadNoFileOutsideTheModelsFolderUnlessAllowed) {
+  std::filesystem::create_directory(path("models"));
+  const std::string scene =
+      write_model("models/scene.yaml", "4e5", vertices(), "simulation: {duration: 0.2, rate: 60, step: 0.001}\n");
+  const std::string model = write_model("models/model.yaml", "{prior: 8e5, factor: 3}", vertices());
+  for (const std::string& file : {scene, model}) {
+    std::string text = read("models/" + std::filesystem::path(file).filename().string());
+    text.replace(text.find("bar.vtk"), 7, "../bar.vtk");
+    write("models/" + std::filesystem::path(file).filename().string(), text);
+  }
+  const std::string simulate = "simulate " + scene + " --output " + path("r.bag"), out = " --output " + path("out");
+  EXPECT_TRUE(refuses(simulate, {"scene.yaml", "mesh.file", "../bar.vtk", "models", "--allow-outside"}));
+  ASSERT_EQ(call(simulate + " --allow-outside").code, 0);
+  for (const std::string tool : {"estimate ", "diagnose "}) {
+    EXPECT_TRUE(refuses(tool + model + " " + path("r.bag") + out, {"model.yaml", "../bar.vtk", "--allow-outside"}));
+  }
+  EXPECT_TRUE(refuses("check " + model, {"../bar.vtk", "--allow-outside"}));
+  EXPECT_EQ(call("estimate " + model + " " + path("r.bag") + out + " --quiet --allow-outside").code, 0);
+  EXPECT_TRUE(refuses("export " + path("out") + " --to vtu", {"../bar.vtk", "--allow-outside"}));
+  EXPECT_EQ(call("export " + path("out") + " --to vtu --quiet --allow-outside").text, "");
+}
+
+TEST_F(Executables, WriteAModelThatHasItsFilesBesideIt) {
+  film_hidden_damping();
+  ASSERT_EQ(begin().wait(), 0);
+  EXPECT_NE(read("out/model_next.yaml").find("model_files/bar.vtk"), std::string::npos) << read("out/model_next.yaml");
+  std::filesystem::rename(path("out"), path("elsewhere"));
+  EXPECT_EQ(call("check " + path("elsewhere/model_next.yaml")).text, "nothing found\n");
+}
+
   ASSERT_EQ(call(estimate + path("again") + " --quiet").text, "");
   for (const std::string file : {"out/results.json", "out/estimates.csv", "out/report.html"})
     EXPECT_NE(read(file), "") << file;

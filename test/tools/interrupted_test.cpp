@@ -80,7 +80,7 @@ class InterruptedEstimate : public Workbench {
     StopRequest stop;
     if (frames == 0) stop.stop();
     return estimate_recording(
-        model_, path("recording.bag"), 0,
+        load_model(model_), path("recording.bag"), 0,
         [&](std::size_t done, std::size_t) {
           if (done == frames) stop.stop();
         },

@@ -28,7 +28,7 @@ class RoundTrip : public Workbench {
     const std::string scene = write_model("scene.yaml", std::to_string(modulus), observations, simulation);
     simulate_scene(load_scene(scene), path("recording.bag"), nothing);
     model_ = write_model("model.yaml", "{prior: " + std::to_string(2.0 * modulus) + ", factor: 3}", observations);
-    return estimate_recording(model_, path("recording.bag"), 0, nothing, {});
+    return estimate_recording(load_model(model_), path("recording.bag"), 0, nothing, {});
   }
 
   /// Copies a recording of 3000 points a frame. It leaves out the far side, and adds a table that the tip nearly
@@ -140,7 +140,7 @@ TEST_F(RoundTrip, FindsTheModulusFromADepthCamera) {
   clutter(path("clean.bag"), path("recording.bag"));
   const std::string model =
       write_model("model.yaml", "{prior: 8e5, factor: 3}", points(", depth_camera: {margin: 0.03}"), "inputs: exact\n");
-  const EstimationRun run = estimate_recording(model, path("recording.bag"), 0, nothing, {});
+  const EstimationRun run = estimate_recording(load_model(model), path("recording.bag"), 0, nothing, {});
   EXPECT_EQ(run.results.used(), 24);
   EXPECT_NEAR(run.results.parameters.at(0).mean, 4e5, 0.03 * 4e5);
 }
@@ -160,8 +160,8 @@ TEST_F(RoundTrip, FindsTheModulusFromAPoseAndAForce) {
             "   terms: [{direction: [0.8, 0, 0.6], raised_cosine: {amplitude: 0.004, frequency: 1}},\n"
             "           {axis: [0, 1, 0], raised_cosine: {amplitude: 0.1, frequency: 1}}]}}}\n");
   simulate_scene(load_scene(scene), path("recording.bag"), nothing);
-  const EstimationRun run =
-      estimate_recording(model("model.yaml", "{prior: 5.0e4, factor: 3}", ""), path("recording.bag"), 0, nothing, {});
+  const EstimationRun run = estimate_recording(load_model(model("model.yaml", "{prior: 5.0e4, factor: 3}", "")),
+                                               path("recording.bag"), 0, nothing, {});
   ASSERT_EQ(run.results.parameters.size(), 1U);
   EXPECT_NEAR(run.results.parameters[0].mean, 2e4, 0.01 * 2e4);
   EXPECT_EQ(run.results.identifiable.at("elasticity.young_modulus").verdict, "absolute");
@@ -173,7 +173,7 @@ TEST_F(RoundTrip, FindsTheModulusFromAPoseAndAForce) {
 
 TEST_F(RoundTrip, GivesTheSameBytesForTheSameInput) {
   const EstimationRun first = run(4e5, vertices(), "simulation: {duration: 0.2, rate: 60, step: 0.001}\n");
-  const EstimationRun second = estimate_recording(model_, path("recording.bag"), 0, nothing, {});
+  const EstimationRun second = estimate_recording(load_model(model_), path("recording.bag"), 0, nothing, {});
   EXPECT_EQ(estimates_csv(first.results), estimates_csv(second.results));
   const std::string bag = read("recording.bag");
   simulate_scene(load_scene(path("scene.yaml")), path("recording.bag"), nothing);
@@ -182,7 +182,7 @@ TEST_F(RoundTrip, GivesTheSameBytesForTheSameInput) {
 
 TEST_F(RoundTrip, StopsAfterTheFramesAskedFor) {
   run(4e5, vertices(), "simulation: {duration: 0.2, rate: 60, step: 0.001}\n");
-  EXPECT_EQ(estimate_recording(model_, path("recording.bag"), 5, nothing, {}).results.frames.size(), 5U);
+  EXPECT_EQ(estimate_recording(load_model(model_), path("recording.bag"), 5, nothing, {}).results.frames.size(), 5U);
 }
 
 TEST_F(RoundTrip, ASceneThatNeverEndsIsForWhoAsksForIt) {
