@@ -33,10 +33,7 @@ class Export : public Workbench {
 
   /// Exit code 2 and one line with all the words.
   ::testing::AssertionResult refuses(const std::string& arguments, const std::vector<std::string>& words) const {
-    Outcome outcome = call("export " + arguments);
-    if (outcome.code != 2) return ::testing::AssertionFailure() << "exit code " << outcome.code << ": " << outcome.text;
-    if (!outcome.text.empty() && outcome.text.back() == '\n') outcome.text.pop_back();
-    return says(outcome.text, words);
+    return tissue_stiffness::refuses("export " + arguments, words);
   }
 };
 

@@ -5,6 +5,9 @@
 #include <array>
 #include <cstdio>
 #include <string>
+#include <vector>
+
+#include "workbench.hpp"
 
 namespace tissue_stiffness {
 
@@ -30,6 +33,14 @@ inline Outcome run(const std::string& command) {
 /// Of a tool, with its arguments.
 inline Outcome call(const std::string& command) {
   return run(std::string(TISSUE_STIFFNESS_TOOLS) + "/" + command);
+}
+
+/// Exit code 2 and one line with all the words.
+inline ::testing::AssertionResult refuses(const std::string& command, const std::vector<std::string>& words) {
+  Outcome outcome = call(command);
+  if (outcome.code != 2) return ::testing::AssertionFailure() << "exit code " << outcome.code << ": " << outcome.text;
+  if (!outcome.text.empty() && outcome.text.back() == '\n') outcome.text.pop_back();
+  return says(outcome.text, words);
 }
 
 }  // namespace tissue_stiffness
