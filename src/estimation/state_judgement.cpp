@@ -1,5 +1,6 @@
 #include "estimation/state_judgement.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <vector>
@@ -29,10 +30,12 @@ std::vector<Eigen::Index> judged(const Model& model) {
 // Returns why the estimate is not precise enough to be used; empty: it is.
 std::string unlearnt(const Model& model, const Eigen::MatrixXd& covariance) {
   const Eigen::VectorXd std = covariance.diagonal().cwiseSqrt(), prior = model.parameters().prior_std();
+  const std::vector<std::string>& before = model.settings().known_before;
   for (const Eigen::Index i : judged(model)) {
     const FreeParameter& free = model.parameters().free()[static_cast<std::size_t>(i)];
     const bool positive = free.prior.kind == Quantity::Kind::log_normal;
-    if (std[i] > kLearnt * prior[i]) return free.name + " is hardly better known than its prior";
+    const bool known = std::find(before.begin(), before.end(), free.name) != before.end();
+    if (!known && std[i] > kLearnt * prior[i]) return free.name + " is hardly better known than its prior";
     if (positive && std[i] > kWidest) return free.name + " is known to " + percent(std[i]) + " only";
   }
   return "";

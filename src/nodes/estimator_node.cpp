@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "estimation/patch_model.hpp"
+#include "estimation/resumed_model.hpp"
 #include "nodes/message_conversions.hpp"
 #include "nodes/node_keys.hpp"
 #include "tissue_stiffness/types/error.hpp"
@@ -111,7 +112,7 @@ void EstimatorNode::work() {
   const std::optional<TetMesh> first = wait_for_mesh();
   if (!first) return;
   watch_.mesh_came(*first);
-  build(running_, *first);
+  build(running_, *first, Beginning::stated);
   inputs_.listen(queue_size_);
   while (const auto work = queue_.take()) {
     try {
@@ -149,7 +150,7 @@ bool EstimatorNode::take_changes() {
   if (!mesh && !model) return true;
   std::string refusal;
   try {
-    build(model ? *model : running_, mesh ? *mesh : TetMesh(estimator_->mesh()));
+    build(model ? *model : running_, mesh ? *mesh : TetMesh(estimator_->mesh()), mesh ? Beginning::stated : beginning_);
   } catch (const std::exception& error) {
     refusal = error.what();
     if (mesh) diagnostics_.bad_message("mesh: the one before is kept: " + refusal);
@@ -178,17 +179,21 @@ void EstimatorNode::change_model(const ModelSettings& changed) {
   if (!answer_->empty()) throw InputError(*answer_);
 }
 
-void EstimatorNode::build(const ModelSettings& settings, const TetMesh& mesh) {
-  if (settings.map) require_map(Model(settings, mesh));
-  auto estimator = std::make_unique<Estimator>(settings, mesh);
-  outputs_.prepare(settings, mesh);
+void EstimatorNode::build(const ModelSettings& settings, const TetMesh& mesh, Beginning beginning) {
+  ModelSettings begun = settings;
+  if (beginning != Beginning::stated) begun = in_motion(std::move(begun), mesh);
+  if (beginning == Beginning::jump && known_) take_moduli(begun, *known_);
+  if (begun.map) require_map(Model(begun, mesh));
+  auto estimator = std::make_unique<Estimator>(begun, mesh);
+  outputs_.prepare(begun, mesh);
   running_ = settings;
+  beginning_ = beginning;
   estimator_ = std::move(estimator);
   last_.reset();
   estimator_->work_in_background();
-  services_->start(running_, mesh);
+  services_->start(running_, begun, mesh);
   inputs_.set_mesh(mesh);
-  map_.start(running_, mesh);
+  map_.start(begun, mesh);
   for (const std::string& line : estimator_->description()) ROS_INFO("%s", line.c_str());
   diagnostics_.state(DiagnosticStatus::OK, to_string(EstimateState::no_data));
 }
@@ -209,12 +214,33 @@ void EstimatorNode::run_again() {
   last_stamp_ = ros::Time(last->time);
 }
 
-void EstimatorNode::start_epoch(const ros::Time& first_stamp) {
+// Only an estimate that had converged is believed beyond its own run, and only of the same body.
+void EstimatorNode::begin(Beginning beginning) {
+  if (beginning != Beginning::jump) known_.reset();
+  if (beginning == Beginning::jump && estimator_->estimate().state == EstimateState::converged) {
+    known_ = estimator_->estimate();
+  }
+  if (beginning == Beginning::stated && beginning_ == Beginning::stated) return estimator_->reset();
+  const TetMesh mesh = estimator_->mesh();
+  try {
+    build(running_, mesh, beginning);
+  } catch (const std::exception& error) {
+    ROS_WARN("the body is taken to be at rest now, as %s", error.what());
+    build(running_, mesh, Beginning::stated);
+  }
+}
+
+void EstimatorNode::start_epoch(const FrameQueue::Work& work) {
   const Estimate previous = estimator_->estimate();
-  estimator_->reset();
+  const ros::Time& first_stamp = work.first_stamp;
+  begin(work.beginning);
   why_skipped_.clear();
   if (previous.state != EstimateState::no_data) {
-    ROS_INFO("starting again from the prior; the run before found %s", shown(previous).c_str());
+    ROS_INFO("starting again from %s; the run before found %s",
+             beginning_ == Beginning::stated ? "the prior and from rest"
+             : known_                        ? "the modulus so far and from motion"
+                                             : "the prior and from motion",
+             shown(previous).c_str());
     diagnostics_.set("previous_estimate", shown(previous));
     diagnostics_.count("restarts");
     outputs_.publish(estimator_->estimate(), first_stamp);  // the last one is latched, and no longer holds
@@ -226,7 +252,7 @@ void EstimatorNode::start_epoch(const ros::Time& first_stamp) {
 }
 
 bool EstimatorNode::process(const FrameQueue::Work& work) {
-  if (work.new_epoch) start_epoch(work.first_stamp);
+  if (work.new_epoch) start_epoch(work);
   const auto left_out = [this](const auto& convert) {
     try {
       convert();

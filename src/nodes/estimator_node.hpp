@@ -26,8 +26,10 @@ namespace tissue_stiffness {
 ///
 /// `time.start` of the model counts from the first stamp received on any of its topics. The node listens as soon as it is
 /// ready (immediately when the mesh comes from the contour). So a recording that waits for subscribers is received from its
-/// start. When stamps go back (a bag that loops, a simulated clock that is reset), the estimator starts from the prior
-/// again. `previous_estimate` of /diagnostics then keeps the result of the run before.
+/// start. When stamps begin again (a bag that loops, a simulated clock that is reset), the estimator starts from the prior
+/// again. When they jump elsewhere, the body need not be at rest, so the estimator starts from motion (resumed_model.hpp);
+/// if messages kept coming, the body is the same, and it goes on with the modulus so far. `previous_estimate` of
+/// /diagnostics then keeps the result of the run before.
 ///
 /// In the background ModelServices searches for what the model misses. It also adds effects to the running model and
 /// removes them. For a model with `map`, MapPublisher maps the modulus over the body in the background.
@@ -57,11 +59,13 @@ class EstimatorNode {
   /// Applies changes before the next frame: a mesh that arrived, a model that was changed. What cannot be built is refused,
   /// and the worker goes on with what it has. Returns false if waiting frames are of another mesh.
   bool take_changes();
+  using Beginning = FrameQueue::Beginning;
   /// Builds an estimator beside the running one, and replaces that. Throws InputError for a model that does not fit the
-  /// mesh, or what the construction throws; nothing has changed then.
-  void build(const ModelSettings& settings, const TetMesh& mesh);
+  /// mesh or cannot begin so, or what the construction throws; nothing has changed then.
+  void build(const ModelSettings& settings, const TetMesh& mesh, Beginning beginning);
   void run_again();
-  void start_epoch(const ros::Time& first_stamp);
+  void start_epoch(const FrameQueue::Work& work);
+  void begin(Beginning beginning);
   void take(const FrameQueue::Work& work);
   /// Returns whether a frame was used.
   bool process(const FrameQueue::Work& work);
@@ -80,7 +84,9 @@ class EstimatorNode {
   EstimatorOutputs outputs_;
   MapPublisher map_;
   SetupWatch watch_;
-  ModelSettings running_;  ///< with added effects; used only by the worker, like the estimator
+  ModelSettings running_;                    ///< with added effects; used only by the worker, like the estimator
+  Beginning beginning_ = Beginning::stated;  ///< of this epoch
+  std::optional<Estimate> known_;            ///< what an earlier epoch found of the same body
   std::unique_ptr<Estimator> estimator_;
   std::string why_skipped_;    ///< of the last frame; empty: it was used
   std::optional<Frame> last_;  ///< last frame that was used

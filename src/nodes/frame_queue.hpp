@@ -29,18 +29,27 @@ namespace tissue_stiffness {
 /// each message is kept in the epoch of its topic. A topic whose stamps had jumped alone joins the others again when its
 /// stamps go on from theirs.
 ///
-/// A message whose stamp jumps is held back until it is believed (see StampFilter). Broken ones are left out. A silence
-/// does not make a jump believed while other topics go on.
+/// A message whose stamp jumps is held back until it is believed: three stamps of its topic agree (see StampFilter), or it
+/// goes on from the believed stamps of another topic. Broken ones are left out. A silence makes the first message of all
+/// believed, but no jump.
 class FrameQueue {
  public:
   /// Conversions run in the worker, because they may wait for a transform. They may throw InputError.
   using MakeObservation = std::function<Observation()>;
   using MakeLoad = std::function<LoadSample()>;
 
+  /// What is known of an epoch's beginning.
+  enum class Beginning {
+    stated,   ///< the first epoch, the one after restart(), a recording that begins again: it begins as the model says
+    unknown,  ///< after a silence it may be another body, at stamps seen before the same data again; it need not be at rest
+    jump      ///< a clock was set while messages kept coming: the same body goes on moving
+  };
+
   /// The worker's next task. The loads of an epoch come with its first frame that needs them.
   struct Work {
     bool new_epoch = false;  ///< the estimator must be reset first
-    ros::Time first_stamp;   ///< first stamp of the epoch, over all topics
+    Beginning beginning = Beginning::stated;
+    ros::Time first_stamp;  ///< first stamp of the epoch, over all topics
     ros::Time stamp;
     std::vector<MakeLoad> loads;
     std::vector<MakeObservation> observations;
@@ -78,10 +87,12 @@ class FrameQueue {
   using Filter = StampFilter<Put>;
   struct Topic {
     int epoch = 0;
+    std::size_t noted = 0;  ///< number of its messages left out, as of last_broken_
     Filter filter;
   };
   struct Span {
     ros::Time first, last;
+    Beginning beginning;
   };
   struct Pending {
     Clock::time_point arrival;
@@ -91,16 +102,21 @@ class FrameQueue {
   Topic& find_topic(const std::string& name);
   void accept(const std::string& name, const ros::Time& stamp, Put put);
   bool starts_over(const Topic& topic, const ros::Time& stamp) const;
+  /// Believes held messages that go on from the stamps of other topics.
+  void release_agreeing();
+  void note_broken_stamps();
+  bool agrees_with_others(const Topic& topic, const ros::Time& stamp) const;
   void put(Topic& topic, const std::vector<Filter::Stamped>& believed);
+  /// Returns the epoch that a topic belongs to whose stamps go on: its own, or a later one of other topics.
+  int rejoined(const Topic& topic, const ros::Time& stamp) const;
   Place place(Topic& topic, const ros::Time& stamp);
+  Beginning beginning_of(const Topic& moved, const Filter::Stamped& first) const;
   /// Moves a topic whose stamps start over to the epoch that they belong to.
-  void move(Topic& topic, const ros::Time& stamp);
-  /// Gives an epoch that was left the number of a new one.
-  void renew(int epoch);
-  /// Returns whether other topics went on in this topic's epoch since its last message came.
-  bool others_go_on(const Topic& jumped) const;
-  /// Releases what no message has contradicted in time. Returns when that has to be asked next.
-  Clock::time_point release_overdue();
+  void move(Topic& topic, const Filter::Stamped& first);
+  /// Gives an epoch that was left the number of a new one, which begins with this stamp.
+  void renew(int epoch, const ros::Time& stamp);
+  /// Believes the first message of all after a silence. Returns when that has to be asked next.
+  Clock::time_point release_first();
   bool complete(const Place& place) const;
   Work take_front();
   int oldest_epoch() const;
@@ -113,6 +129,8 @@ class FrameQueue {
   std::map<int, Span> epochs_;
   std::map<Place, Pending> frames_;
   std::multimap<Place, MakeLoad> loads_;
+  ros::Time origin_;                                     ///< first stamp of the last epoch whose beginning is stated
+  std::optional<std::pair<ros::Time, ros::Time>> seen_;  ///< first and last of all stamps since restart()
   int newest_epoch_ = 0;
   int taken_epoch_ = -1;
   std::size_t dropped_ = 0;

@@ -46,12 +46,12 @@ ModelServices::~ModelServices() {
   spinner_.stop();
 }
 
-void ModelServices::start(const ModelSettings& settings, const TetMesh& mesh) {
+void ModelServices::start(const ModelSettings& settings, const ModelSettings& begun, const TetMesh& mesh) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     settings_ = settings;
   }
-  check_.start(settings, mesh);
+  check_.start(begun, mesh);
 }
 
 void ModelServices::publish(const Diagnosis& diagnosis, double stamp) {

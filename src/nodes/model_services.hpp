@@ -32,8 +32,8 @@ class ModelServices {
 
   ModelCheck& check() { return check_; }
 
-  /// Sets the running model and its mesh.
-  void start(const ModelSettings& settings, const TetMesh& mesh);
+  /// Sets the running model, that model as it begins in this run, and its mesh.
+  void start(const ModelSettings& settings, const ModelSettings& begun, const TetMesh& mesh);
 
  private:
   bool on_diagnose(Diagnose::Request&, Diagnose::Response& response);

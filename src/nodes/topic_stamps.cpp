@@ -34,11 +34,13 @@ std::string jump(const ros::Time& from, const ros::Time& to) {
 
 void TopicStamps::advance(const ros::Time& stamp) {
   if (!seen) {
-    *this = {true, stamp, stamp, interval};
+    *this = {true, stamp, stamp, interval, stamp};
     return;
   }
+  if (last_was_ahead(stamp)) last = before;
   if (stamp <= last) return;
   interval = smooth_interval(interval, seconds_between(last, stamp));
+  before = last;
   last = stamp;
 }
 

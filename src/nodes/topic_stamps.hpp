@@ -27,8 +27,16 @@ struct TopicStamps {
   bool seen = false;
   ros::Time first, last;
   double interval = 0.0;  ///< between its messages [s], a running mean; 0: not known yet
+  ros::Time before;       ///< the stamp before the last one; the first one, where there is none
 
-  bool go_on_with(const ros::Time& stamp) const { return goes_on(last, stamp, interval); }
+  bool go_on_with(const ros::Time& stamp) const { return goes_on(last, stamp, interval) || last_was_ahead(stamp); }
+  /// Returns whether the stamp goes back from the last one, which was not ahead of its time.
+  bool start_over_with(const ros::Time& stamp) const { return goes_back(last, stamp) && !last_was_ahead(stamp); }
+  /// Returns whether the stamp goes back from the last one but goes on from the one before. Then the last one was ahead by
+  /// less than a pause, and no clock has jumped.
+  bool last_was_ahead(const ros::Time& stamp) const {
+    return goes_back(last, stamp) && stamp > before && goes_on(before, stamp, interval);
+  }
   /// Goes on with a stamp that is believed.
   void advance(const ros::Time& stamp);
 };

@@ -120,7 +120,7 @@ bool BagReader::read_message() {
   }
   const rosbag::MessageInstance message = *next_message_++;
   now_ = message.getTime().toSec();
-  release_overdue();
+  release_first();
   const std::string& topic = message.getTopic();
   if (topic == "/tf") add_poses(message, false);
   for (std::size_t i = 0; i < settings_.observations.size(); ++i) {
@@ -152,6 +152,7 @@ void BagReader::accept(const std::string& name, const ros::Time& stamp, Put put)
   const std::size_t left_out = filter.left_out();
   believe(filter, filter.add(stamp, std::move(put), now_));
   if (filter.left_out() > left_out) last_broken_ = name + ": " + filter.last_left_out();
+  release_agreeing();
 }
 
 void BagReader::believe(Filter& filter, const std::vector<Filter::Stamped>& believed) {
@@ -161,9 +162,32 @@ void BagReader::believe(Filter& filter, const std::vector<Filter::Stamped>& beli
   }
 }
 
-void BagReader::release_overdue() {
+// Held messages are believed where they go on from the stamps of another topic.
+void BagReader::release_agreeing() {
   for (auto& [name, filter] : filters_) {
-    if (filter.holds() && filter.silent_from() <= now_) believe(filter, filter.release());
+    if (!filter.holds()) continue;
+    const auto agrees = [&, &own = filter](const ros::Time& stamp) {
+      return std::any_of(filters_.begin(), filters_.end(), [&](const auto& other) {
+        const Filter& filter = other.second;
+        const bool silent = own.stamps().seen && filter.silent_from() < now_;
+        return &filter != &own && filter.stamps().seen && !silent && filter.stamps().go_on_with(stamp);
+      });
+    };
+    const std::size_t left_out = filter.left_out();
+    believe(filter, filter.release_if(agrees));
+    if (filter.left_out() > left_out) last_broken_ = name + ": " + filter.last_left_out();
+  }
+}
+
+// Two messages cannot agree as three would, so those of such a topic are believed after a silence. So is the first message
+// of all.
+void BagReader::release_first() {
+  const bool any_seen =
+      std::any_of(filters_.begin(), filters_.end(), [](const auto& filter) { return filter.second.stamps().seen; });
+  for (auto& [name, filter] : filters_) {
+    if (!filter.holds() || filter.stamps().seen || filter.silent_from() > now_) continue;
+    rosbag::View all(bag_, rosbag::TopicQuery(name));
+    if (!any_seen || all.size() < kAgreeingStamps) believe(filter, filter.release());
   }
 }
 

@@ -90,7 +90,8 @@ class BagReader {
   /// Calls `put` once the stamp is believed.
   void accept(const std::string& topic, const ros::Time& stamp, Put put);
   void believe(Filter& filter, const std::vector<Filter::Stamped>& believed);
-  void release_overdue();
+  void release_agreeing();
+  void release_first();
   void release_last();
   void add_force(const rosbag::MessageInstance& message, int source);
   void add_measurement(const std::string& topic, const ros::Time& stamp, Measurement measurement);

@@ -98,13 +98,13 @@ TEST_F(FrameQueueTest, TheFirstStampIsTheEarliestOfAnyTopic) {
 }
 
 TEST_F(FrameQueueTest, ALoopStartsANewEpoch) {
-  frame(0.0);
-  frame(0.01);
+  for (const double t : {0.0, 0.01, 0.02}) frame(t);
   EXPECT_TRUE(queue.take()->new_epoch);
-  EXPECT_FALSE(queue.take()->new_epoch);
-  frame(0.0);  // a recording of 0.01 s that starts again
+  for (int k = 0; k < 2; ++k) EXPECT_FALSE(queue.take()->new_epoch);
+  for (const double t : {0.0, 0.01, 0.02}) frame(t);  // a recording of 0.02 s that starts again
   const auto work = queue.take();
   EXPECT_TRUE(work->new_epoch);
+  EXPECT_EQ(work->beginning, FrameQueue::Beginning::stated);
   EXPECT_NEAR((work->first_stamp - at(0.0)).toSec(), 0.0, 1e-9);
 }
 
@@ -167,6 +167,8 @@ TEST_F(FrameQueueTest, FramesThatJumpedAloneJoinTheirLoadsAgain) {
   for (const double t : {0.1, 0.2}) load(t);
   const auto work = queue.take();
   EXPECT_TRUE(work->new_epoch);
+  EXPECT_EQ(work->beginning, FrameQueue::Beginning::jump);
+  EXPECT_NEAR((work->first_stamp - at(0.0)).toSec(), 0.0, 1e-9);
   EXPECT_NEAR((work->stamp - at(0.0)).toSec(), 0.0, 1e-9);
   EXPECT_EQ(work->loads.size(), 2U);
 }
@@ -197,27 +199,141 @@ TEST_F(PatientFrameQueueTest, ABrokenStampIsLeftOut) {
   EXPECT_EQ(queue.dropped(), 0U);
 }
 
-// Nothing goes before the first message that could tell that its stamp is wrong.
-// Silence believes a jump, but not while other topics tell the old time.
-TEST_F(FrameQueueTest, ABrokenStampBeforeASilenceIsLeftOutWhereTheOthersGoOn) {
+// A silence makes no broken stamp believed, whether the other topics go on meanwhile or are silent too.
+TEST_F(FrameQueueTest, ABrokenStampBeforeASilenceIsLeftOut) {
   start();
-  for (const double t : {0.0, 0.1, 0.2}) {
-    load(t);
-    frame(t);
-    EXPECT_NEAR(take(), t, 1e-9);
-  }
-  frame(3600.0);
-  load(0.3);
-  const auto work = queue.take();  // comes back without a frame, long after the topic fell silent
-  EXPECT_TRUE(work->observations.empty());
+  double now = 0.0;
+  const auto go_on = [&] {
+    load(now);
+    frame(now);
+    const auto work = queue.take();
+    EXPECT_NEAR((work->stamp - at(now)).toSec(), 0.0, 1e-9);
+    EXPECT_FALSE(work->new_epoch);
+    now += 0.1;
+  };
+  for (int k = 0; k < 3; ++k) go_on();
+  frame(now + 3600.0);
+  load(now);
+  EXPECT_TRUE(queue.take()->observations.empty()) << "long after the topic fell silent";
+  go_on();
   EXPECT_EQ(queue.broken_stamps(), 1U);
-  load(0.4);
-  frame(0.4);
-  const auto next = queue.take();
-  EXPECT_FALSE(next->new_epoch);
-  EXPECT_NEAR((next->stamp - at(0.4)).toSec(), 0.0, 1e-9);
+  load(now - 900.0);
+  frame(now + 3600.0);
+  EXPECT_TRUE(queue.take()->observations.empty()) << "long after both fell silent";
+  go_on();
+  EXPECT_EQ(queue.broken_stamps(), 3U);
+  load(now - 900.0);
+  frame(now + 3600.0);
+  EXPECT_TRUE(queue.take()->observations.empty());
+  now += 5.0;  // where the silence was long, three messages agree before they are believed
+  for (const double t : {0.0, 0.1, 0.2}) {
+    load(now + t);
+    frame(now + t);
+  }
+  for (int k = 0; k < 3; ++k) EXPECT_FALSE(queue.take()->new_epoch);
+  EXPECT_EQ(queue.broken_stamps(), 5U);
 }
 
+// A stamp that is ahead by less than a pause is believed. The next ones go back from it, and are no jump.
+TEST_F(PatientFrameQueueTest, AStampThatIsALittleAheadIsNoJump) {
+  start();
+  for (const double t : {0.0, 0.1, 0.2, 0.3}) {
+    load(t);
+    frame(t);
+    take();
+  }
+  load(1.2);
+  for (const double t : {0.4, 0.5, 0.6, 0.7}) {
+    load(t);
+    frame(t);
+    const auto work = queue.take();
+    EXPECT_FALSE(work->new_epoch);
+    EXPECT_NEAR((work->stamp - at(t)).toSec(), 0.0, 1e-9);
+    EXPECT_EQ(work->loads.size(), t == 0.4 ? 2U : 1U);
+  }
+}
+
+// The clock is set back while the frames are silent, by as much as they are: their stamps go on.
+TEST_F(PatientFrameQueueTest, ATopicThatSleptThroughAJumpJoinsTheOthers) {
+  start();
+  for (double t = 0.0; t < 9.95; t += 0.1) load(t);
+  for (double t = 0.0; t < 0.25; t += 0.1) frame(t);
+  for (int k = 0; k < 3; ++k) take();
+  for (double t = -5.0; t < 0.25; t += 0.1) load(t);
+  for (const double t : {0.3, 0.4}) {
+    load(t);
+    frame(t);
+  }
+  const auto work = queue.take();
+  EXPECT_TRUE(work->new_epoch);
+  EXPECT_EQ(work->beginning, FrameQueue::Beginning::jump);
+  EXPECT_NEAR((work->stamp - at(0.3)).toSec(), 0.0, 1e-9);
+  EXPECT_GT(work->loads.size(), 50U);
+}
+
+// A load that comes now and then is believed where its stamp is that of the other topics.
+TEST_F(PatientFrameQueueTest, AJumpOfOneTopicIsBelievedWhereAnotherOneAgrees) {
+  start();
+  for (double t = 0.0; t < 5.05; t += 0.1) frame(t);
+  load(5.0);
+  EXPECT_EQ(queue.take()->loads.size(), 1U);
+  for (int k = 0; k < 2; ++k) take();
+  EXPECT_EQ(queue.broken_stamps(), 0U);
+}
+
+TEST_F(PatientFrameQueueTest, AClockThatIsSetWhileMessagesComeIsNoNewBody) {
+  start();
+  for (const double jump : {-900.0, 5000.0, -3000.0}) {
+    for (const double t : {0.0, 0.1, 0.2}) {
+      load(jump + t);
+      frame(jump + t);
+    }
+    const auto work = queue.take();
+    EXPECT_TRUE(work->new_epoch);
+    EXPECT_EQ(work->beginning, FrameQueue::Beginning::jump);
+    EXPECT_NEAR((work->first_stamp - at(jump)).toSec(), 0.0, 1e-9);
+    EXPECT_EQ(work->loads.size(), 3U);
+    for (int k = 0; k < 2; ++k) EXPECT_FALSE(queue.take()->new_epoch);
+  }
+  queue.restart();
+  for (const double t : {0.0, 0.1, 0.2}) frame(t);
+  load(0.2);
+  EXPECT_EQ(queue.take()->beginning, FrameQueue::Beginning::stated);
+}
+
+TEST_F(FrameQueueTest, WhatComesAfterALongSilenceMayBeAnotherBody) {
+  start();
+  std::this_thread::sleep_for(Seconds(0.8));
+  for (const double t : {100.0, 100.1, 100.2}) {
+    frame(t);
+    load(t);
+  }
+  EXPECT_EQ(queue.take()->beginning, FrameQueue::Beginning::unknown);
+}
+
+// The first messages of a lap may be lost. The body was at rest when they were sent, but long afterwards it is not. What
+// comes again at stamps that were seen must not count twice, so it is no other time of the same body.
+TEST_F(PatientFrameQueueTest, ALoopThatLosesItsFirstMessagesIsALoop) {
+  const auto play = [&](double from) {
+    std::optional<FrameQueue::Work> first;
+    for (double t = from; t < 8.05; t += 0.1) {
+      frame(t);
+      if (queue.waiting() == 3 && !first) first = queue.take();
+    }
+    for (int k = 0; k < 3; ++k) take();
+    return *first;
+  };
+  play(0.0);
+  const auto lap = play(0.4);
+  EXPECT_EQ(lap.beginning, FrameQueue::Beginning::stated);
+  EXPECT_NEAR((lap.first_stamp - at(0.0)).toSec(), 0.0, 1e-9);
+  const auto late = play(4.0);
+  EXPECT_EQ(late.beginning, FrameQueue::Beginning::unknown);
+  EXPECT_NEAR((late.first_stamp - at(4.0)).toSec(), 0.0, 1e-9);
+  EXPECT_EQ(play(0.1).beginning, FrameQueue::Beginning::stated) << "the first lap tells where the recording begins";
+}
+
+// Nothing goes before the first message that could tell that its stamp is wrong.
 TEST_F(PatientFrameQueueTest, ABrokenFirstStampIsLeftOut) {
   std::size_t broken = 0;
   for (const double jump : {3600.0, -3600.0, 5.0, -5.0}) {

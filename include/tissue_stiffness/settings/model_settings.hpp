@@ -134,7 +134,9 @@ struct ModelSettings {
   double stale_after = 2.0;   ///< time without a measurement or a load after which the estimate is stale [s]
   int window = 4000;  ///< frames kept for reprocessing; when it is full, the older half becomes the prior of the others
   EstimatorKind estimator = EstimatorKind::unscented;  ///< key `estimator: unscented | paper`
-  std::optional<MapSettings> map;                      ///< empty: each elasticity has one modulus, and no map is made
+  /// Parameters whose prior is an earlier estimate of the same body. No key: a node that resumes fills it.
+  std::vector<std::string> known_before;
+  std::optional<MapSettings> map;  ///< empty: each elasticity has one modulus, and no map is made
 };
 
 /// Reads all keys except the effects' arguments, which the effects layer checks. Throws InputError for a key that is
