@@ -1,6 +1,8 @@
 #include "fit/batch_fit.hpp"
 
 #include <algorithm>
+#include <numeric>
+#include <utility>
 
 #include "observation/frame_misfit.hpp"
 
@@ -22,16 +24,45 @@ constexpr int kTried = 2;               // moves before the rival may end the fi
 constexpr std::size_t kRemembered = 3;  // steps that the next one is extrapolated from
 constexpr double kNarrower = 0.7;       // of the sigma points' span: one that stays wider would repeat the failed step
 
-void run(const FitProblem& problem, PosteriorLinearizationFilter& filter, const Eigen::VectorXd& anchor,
+using Parts = std::vector<FitPart>;
+
+// Returns the sigma points of one recording. A point that moves only another recording's parameters is its central one.
+Eigen::MatrixXd own_points(const PosteriorLinearizationFilter& filter, const std::vector<Eigen::Index>& columns) {
+  const auto count = static_cast<Eigen::Index>(columns.size());
+  Eigen::MatrixXd out(count, 2 * count + 1);
+  for (Eigen::Index row = 0; row < count; ++row)
+    out.row(row).setConstant(filter.anchor()[columns[static_cast<std::size_t>(row)]]);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    out(i, 1 + i) += filter.spread()[columns[static_cast<std::size_t>(i)]];
+    out(i, 1 + count + i) -= filter.spread()[columns[static_cast<std::size_t>(i)]];
+  }
+  return out;
+}
+
+// Returns the predictions at the sigma points of all recordings.
+Eigen::MatrixXd at_all_points(const Eigen::MatrixXd& own, const std::vector<Eigen::Index>& columns, Eigen::Index all) {
+  const auto count = static_cast<Eigen::Index>(columns.size());
+  Eigen::MatrixXd out = own.col(0).replicate(1, 2 * all + 1);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    out.col(1 + columns[static_cast<std::size_t>(i)]) = own.col(1 + i);
+    out.col(1 + all + columns[static_cast<std::size_t>(i)]) = own.col(1 + count + i);
+  }
+  return out;
+}
+
+void run(const Parts& parts, PosteriorLinearizationFilter& filter, const Eigen::VectorXd& anchor,
          const Eigen::VectorXd& spread) {
   filter.move_anchor(anchor, spread);
-  Ensemble ensemble(problem.model, problem.forward, problem.operators);
-  ensemble.restart(filter.sigma_points(), problem.start);
-  for (const Frame& frame : problem.frames) {
-    problem.checkpoint();
-    ensemble.advance(frame.time);
-    const Ensemble::Predicted p = ensemble.predict(frame);
-    filter.update(p.central.measured, p.rows, p.central.sigma.cwiseAbs2(), row_weights(p.central));
+  for (const FitPart& part : parts) {
+    Ensemble ensemble(part.problem.model, part.problem.forward, part.problem.operators);
+    ensemble.restart(own_points(filter, part.columns), part.problem.start);
+    for (const Frame& frame : part.problem.frames) {
+      part.problem.checkpoint();
+      ensemble.advance(frame.time);
+      const Ensemble::Predicted p = ensemble.predict(frame);
+      filter.update(p.central.measured, at_all_points(p.rows, part.columns, anchor.size()),
+                    part.noise * p.central.sigma.cwiseAbs2(), row_weights(p.central));
+    }
   }
 }
 
@@ -47,8 +78,8 @@ Eigen::VectorXd shortened(const Eigen::VectorXd& move, const Eigen::VectorXd& pr
   return move / std::max(1.0, (move.array() / prior.array()).abs().maxCoeff() / kLongestStep);
 }
 
-double cost_at(const FitProblem& problem, const PosteriorLinearizationFilter& filter, const Eigen::VectorXd& w) {
-  const FreeFit there = free_fit(problem, w);
+double cost_at(const Parts& parts, const PosteriorLinearizationFilter& filter, const Eigen::VectorXd& w) {
+  const FreeFit there = free_fit(parts, w);
   return filter.cost_at(w, there.cost, there.rows);
 }
 
@@ -91,13 +122,32 @@ class Extrapolation {
 
 }  // namespace
 
+FreeFit free_fit(const Parts& parts, const Eigen::VectorXd& w) {
+  FreeFit sum;
+  for (const FitPart& part : parts) {
+    Eigen::VectorXd own(static_cast<Eigen::Index>(part.columns.size()));
+    for (Eigen::Index i = 0; i < own.size(); ++i) own[i] = w[part.columns[static_cast<std::size_t>(i)]];
+    const FreeFit fit = free_fit(part.problem, own);
+    sum.cost += fit.cost / part.noise;
+    sum.rows += fit.rows;
+  }
+  return sum;
+}
+
 PosteriorLinearizationFilter fit_filter(const FitProblem& problem, PosteriorLinearizationFilter filter,
+                                        const Eigen::VectorXd& start, const Eigen::VectorXd& spread, double rival) {
+  std::vector<Eigen::Index> columns(problem.model.parameters().free().size());
+  std::iota(columns.begin(), columns.end(), 0);
+  return fit_filter(Parts{{problem, std::move(columns)}}, std::move(filter), start, spread, rival);
+}
+
+PosteriorLinearizationFilter fit_filter(const Parts& parts, PosteriorLinearizationFilter filter,
                                         const Eigen::VectorXd& start, const Eigen::VectorXd& spread, double rival) {
   const Eigen::VectorXd prior = filter.spread();
   double damping = 0.0;
   bool careful = false;
   Extrapolation extrapolate;
-  run(problem, filter, start, spread);
+  run(parts, filter, start, spread);
   for (int k = 0; k < kMostIterations; ++k) {
     const PosteriorLinearizationFilter before = filter;
     const Eigen::VectorXd std = before.covariance().diagonal().cwiseSqrt();
@@ -105,8 +155,8 @@ PosteriorLinearizationFilter fit_filter(const FitProblem& problem, PosteriorLine
     const Eigen::VectorXd each = std_of_each(before);
     const Eigen::VectorXd next = (2.0 * each).cwiseMin(before.spread()).cwiseMax(kFloor * prior);
     const auto lowers = [&](const Eigen::VectorXd& to, bool only_if_lower) {
-      if (only_if_lower && !(cost_at(problem, before, to) < before.cost())) return false;
-      run(problem, filter, to, next);
+      if (only_if_lower && !(cost_at(parts, before, to) < before.cost())) return false;
+      run(parts, filter, to, next);
       return filter.cost() < before.cost();
     };
     const double promised = promise(before);
@@ -131,7 +181,7 @@ PosteriorLinearizationFilter fit_filter(const FitProblem& problem, PosteriorLine
     if (!better) {
       filter = before;
       if ((next.array() > kNarrower * before.spread().array()).all()) break;
-      run(problem, filter, before.anchor(), next);
+      run(parts, filter, before.anchor(), next);
       continue;
     }
     const double gain = before.cost() - filter.cost();

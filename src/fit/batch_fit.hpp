@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <limits>
+#include <vector>
 
 #include "filter/posterior_linearization_filter.hpp"
 #include "fit/fit_problem.hpp"
@@ -30,5 +31,20 @@ BatchFit fit_batch(const FitProblem& problem, const Eigen::VectorXd& start, cons
 PosteriorLinearizationFilter fit_filter(const FitProblem& problem, PosteriorLinearizationFilter filter,
                                         const Eigen::VectorXd& start, const Eigen::VectorXd& spread,
                                         double rival = no_rival);
+
+/// One of several recordings that share parameters.
+struct FitPart {
+  FitProblem problem;
+  std::vector<Eigen::Index> columns;  ///< place of each of the problem's parameters among those of all recordings
+  double noise = 1.0;                 ///< factor on the variance of its sensors' noise
+};
+
+/// Fits several recordings at once: their sums of squares add up, and the prior of `filter` counts once.
+PosteriorLinearizationFilter fit_filter(const std::vector<FitPart>& parts, PosteriorLinearizationFilter filter,
+                                        const Eigen::VectorXd& start, const Eigen::VectorXd& spread,
+                                        double rival = no_rival);
+
+/// Returns the free runs' cost and rows at w, the parameters of all recordings.
+FreeFit free_fit(const std::vector<FitPart>& parts, const Eigen::VectorXd& w);
 
 }  // namespace tissue_stiffness
