@@ -43,6 +43,7 @@ struct EffectSpec {
   std::optional<LoadInput::Kind> load = std::nullopt;     ///< what its key `topic` carries; empty: it has none
   Proposer proposals = nullptr;                           ///< null: its absence is not searched for
   bool of_simulation = false;                             ///< not physics, but a property of simulated recordings
+  bool of_recording = false;                              ///< differs between recordings of one body
 };
 
 /// What is available to an effect while it is built.

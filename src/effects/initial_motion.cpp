@@ -36,6 +36,7 @@ EffectSpec initial_motion_spec() {
                      {"velocity", "v", "m/s", -1e4, 1e4, optional, 0.0, 0.0, 3},
                      {"second_displacement", "e", "m", -10.0, 10.0, optional, 0.0, 0.0, 3},
                      {"second_velocity", "w", "m/s", -1e4, 1e4, optional, 0.0, 0.0, 3}};
+  spec.of_recording = true;
   return spec;
 }
 

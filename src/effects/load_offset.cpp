@@ -49,6 +49,7 @@ EffectSpec load_offset_spec() {
   spec.parameters = {{"force", "F_0", "N", -1e4, 1e4, ParameterSpec::Default::required, 0.0, 0.0, 3}};
   spec.keys = {{"region", "facets it acts on"}};
   spec.proposals = propose;
+  spec.of_recording = true;
   return spec;
 }
 

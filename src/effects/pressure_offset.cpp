@@ -52,6 +52,7 @@ EffectSpec pressure_offset_spec() {
   spec.parameters = {{"pressure", "p_0", "Pa", -1e6, 1e6, ParameterSpec::Default::required, 0.0, 0.0, 1}};
   spec.keys = {{"region", "facets it pushes on"}};
   spec.proposals = propose;
+  spec.of_recording = true;
   return spec;
 }
 

@@ -43,6 +43,7 @@ EffectSpec rigid_drift_spec() {
   spec.parameters = {{"velocity", "v", "m/s", -10.0, 10.0, ParameterSpec::Default::optional, 0.0, 0.0, 3},
                      {"rotation", "w", "rad/s", -10.0, 10.0, ParameterSpec::Default::optional, 0.0, 0.0, 3}};
   spec.proposals = propose;
+  spec.of_recording = true;
   return spec;
 }
 

@@ -96,6 +96,14 @@ void NormalEquations::repeat(double times) {
   rows *= times;
 }
 
+void NormalEquations::add(const NormalEquations& other, double times) {
+  information += times * other.information;
+  gradient += times * other.gradient;
+  constants += times * other.constants;
+  cost += times * other.cost;
+  rows += times * other.rows;
+}
+
 InputLinearisation::InputLinearisation(const MeshError::Question& question, InputModels& models)
     : q_(question), models_(models), p_(question.w.size()), size_(p_) {
   const std::size_t stride = (question.frames.size() + kMostFrames - 1) / kMostFrames;
@@ -154,6 +162,32 @@ void InputLinearisation::add_force_sensor(std::size_t source) {
   }
   force_sensors_.push_back({static_cast<int>(source), sensor.gain, std::max(0.0, bias), sensor.rotation, size_});
   size_ += 7;
+}
+
+std::vector<InputGroup> InputLinearisation::groups() const {
+  const auto topic = [&](int source) {
+    return models_.base.settings().observations[static_cast<std::size_t>(source)].topic;
+  };
+  std::vector<InputGroup> out;
+  for (std::size_t i = 0; i < loads_.size(); ++i) {
+    const Load& load = loads_[i];
+    const bool motion = load.course->kind() == LoadInput::Kind::pose, pressure = load.basis.components() == 1;
+    const std::string unit = motion ? "m" : pressure ? "Pa" : "N";
+    for (const LoadErrorBasis::Group& group : load.basis.groups()) {
+      out.push_back({load.topic, group.name, group.unit.empty() ? unit : group.unit, group.std, load.first + group.first,
+                     group.count, static_cast<int>(i), pressure});
+    }
+  }
+  for (const Pose& pose : poses_) {
+    out.push_back({topic(pose.source), "pose offset", "m", pose.offset, pose.first, 3});
+    out.push_back({topic(pose.source), "pose rotation", "rad", pose.rotation, pose.first + 3, 3});
+  }
+  for (const ForceSensor& sensor : force_sensors_) {
+    out.push_back({topic(sensor.source), "gain", "-", sensor.gain, sensor.first, 1});
+    out.push_back({topic(sensor.source), "bias", "N", sensor.bias, sensor.first + 1, 3});
+    out.push_back({topic(sensor.source), "direction", "rad", sensor.rotation, sensor.first + 4, 3});
+  }
+  return out;
 }
 
 void InputLinearisation::correct_loads(const Eigen::VectorXd& z) {

@@ -39,6 +39,19 @@ struct NormalEquations {
   NormalEquations(Eigen::Index size, Eigen::Index constant_count);
   /// Multiplies all sums, because every frame stands for those that were left out.
   void repeat(double times);
+  /// Adds the sums of another recording, so many times.
+  void add(const NormalEquations& other, double times);
+};
+
+/// Columns of z that hold one kind of error of one input, in units of its tolerance.
+struct InputGroup {
+  std::string input;       ///< topic
+  std::string error;       ///< gain, bias, delay, ...
+  std::string unit;        ///< of the tolerance
+  double tolerance = 0.0;  ///< 1 sigma of one column; 0: the error does not occur
+  Eigen::Index first = 0, count = 0;
+  int load = -1;          ///< number of the load that all these errors belong to; -1: of no load
+  bool pressure = false;  ///< of a pressure, whose force grows with the area
 };
 
 /// The linearisation gives a recording's rows as functions of the parameters, the loads' and poses' errors and the
@@ -80,8 +93,8 @@ class InputLinearisation {
   Eigen::Index size() const { return size_; }
   double repeated() const { return repeated_; }  ///< recorded frames for each used one
   const std::vector<Load>& loads() const { return loads_; }
-  const std::vector<Pose>& poses() const { return poses_; }
-  const std::vector<ForceSensor>& force_sensors() const { return force_sensors_; }
+  /// Returns all columns of z between the parameters and the mesh, in their order.
+  std::vector<InputGroup> groups() const;
   /// Returns the first of the columns that say what the mesh may change; they are the last of z.
   Eigen::Index first_of_mesh() const { return size_ - mesh_columns_; }
 

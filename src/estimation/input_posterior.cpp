@@ -54,21 +54,43 @@ Eigen::VectorXd InputPosterior::from_prior(const Eigen::VectorXd& z) const {
   return out;
 }
 
-double InputPosterior::cost(const Fit& fit, double scale) const {
-  return fit.normal.cost / scale + from_prior(fit.z).cwiseAbs2().dot(prior_information());
+void InputPosterior::set_temperature(std::size_t recording, double temperature) {
+  temperatures_.resize(std::max(temperatures_.size(), recording + 1), 1.0);
+  temperatures_[recording] = temperature;
 }
 
-double InputPosterior::scale(const NormalEquations& normal) const {
-  return temperature_ * std::max(1.0, normal.cost / std::max(1.0, normal.rows));
+double InputPosterior::temperature(std::size_t recording) const {
+  return recording < temperatures_.size() ? temperatures_[recording] : 1.0;
 }
 
-Eigen::MatrixXd InputPosterior::information(const NormalEquations& normal) const {
-  Eigen::MatrixXd out = normal.information / scale(normal);
+double InputPosterior::cost(const Fit& fit, const Eigen::VectorXd& scales) const {
+  double sum = from_prior(fit.z).cwiseAbs2().dot(prior_information());
+  for (std::size_t i = 0; i < fit.normal.size(); ++i) sum += fit.normal[i].cost / scales[static_cast<Eigen::Index>(i)];
+  return sum;
+}
+
+Eigen::VectorXd InputPosterior::scales(const Equations& normal) const {
+  Eigen::VectorXd out(static_cast<Eigen::Index>(normal.size()));
+  for (std::size_t i = 0; i < normal.size(); ++i) {
+    out[static_cast<Eigen::Index>(i)] = temperature(i) * std::max(1.0, normal[i].cost / std::max(1.0, normal[i].rows));
+  }
+  return out;
+}
+
+NormalEquations InputPosterior::sum(const Equations& normal, const Eigen::VectorXd& scales) const {
+  NormalEquations out = normal.front();
+  out.repeat(1.0 / scales[0]);
+  for (std::size_t i = 1; i < normal.size(); ++i) out.add(normal[i], 1.0 / scales[static_cast<Eigen::Index>(i)]);
+  return out;
+}
+
+Eigen::MatrixXd InputPosterior::information(const Equations& normal) const {
+  Eigen::MatrixXd out = sum(normal, scales(normal)).information;
   out.diagonal() += prior_information();
   return out;
 }
 
-Eigen::MatrixXd InputPosterior::covariance(const NormalEquations& normal) const {
+Eigen::MatrixXd InputPosterior::covariance(const Equations& normal) const {
   return information(normal).ldlt().solve(Eigen::MatrixXd::Identity(size_, size_));
 }
 
@@ -91,9 +113,9 @@ InputPosterior::Fit InputPosterior::mode(const Eigen::VectorXd& w) {
 
 // Makes one Gauss-Newton step, shortened while the cost does not fall. Returns false at the end.
 bool InputPosterior::improve(Fit& fit) {
-  const double s = scale(fit.normal);
+  const Eigen::VectorXd s = scales(fit.normal);
   const Eigen::MatrixXd inverse_covariance = information(fit.normal);
-  const Eigen::VectorXd pull = fit.normal.gradient / s + prior_information().cwiseProduct(from_prior(fit.z));
+  const Eigen::VectorXd pull = sum(fit.normal, s).gradient + prior_information().cwiseProduct(from_prior(fit.z));
   const Eigen::VectorXd step = inverse_covariance.ldlt().solve(pull);
   if (step.dot(pull) < kSettled * kSettled) return false;
   double share = std::min(1.0, (prior_std_.array() / step.head(p_).array().abs().max(1e-300)).minCoeff());
@@ -115,7 +137,7 @@ InputPosterior::Line InputPosterior::line(const Fit& mode) const {
   Line out;
   out.direction = widest * prior_std_.cwiseProduct(axes.eigenvectors().col(p_ - 1));
   out.dual = own.ldlt().solve(out.direction);
-  out.scale = scale(mode.normal);
+  out.scales = scales(mode.normal);
   out.furthest = kFurthest / widest;
   return out;
 }
@@ -125,9 +147,10 @@ InputPosterior::Point InputPosterior::most_probable(const Line& line, double alo
   Point out{along, 0.0, 0.0, {}};
   for (int k = 0; k < kMostSteps; ++k) {
     const Fit fit{z, rows_(z)};
-    Eigen::MatrixXd inverse_covariance = fit.normal.information / line.scale;
+    const NormalEquations normal = sum(fit.normal, line.scales);
+    Eigen::MatrixXd inverse_covariance = normal.information;
     inverse_covariance.diagonal() += prior_information();
-    const Eigen::VectorXd pull = fit.normal.gradient / line.scale + prior_information().cwiseProduct(from_prior(z));
+    const Eigen::VectorXd pull = normal.gradient + prior_information().cwiseProduct(from_prior(z));
     // The step minimises over the plane dual . step = 0.
     Eigen::MatrixXd sides(z.size(), 2);
     sides.col(0) = pull;
@@ -137,7 +160,7 @@ InputPosterior::Point InputPosterior::most_probable(const Line& line, double alo
     const double compliance = sides.col(1).dot(solved.col(1));
     const Eigen::VectorXd step = solved.col(0) - solved.col(1) * (sides.col(1).dot(solved.col(0)) / compliance);
     const double gain = pull.dot(step);
-    out.cost = cost(fit, line.scale) - gain;
+    out.cost = cost(fit, line.scales) - gain;
     out.deviation = std::sqrt(compliance);
     z += step;
     if (gain < kLinear) break;
@@ -191,7 +214,7 @@ void InputPosterior::refine(const Line& line, Points& points) {
 
 InputPosterior::Moments InputPosterior::integrate(const Fit& mode) {
   const Line along = line(mode);
-  Points points{{0.0, cost(mode, along.scale), 1.0, mode.z}};
+  Points points{{0.0, cost(mode, along.scales), 1.0, mode.z}};
   for (const double side : {1.0, -1.0}) march(along, side, points);
   std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.along < b.along; });
   refine(along, points);

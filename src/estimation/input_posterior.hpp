@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <functional>
 #include <vector>
 
@@ -9,13 +10,15 @@
 namespace tissue_stiffness {
 
 /// This is the posterior of z = [w; eta], parameters and nuisance parameters, under independent normal priors and the
-/// likelihood to the power 1 / temperature (Miller & Dunson 2019):
-///   -2 log p(z) = r(z)^T R^-1 r(z) / s + (z - m)^T P^-1 (z - m),   s = temperature max(1, mean square of the best r).
+/// likelihoods of one or several recordings i, each to the power 1 / temperature (Miller & Dunson 2019):
+///   -2 log p(z) = sum_i r_i(z)^T R_i^-1 r_i(z) / s_i + (z - m)^T P^-1 (z - m),
+///   s_i = temperature_i max(1, mean square of the best r_i).
 class InputPosterior {
  public:
+  using Equations = std::vector<NormalEquations>;  ///< of each recording
   struct Fit {
     Eigen::VectorXd z;
-    NormalEquations normal;
+    Equations normal;
   };
   /// These are the posterior's mean and covariance. `beyond_linear` is the covariance less that of the linear form at the
   /// mode.
@@ -24,14 +27,15 @@ class InputPosterior {
     Eigen::MatrixXd beyond_linear;
   };
 
-  using Rows = std::function<NormalEquations(const Eigen::VectorXd& z)>;
+  using Rows = std::function<Equations(const Eigen::VectorXd& z)>;
   /// `prior_mean` and `prior_std` are those of the parameters. The nuisances have mean 0 and standard deviation
   /// `nuisance_std`.
   InputPosterior(Rows rows, const Eigen::VectorXd& prior_mean, const Eigen::VectorXd& prior_std,
                  const Eigen::VectorXd& nuisance_std);
 
-  void set_temperature(double temperature) { temperature_ = temperature; }
-  double temperature() const { return temperature_; }
+  void set_temperature(std::size_t recording, double temperature);
+  double temperature(std::size_t recording) const;
+  Eigen::Index nuisance_count() const { return nuisance_std_.size(); }
   /// Returns the prior standard deviation of nuisance i of z.
   double nuisance_std(Eigen::Index i) const { return nuisance_std_[i - p_]; }
   void set_nuisance_std(Eigen::Index first, Eigen::Index count, double std);
@@ -41,12 +45,15 @@ class InputPosterior {
   Fit at(const Eigen::VectorXd& w);
   /// Finds the mode by Gauss-Newton from [w; 0].
   Fit mode(const Eigen::VectorXd& w);
-  /// Returns -2 log p at a fit, with `scale` for s.
-  double cost(const Fit& fit, double scale) const;
-  double scale(const NormalEquations& normal) const;
+  /// Returns -2 log p at a fit, with `scales` for s.
+  double cost(const Fit& fit, const Eigen::VectorXd& scales) const;
+  /// Returns s of each recording.
+  Eigen::VectorXd scales(const Equations& normal) const;
+  /// Returns the sum of all recordings' equations, each over its s.
+  NormalEquations sum(const Equations& normal, const Eigen::VectorXd& scales) const;
   /// Returns the inverse covariance of the linear form.
-  Eigen::MatrixXd information(const NormalEquations& normal) const;
-  Eigen::MatrixXd covariance(const NormalEquations& normal) const;
+  Eigen::MatrixXd information(const Equations& normal) const;
+  Eigen::MatrixXd covariance(const Equations& normal) const;
   /// Returns the share of nuisance i's prior variance that the data have taken away.
   double learnt(const Eigen::MatrixXd& covariance, Eigen::Index i) const;
 
@@ -60,7 +67,7 @@ class InputPosterior {
   struct Line {
     Eigen::VectorXd direction;  ///< of w, one standard deviation of the linear form
     Eigen::VectorXd dual;       ///< its product with w is the place along the line, from the mode's on
-    double scale;
+    Eigen::VectorXd scales;
     double furthest;  ///< in standard deviations of the linear form
   };
   struct Point {
@@ -81,7 +88,7 @@ class InputPosterior {
   Rows rows_;
   Eigen::Index p_, size_;
   Eigen::VectorXd prior_mean_, prior_std_, nuisance_std_;
-  double temperature_ = 1.0;
+  std::vector<double> temperatures_;  ///< of the first recordings; 1 of all others
 };
 
 }  // namespace tissue_stiffness

@@ -6,56 +6,50 @@
 #include <cstdio>
 #include <utility>
 
-#include "estimation/input_linearisation.hpp"
-#include "estimation/input_posterior.hpp"
+#include "estimation/fit_alone.hpp"
+#include "estimation/joint_rows.hpp"
 #include "fit/ensemble.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
 constexpr int kNoiseSteps = 2;
-constexpr double kMoreNoise = 1.2;   // variance over the stated one that is worth another fit
-constexpr double kNoise = 2.0;       // mean square over the noise's below which no other start is tried
-constexpr Eigen::Index kModes = 12;  // modes along which missing physics is searched
-constexpr double kPlausible = 3.0;   // standard deviations
-constexpr double kTails = 2.0;       // variance of Student's distribution with 4 degrees of freedom and scale 1
+constexpr double kMoreNoise = 1.2;  // variance over the stated one that is worth another fit
+constexpr double kNoise = 2.0;      // mean square over the noise's below which no other start is tried
+constexpr double kPlausible = 3.0;  // standard deviations
 
 Eigen::MatrixXd inverse(const Eigen::MatrixXd& m) {
   return m.ldlt().solve(Eigen::MatrixXd::Identity(m.rows(), m.cols()));
 }
 
-// Returns each nuisance's standard deviation, in units of its tolerance.
-Eigen::VectorXd nuisance_stds(const InputLinearisation& rows, Eigen::Index parameters) {
-  Eigen::VectorXd out = Eigen::VectorXd::Constant(rows.size() - parameters, std::sqrt(kTails));
-  out.tail(rows.size() - rows.first_of_mesh()).setOnes();
-  return out;
-}
-
 // Fits the parameters and the inputs' errors by Gauss-Newton, and answers the question.
 class InputFit {
  public:
-  InputFit(const InputStudy::Question& question, InputModels& models)
-      : q_(question),
-        models_(models),
-        rows_(question, models),
-        p_(question.w.size()),
-        posterior_([this](const Eigen::VectorXd& z) { return rows_.at(z); }, models.base.parameters().prior_mean(),
-                   question.prior_std, nuisance_stds(rows_, p_)) {}
+  explicit InputFit(const JointRows& rows)
+      : rows_(rows),
+        columns_(rows.columns()),
+        p_(rows.parameters().size()),
+        posterior_([this](const Eigen::VectorXd& z) { return rows_.at(z); }, rows.parameters().prior_mean(),
+                   rows.prior_std(), rows.nuisance_std()) {}
 
   InputStudy::Answer run() {
     InputStudy::Answer answer;
-    answer.asked = q_.w;
-    answer.fitted = !models_.base.nonlinear();
-    const bool uncertain = answer.fitted && rows_.size() > p_;  // else the fit is at the question's parameters
-    Fit best = uncertain ? best_mode() : posterior_.at(q_.w);
+    answer.asked = rows_.asked();
+    answer.fitted = true;
+    for (std::size_t r = 0; r < rows_.recordings(); ++r)
+      answer.fitted = answer.fitted && !rows_.part(r).models.base.nonlinear();
+    answer.recordings.resize(rows_.recordings());
+    const bool uncertain = answer.fitted && columns_.size() > p_;  // else the fit is at the question's parameters
+    Fit best = uncertain ? best_mode() : posterior_.at(answer.asked);
     if (uncertain) best = with_noise_of_forces(std::move(best));
-    if (answer.fitted) answer.test = test(best);
+    if (answer.fitted) test(best, answer);
     if (uncertain) {
-      best = tempered_fit(answer.test);
-      answer.test = test(best);  // input errors that the tempered data do not ask for explain nothing
+      best = tempered_fit(answer);
+      test(best, answer);  // input errors that the tempered data do not ask for explain nothing
     }
+    if (rows_.recordings() > 1 && answer.fitted) compare(best, answer);
     tell_inputs(best, answer);
-    InputPosterior::Moments moments{best, Eigen::MatrixXd::Zero(rows_.size(), rows_.size())};
+    InputPosterior::Moments moments{best, Eigen::MatrixXd::Zero(columns_.size(), columns_.size())};
     if (uncertain) moments = posterior_.integrate(best);
     finish(best, moments, answer);
     return answer;
@@ -65,10 +59,12 @@ class InputFit {
   using Fit = InputPosterior::Fit;
 
   Fit best_mode() {
-    Fit best = posterior_.mode(q_.w);
-    if (!(posterior_.scale(best.normal) > kNoise)) return best;
-    Fit other = posterior_.mode(models_.base.parameters().prior_mean());
-    const double s = std::min(posterior_.scale(best.normal), posterior_.scale(other.normal));
+    const Eigen::VectorXd from = rows_.asked();
+    Fit best = posterior_.mode(from);
+    const Eigen::VectorXd scales = posterior_.scales(best.normal);
+    if (!(scales.maxCoeff() > kNoise)) return best;
+    Fit other = posterior_.mode(rows_.parameters().prior_mean());
+    const Eigen::VectorXd s = scales.cwiseMin(posterior_.scales(other.normal));
     return posterior_.cost(other, s) < posterior_.cost(best, s) ? other : best;
   }
 
@@ -78,10 +74,12 @@ class InputFit {
   Fit with_noise_of_forces(Fit best) {
     for (int k = 0; k < kNoiseSteps; ++k) {
       bool changed = false;
-      for (const auto& [source, sums] : best.normal.forces) {
-        const double variance = std::max(1.0, sums[0] / std::max(1.0, sums[1]));
-        rows_.set_force_noise(source, variance);
-        changed = changed || variance > kMoreNoise;
+      for (std::size_t r = 0; r < rows_.recordings(); ++r) {
+        for (const auto& [source, sums] : best.normal[r].forces) {
+          const double variance = std::max(1.0, sums[0] / std::max(1.0, sums[1]));
+          rows_.part(r).rows.set_force_noise(source, variance);
+          changed = changed || variance > kMoreNoise;
+        }
       }
       if (!changed) break;
       best = posterior_.mode(best.z.head(p_));
@@ -89,143 +87,177 @@ class InputFit {
     return best;
   }
 
-  // Where a load's course is uncertain, only inertia tells the modulus, by a small part of the motion. Structure that the
-  // residual may hide imitates that part. So the structure counts as one error that all rows share, and the likelihood is
-  // tempered by as much (Miller & Dunson 2019).
-  Fit tempered_fit(const MisfitTest& test) {
-    const double hidden = std::max(0.0, test.excess()) + test.deviation();
-    posterior_.set_temperature(1.0 + hidden * test.structured_dof() * rows_.repeated());
-    return posterior_.mode(q_.w);
+  // Where a load's course is uncertain, only inertia tells the modulus, by a small part of the motion.
+  Fit tempered_fit(const InputStudy::Answer& answer) {
+    for (std::size_t r = 0; r < rows_.recordings(); ++r) {
+      if (!rows_.part(r).predicted) posterior_.set_temperature(r, rows_.temperature(r, answer.recordings[r].test));
+    }
+    return posterior_.mode(rows_.asked());
   }
 
   // The mean of a bent valley lies off its floor, so the runs are corrected by the mode.
   void finish(const Fit& mode, const InputPosterior::Moments& moments, InputStudy::Answer& answer) {
-    const NormalEquations& normal = moments.mean.normal;
-    const double tempered = posterior_.scale(normal);
-    const Eigen::MatrixXd information = posterior_.information(normal), covariance = inverse(information);
-    Eigen::MatrixXd own = posterior_.temperature() / tempered * normal.information.topLeftCorner(p_, p_);
-    own.diagonal() += q_.prior_std.cwiseAbs2().cwiseInverse();
+    const Eigen::VectorXd scales = posterior_.scales(moments.mean.normal);
+    const NormalEquations normal = posterior_.sum(moments.mean.normal, scales);
+    const Eigen::MatrixXd information = posterior_.information(moments.mean.normal), covariance = inverse(information);
+    Eigen::MatrixXd own = Eigen::MatrixXd::Zero(p_, p_);
+    for (std::size_t r = 0; r < rows_.recordings(); ++r) {
+      InputStudy::OfRecording& out = answer.recordings[r];
+      const double tempered = scales[static_cast<Eigen::Index>(r)];
+      out.information = posterior_.temperature(r) / tempered * moments.mean.normal[r].information.topLeftCorner(p_, p_);
+      out.rows = moments.mean.normal[r].rows;
+      own += out.information;
+      tell_corrections(r, mode.z, out);
+    }
+    own.diagonal() += rows_.prior_std().cwiseAbs2().cwiseInverse();
     answer.w = moments.mean.z.head(p_);
     answer.mode = mode.z.head(p_);
-    answer.rows = normal.rows;
     answer.from_noise = inverse(own);
-    const Eigen::Index inputs = rows_.first_of_mesh();
+    const Eigen::Index inputs = columns_.first_of_mesh();
     const Eigen::MatrixXd on_this_mesh = inverse(information.topLeftCorner(inputs, inputs)).topLeftCorner(p_, p_);
     answer.from_loads = on_this_mesh - answer.from_noise + moments.beyond_linear.topLeftCorner(p_, p_);
     answer.from_mesh = covariance.topLeftCorner(p_, p_) - on_this_mesh;
-    const Eigen::MatrixXd shifts = (covariance * normal.constants / tempered).topRows(p_);
-    answer.from_constants =
-        kTails * (shifts * shifts.transpose() + scale_shift(shifts, covariance, normal.information / tempered));
-    for (const InputLinearisation::Load& load : rows_.loads()) {
-      answer.corrections[load.topic] = {load.basis, mode.z.segment(load.first, load.basis.size())};
+    const Eigen::MatrixXd shifts = (covariance * normal.constants).topRows(p_);
+    answer.from_constants = kTails * (shifts * shifts.transpose() + scale_shift(shifts, covariance, normal.information));
+  }
+
+  void tell_corrections(std::size_t recording, const Eigen::VectorXd& z, InputStudy::OfRecording& out) const {
+    const Eigen::VectorXd own = columns_.of(recording, z);
+    for (const InputLinearisation::Load& load : rows_.part(recording).rows.loads()) {
+      out.corrections[load.topic] = {load.basis, own.segment(load.first, load.basis.size())};
     }
   }
 
-  MisfitTest test(const Fit& fit) {
-    MisfitTest out;
-    rows_.each_row(fit.z, [&](const InputLinearisation::Row& row, const Eigen::MatrixXd&) {
-      const Eigen::Index most = std::min<Eigen::Index>(kModes, std::max<Eigen::Index>(1, row.error.size() / 4));
-      out.add(row.error, row.precision, row.modes.leftCols(std::min(most, row.modes.cols())));
-    });
+  void test(const Fit& fit, InputStudy::Answer& answer) {
     const Eigen::MatrixXd left = posterior_.covariance(fit.normal);
-    double fitted = static_cast<double>(p_);
-    for (Eigen::Index i = p_; i < rows_.size(); ++i) fitted += posterior_.learnt(left, i);
-    out.set_fitted(fitted);
-    return out;
+    const Eigen::VectorXd scales = posterior_.scales(fit.normal);
+    for (std::size_t r = 0; r < rows_.recordings(); ++r) {
+      if (rows_.part(r).predicted) continue;
+      const auto& information = fit.normal[r].information / scales[static_cast<Eigen::Index>(r)];
+      answer.recordings[r].test = rows_.test(r, fit.z, left.cwiseProduct(information).sum());
+    }
+  }
+
+  // Each recording's own estimate is compared with that of all others.
+  void compare(const Fit& fit, InputStudy::Answer& answer) {
+    std::vector<LinearFit> alone;
+    for (std::size_t r = 0; r < rows_.recordings(); ++r) {
+      MisfitTest test;
+      alone.push_back(fit_alone(rows_, r, fit.z, test));
+      if (!rows_.part(r).predicted) continue;
+      answer.recordings[r].test = test;
+      answer.recordings[r].mode = with_own_parameters(rows_, r, fit.z).head(p_);
+    }
+    const NormalPrior prior{rows_.parameters().prior_mean(), rows_.prior_std(), rows_.nuisance_std()};
+    for (std::size_t r = 0; r < rows_.recordings(); ++r) {
+      LinearFit others{Eigen::MatrixXd::Zero(columns_.size(), columns_.size()), Eigen::VectorXd::Zero(columns_.size())};
+      for (std::size_t k = 0; k < rows_.recordings(); ++k) {
+        if (k != r && !rows_.part(k).predicted) others.add(alone[k]);
+      }
+      answer.recordings[r].agreement = agreement(alone[r], others, prior);
+    }
   }
 
   // Lengths may all be too large by one share. Then K grows by it, a mass by its cube, the force of a pressure by its
   // square.
   Eigen::MatrixXd scale_shift(const Eigen::MatrixXd& constant_shifts, const Eigen::MatrixXd& posterior,
                               const Eigen::MatrixXd& information) const {  // of the data alone
-    const double tolerance = models_.base.settings().exact_inputs ? 0.0 : models_.base.settings().mesh.scale_tolerance;
+    const ModelSettings& settings = rows_.part(0).models.base.settings();
+    const double tolerance = settings.exact_inputs ? 0.0 : settings.mesh.scale_tolerance;
     Eigen::VectorXd shift = Eigen::VectorXd::Zero(p_);
     for (Eigen::Index i = 0; i < p_; ++i) {
-      if (is_young_modulus(models_.base.parameters().free()[static_cast<std::size_t>(i)].name)) shift[i] -= 1.0;
+      if (is_young_modulus(rows_.parameters().all()[static_cast<std::size_t>(i)].free.name)) shift[i] -= 1.0;
     }
-    for (std::size_t i = 0; i < models_.constants.size(); ++i) {
-      const UncertainConstant& c = models_.constants[i];
+    for (std::size_t i = 0; i < columns_.constants().size(); ++i) {
+      const UncertainConstant& c = columns_.constants()[i];
       if (c.name.find(".density") == std::string::npos) continue;
       shift += 3.0 * (c.value / c.std) * constant_shifts.col(static_cast<Eigen::Index>(i));
     }
-    for (const InputLinearisation::Load& load : rows_.loads()) {
-      if (load.basis.components() != 1 || load.basis.groups().front().name != "gain") continue;
-      shift -= 2.0 / load.basis.groups().front().std * (posterior * information.col(load.first)).head(p_);
+    for (const InputGroup& group : columns_.inputs()) {
+      if (!group.pressure || group.error != "gain") continue;
+      shift -= 2.0 / group.tolerance * (posterior * information.col(group.first)).head(p_);
     }
     return tolerance * tolerance * shift * shift.transpose();
   }
 
   void tell_inputs(const Fit& fit, InputStudy::Answer& answer) {
-    const Eigen::VectorXd& z = fit.z;
     const Eigen::MatrixXd posterior = posterior_.covariance(fit.normal);
-    for (const InputLinearisation::Load& load : rows_.loads()) {
-      const bool motion = load.course->kind() == LoadInput::Kind::pose;
-      const std::string unit = motion ? "m" : load.basis.components() == 1 ? "Pa" : "N";
-      for (const LoadErrorBasis::Group& group : load.basis.groups()) {
-        tell(load.topic, group.name, group.unit.empty() ? unit : group.unit, group.std, load.first + group.first,
-             group.count, z, posterior, answer);
-      }
-      // All these errors are of one sensor: what makes one of them implausible is believed of all.
-      const double widest = posterior_.widest_nuisance_std(load.first, load.basis.size());
-      posterior_.set_nuisance_std(load.first, load.basis.size(), widest);
+    for (const InputGroup& group : columns_.inputs()) {
+      if (group.tolerance > 0.0) tell(group, fit.z, posterior, answer);
     }
-    for (const InputLinearisation::Pose& pose : rows_.poses()) {
-      const std::string topic = models_.base.settings().observations[static_cast<std::size_t>(pose.source)].topic;
-      if (pose.offset > 0.0) tell(topic, "pose offset", "m", pose.offset, pose.first, 3, z, posterior, answer);
-      if (pose.rotation > 0.0) tell(topic, "pose rotation", "rad", pose.rotation, pose.first + 3, 3, z, posterior, answer);
+    // All errors of a load are of one sensor: what makes one of them implausible is believed of all.
+    std::map<int, double> widest;
+    for (const InputGroup& group : columns_.inputs()) {
+      double& std = widest[group.load];
+      std = std::max(std, posterior_.widest_nuisance_std(group.first, group.count));
     }
-    for (const InputLinearisation::ForceSensor& sensor : rows_.force_sensors()) {
-      const std::string topic = models_.base.settings().observations[static_cast<std::size_t>(sensor.source)].topic;
-      if (sensor.gain > 0.0) tell(topic, "gain", "-", sensor.gain, sensor.first, 1, z, posterior, answer);
-      if (sensor.bias > 0.0) tell(topic, "bias", "N", sensor.bias, sensor.first + 1, 3, z, posterior, answer);
-      if (sensor.rotation > 0.0)
-        tell(topic, "direction", "rad", sensor.rotation, sensor.first + 4, 3, z, posterior, answer);
+    for (const InputGroup& group : columns_.inputs()) {
+      if (group.load >= 0) posterior_.set_nuisance_std(group.first, group.count, widest[group.load]);
     }
-    for (const UncertainConstant& c : models_.constants) answer.inputs.push_back({c.name, "value", "", c.std, 0.0, c.std});
+    for (const UncertainConstant& c : columns_.constants())
+      answer.inputs.push_back({c.name, "value", "", c.std, 0.0, c.std});
   }
 
   // A group whose estimate is further from zero than its tolerance allows is implausible. It then counts as wide as it
   // would have to be.
-  void tell(const std::string& input, const std::string& error, const std::string& unit, double std, Eigen::Index first,
-            Eigen::Index count, const Eigen::VectorXd& z, const Eigen::MatrixXd& posterior, InputStudy::Answer& answer) {
+  void tell(const InputGroup& group, const Eigen::VectorXd& z, const Eigen::MatrixXd& posterior,
+            InputStudy::Answer& answer) {
+    const Eigen::Index first = group.first, count = group.count;
     const double n = static_cast<double>(count);
     const double square = z.segment(first, count).squaredNorm();
     const double left = posterior.diagonal().segment(first, count).mean();
     double known = 0.0;  // degrees of freedom that the data determine
     for (Eigen::Index i = first; i < first + count; ++i) known += posterior_.learnt(posterior, i);
-    answer.inputs.push_back({input, error, unit, std, std * std::sqrt(square / n), std * std::sqrt(std::min(1.0, left))});
+    answer.inputs.push_back({group.input, group.error, group.unit, group.tolerance, group.tolerance * std::sqrt(square / n),
+                             group.tolerance * std::sqrt(std::min(1.0, left))});
     const double variances = square / std::pow(posterior_.nuisance_std(first), 2);
     if (variances <= std::max(1.0, known + kPlausible * std::sqrt(2.0 * known))) return;
     posterior_.set_nuisance_std(first, count, std::sqrt(square / std::max(1.0, known)));
     if (!answer.implausible.empty()) return;
     char text[200];
-    std::snprintf(text, sizeof text, "the %s of %s would have to be %.3g %s, %.1f times its tolerance", error.c_str(),
-                  input.c_str(), std * std::sqrt(square / n), unit.c_str(), std::sqrt(square / n));
+    std::snprintf(text, sizeof text, "the %s of %s would have to be %.3g %s, %.1f times its tolerance", group.error.c_str(),
+                  group.input.c_str(), group.tolerance * std::sqrt(square / n), group.unit.c_str(), std::sqrt(square / n));
     answer.implausible = text;
   }
 
-  const InputStudy::Question& q_;
-  const InputModels& models_;
-  InputLinearisation rows_;
+  const JointRows& rows_;
+  const SharedColumns& columns_;
   Eigen::Index p_;
   InputPosterior posterior_;
 };
 
 }  // namespace
 
-struct InputStudy::Parts : InputModels {
-  using InputModels::InputModels;
+struct InputStudy::Parts {
+  Sharing sharing;
+  SharedParameters parameters;
+  std::vector<std::unique_ptr<InputModels>> models;
 };
 
-InputStudy::InputStudy(const Model& model) : parts_(std::make_unique<Parts>(model)) {}
+InputStudy::InputStudy(const Model& model) : InputStudy({&model}, {{"the recording"}, {}}) {}
+InputStudy::InputStudy(const std::vector<const Model*>& models, Sharing sharing)
+    : parts_(new Parts{sharing, SharedParameters(sharing, models), {}}) {
+  for (const Model* model : models) parts_->models.push_back(std::make_unique<InputModels>(*model));
+}
 InputStudy::~InputStudy() = default;
 
 InputStudy::Answer InputStudy::study(const Question& question) {
-  for (const auto& [topic, course] : question.courses) *parts_->uncertain.loads().courses().at(topic) = course;
-  parts_->uncertain.loads().set_first_stamp(question.first_stamp);
-  parts_->base.loads().set_first_stamp(question.first_stamp);
-  parts_->runs->restrict_output_to(observed_nodes(parts_->operators, question.frames));
-  return InputFit(question, *parts_).run();
+  return study(std::vector<const Question*>{&question}, {false});
+}
+
+InputStudy::Answer InputStudy::study(const std::vector<const Question*>& questions, const std::vector<bool>& predicted) {
+  JointRows::Parts parts;
+  for (std::size_t r = 0; r < questions.size(); ++r) {
+    const Question& question = *questions[r];
+    InputModels& models = *parts_->models[r];
+    for (const auto& [topic, course] : question.courses) *models.uncertain.loads().courses().at(topic) = course;
+    models.uncertain.loads().set_first_stamp(question.first_stamp);
+    models.base.loads().set_first_stamp(question.first_stamp);
+    models.runs->restrict_output_to(observed_nodes(models.operators, question.frames));
+    parts.push_back(std::make_unique<JointRows::Part>(question, models, predicted[r]));
+  }
+  const JointRows rows(std::move(parts), parts_->sharing, parts_->parameters);
+  return InputFit(rows).run();
 }
 
 }  // namespace tissue_stiffness

@@ -49,8 +49,7 @@ void drive(const MeshError::Question& question, Model& model) {
 }
 
 // Returns 1 for each free parameter that is a Young's modulus, else 0.
-Eigen::VectorXd young_moduli(const Model& model) {
-  const std::vector<FreeParameter>& free = model.parameters().free();
+Eigen::VectorXd young_moduli(const std::vector<FreeParameter>& free) {
   Eigen::VectorXd out(static_cast<Eigen::Index>(free.size()));
   for (std::size_t i = 0; i < free.size(); ++i)
     out[static_cast<Eigen::Index>(i)] = is_young_modulus(free[i].name) ? 1.0 : 0.0;
@@ -97,8 +96,12 @@ BasisOptions basis_beside(const TetMesh& mesh, const TetMesh& finer) {
 }
 
 Eigen::MatrixXd mesh_discrepancy(const Model& model, const Eigen::VectorXd& shift) {
-  const double left = model.nonlinear() ? 1.0 : kLeftByCorrection;
-  const Eigen::VectorXd modulus = young_moduli(model);
+  return mesh_discrepancy(model.parameters().free(), model.nonlinear(), shift);
+}
+
+Eigen::MatrixXd mesh_discrepancy(const std::vector<FreeParameter>& free, bool nonlinear, const Eigen::VectorXd& shift) {
+  const double left = nonlinear ? 1.0 : kLeftByCorrection;
+  const Eigen::VectorXd modulus = young_moduli(free);
   const double mean_square = modulus.dot(shift.cwiseAbs2()) / std::max(1.0, modulus.sum());
   Eigen::MatrixXd discrepancy = shift * shift.transpose();
   discrepancy.diagonal().array() += modulus.array() * (mean_square - shift.array().square()).max(0.0);
@@ -154,7 +157,7 @@ struct MeshError::Studies {
   // Returns w with the best common factor of all moduli, not far from w. A coarse mesh makes the whole body too stiff, and
   // a body that rings soon has other minima.
   Eigen::VectorXd best_near(const Question& q, const std::vector<Prediction>& truth) const {
-    const Eigen::VectorXd stiffer = young_moduli(coarse).cwiseProduct(q.prior_std);
+    const Eigen::VectorXd stiffer = young_moduli(coarse.parameters().free()).cwiseProduct(q.prior_std);
     const auto cost = [&](const Eigen::VectorXd& x) {
       const std::vector<Prediction> own = predictions(*coarse_runs, q, q.w + x[0] * stiffer);
       double sum = 0.0;

@@ -28,6 +28,7 @@ BasisOptions basis_beside(const TetMesh& mesh, const TetMesh& finer);
 /// stays, 1 sigma. A modulus whose own shift happens to be small gets half of the moduli's rms shift. A nonlinear model
 /// keeps all of both.
 Eigen::MatrixXd mesh_discrepancy(const Model& model, const Eigen::VectorXd& shift);
+Eigen::MatrixXd mesh_discrepancy(const std::vector<FreeParameter>& free, bool nonlinear, const Eigen::VectorXd& shift);
 
 /// The study tells what the mesh does to the parameters. The model runs once more on a mesh with every tetrahedron cut into
 /// eight and flat facets bent to the smooth surface they stand for. Fitted to that run, the estimator's own mesh would be

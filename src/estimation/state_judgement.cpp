@@ -18,39 +18,20 @@ std::string percent(double share) {
 }
 
 // Returns the indices of the parameters that a state speaks of: the moduli, or all where none is free.
-std::vector<Eigen::Index> judged(const Model& model) {
+std::vector<Eigen::Index> judged(const std::vector<FreeParameter>& free) {
   std::vector<Eigen::Index> moduli, all;
-  for (std::size_t i = 0; i < model.parameters().free().size(); ++i) {
+  for (std::size_t i = 0; i < free.size(); ++i) {
     all.push_back(static_cast<Eigen::Index>(i));
-    if (is_young_modulus(model.parameters().free()[i].name)) moduli.push_back(all.back());
+    if (is_young_modulus(free[i].name)) moduli.push_back(all.back());
   }
   return moduli.empty() ? all : moduli;
-}
-
-// Returns why the estimate is not precise enough to be used; empty: it is.
-std::string unlearnt(const Model& model, const Eigen::MatrixXd& covariance) {
-  const Eigen::VectorXd std = covariance.diagonal().cwiseSqrt(), prior = model.parameters().prior_std();
-  const std::vector<std::string>& before = model.settings().known_before;
-  for (const Eigen::Index i : judged(model)) {
-    const FreeParameter& free = model.parameters().free()[static_cast<std::size_t>(i)];
-    const bool positive = free.prior.kind == Quantity::Kind::log_normal;
-    const bool known = std::find(before.begin(), before.end(), free.name) != before.end();
-    if (!known && std[i] > kLearnt * prior[i]) return free.name + " is hardly better known than its prior";
-    if (positive && std[i] > kWidest) return free.name + " is known to " + percent(std[i]) + " only";
-  }
-  return "";
 }
 
 StateJudgement by_shape(const StateEvidence& e) {
   const MisfitTest& test = e.systematic.test();
   if (test.passes()) return {EstimateState::converged, "the misfit is noise"};
   if (e.mesh_pending) return {EstimateState::converging, "the error of the mesh has not been estimated yet"};
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "along the body's lowest modes the misfit is %.2g times the noise's variance, %.1f standard deviations "
-                "beyond what passes",
-                1.0 + test.excess(), test.z());
-  return {EstimateState::doubtful, text};
+  return {EstimateState::doubtful, misfit_text(test)};
 }
 
 // A model that runs in full is judged by the size of its misfit alone.
@@ -63,6 +44,28 @@ StateJudgement by_size(const StateEvidence& e) {
 }
 
 }  // namespace
+
+std::string misfit_text(const MisfitTest& test) {
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "along the body's lowest modes the misfit is %.2g times the noise's variance, %.1f standard deviations "
+                "beyond what passes",
+                1.0 + test.excess(), test.z());
+  return text;
+}
+
+std::string unlearnt(const std::vector<FreeParameter>& free, const Eigen::MatrixXd& covariance,
+                     const std::vector<std::string>& known_before) {
+  const Eigen::VectorXd std = covariance.diagonal().cwiseSqrt();
+  for (const Eigen::Index i : judged(free)) {
+    const FreeParameter& one = free[static_cast<std::size_t>(i)];
+    const bool positive = one.prior.kind == Quantity::Kind::log_normal;
+    const bool known = std::find(known_before.begin(), known_before.end(), one.name) != known_before.end();
+    if (!known && std[i] > kLearnt * one.prior_std()) return one.name + " is hardly better known than its prior";
+    if (positive && std[i] > kWidest) return one.name + " is known to " + percent(std[i]) + " only";
+  }
+  return "";
+}
 
 StateJudgement judge_state(const StateEvidence& e) {
   if (e.misfit.count == 0) return {EstimateState::no_data, "nothing was observed"};
@@ -78,7 +81,8 @@ StateJudgement judge_state(const StateEvidence& e) {
   if (!inputs->implausible.empty()) return {EstimateState::doubtful, inputs->implausible};
   StateJudgement of_misfit = inputs->fitted ? by_shape(e) : by_size(e);
   if (of_misfit.state == EstimateState::doubtful) return of_misfit;
-  if (std::string why = unlearnt(e.model, e.covariance); !why.empty()) return {unknown, std::move(why)};
+  if (std::string why = unlearnt(e.model.parameters().free(), e.covariance, e.model.settings().known_before); !why.empty())
+    return {unknown, std::move(why)};
   return of_misfit;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "estimation/systematic_error.hpp"
 #include "forward/model.hpp"
@@ -32,5 +33,12 @@ struct StateJudgement {
 
 /// Judges the state of an estimate; the table is in `doc/method/theory.md`.
 StateJudgement judge_state(const StateEvidence& evidence);
+
+/// Says how far a misfit is from passing its test.
+std::string misfit_text(const MisfitTest& test);
+/// Returns why an estimate is not precise enough to be used; empty: it is. `covariance` is that of filter coordinates.
+/// A parameter that was `known_before` need not be better known than its prior.
+std::string unlearnt(const std::vector<FreeParameter>& free, const Eigen::MatrixXd& covariance,
+                     const std::vector<std::string>& known_before = {});
 
 }  // namespace tissue_stiffness

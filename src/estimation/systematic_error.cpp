@@ -24,7 +24,7 @@ SystematicError::Corrected SystematicError::correct(const Filtered& filtered) co
   Eigen::MatrixXd of_model = Eigen::MatrixXd::Zero(out.mean.size(), out.mean.size());
   // The misfit may lie along what the parameters do, with all rows and frames alike (Kennedy & O'Hagan 2001).
   const double discrepancy = inputs_ ? std::max(test_.discrepancy(), unexplained(filtered.misfit_scale)) : 0.0;
-  if (discrepancy > 0.0) of_model = within_prior(discrepancy * inputs_->rows * inputs_->from_noise);
+  if (discrepancy > 0.0) of_model = within_prior(discrepancy * inputs_->recordings.front().rows * inputs_->from_noise);
   out.covariance += of_model;
   for (Eigen::Index i = 0; i < out.mean.size(); ++i) {
     const double all = out.covariance(i, i);
@@ -41,7 +41,7 @@ void SystematicError::refresh() {
   if (!inputs_) {  // nothing is known yet of what the inputs' errors do
     if (!model_.settings().exact_inputs) parts_.loads = prior_std.cwiseAbs2().asDiagonal();
   } else {
-    test_ = inputs_->test;
+    test_ = inputs_->recordings.front().test;
     test_.set_numerics(of_mesh());
     parts_.loads = inputs_->from_loads;
     parts_.mesh += inputs_->from_mesh;

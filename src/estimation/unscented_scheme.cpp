@@ -273,12 +273,13 @@ class UnscentedScheme : public Scheme {
     if (!inputs.fitted) return false;
     const Eigen::VectorXd std = filter_run_->covariance().diagonal().cwiseSqrt();
     const Eigen::VectorXd move = inputs.mode - inputs.asked;
-    const bool moves = !inputs.corrections.empty() && (move.array().abs() > kMoved * std.array()).any();
+    const auto& corrections = inputs.recordings.front().corrections;
+    const bool moves = !corrections.empty() && (move.array().abs() > kMoved * std.array()).any();
     const bool believed = systematic_.inputs_believed();
     const bool change = believed ? moves : corrected_;
     if (change) {
       stop();
-      for (const auto& [topic, correction] : inputs.corrections) {
+      for (const auto& [topic, correction] : corrections) {
         model_->loads().courses().at(topic)->correct(correction.basis,
                                                      believed ? correction.coefficients : Eigen::VectorXd());
       }

@@ -132,14 +132,14 @@ Eigen::VectorXd RecordingFit::predicted(const Eigen::VectorXd& w) const {
   return Eigen::Map<const Eigen::VectorXd>(out.data(), static_cast<Eigen::Index>(out.size()));
 }
 
-void RecordingFit::show(const Eigen::VectorXd& w, const FreeFrameVisitor& visit) {
+std::vector<Misfit> RecordingFit::show(const Eigen::VectorXd& w, const FreeFrameVisitor& visit) {
   forward_->restrict_output_to({});
   const FitProblem all = problem(*forward_, recording_.frames);
-  free_run({model_, *forward_, operators_, all.frames, all.start}, model_.parameters().theta(w),
-           [&](const FreeFrame& frame) {
-             recording_.checkpoint();
-             visit(frame);
-           });
+  return free_run({model_, *forward_, operators_, all.frames, all.start}, model_.parameters().theta(w),
+                  [&](const FreeFrame& frame) {
+                    recording_.checkpoint();
+                    visit(frame);
+                  });
 }
 
 Eigen::MatrixXd RecordingFit::rows_along(const Eigen::VectorXd& w, const Eigen::MatrixXd& shapes, const Rows& rows) const {

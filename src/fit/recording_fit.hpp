@@ -55,7 +55,14 @@ class RecordingFit {
   /// Returns what the free run at w predicts for each row, over sigma; 0 where that is not finite.
   Eigen::VectorXd predicted(const Eigen::VectorXd& w) const;
   /// Shows `visit` each frame of the free run at w, with the displacement of every node. A nonlinear model runs in full.
-  void show(const Eigen::VectorXd& w, const FreeFrameVisitor& visit);
+  /// Returns the misfit of each frame.
+  std::vector<Misfit> show(const Eigen::VectorXd& w, const FreeFrameVisitor& visit);
+  /// Returns the problem that all frames pose, held-out ones too.
+  FitProblem whole() const { return problem(*forward_, recording_.frames); }
+  /// Takes an estimated error off a measured load, by its topic.
+  void correct(const std::string& topic, const LoadErrorBasis& basis, const Eigen::VectorXd& coefficients) {
+    model_.loads().courses().at(topic)->correct(basis, coefficients);
+  }
   /// Returns d rows / d amplitude of each of `shapes` (3n x count), as a further displacement of the free run at w, N x
   /// count.
   Eigen::MatrixXd rows_along(const Eigen::VectorXd& w, const Eigen::MatrixXd& shapes, const Rows& rows) const;

@@ -28,7 +28,7 @@ InputPosterior::Rows rows_of(const Values& h, const Eigen::VectorXd& y, double r
     out.gradient = slope.transpose() * weight.cwiseProduct(error);
     out.cost = error.dot(weight.cwiseProduct(error));
     out.rows = static_cast<double>(y.size());
-    return out;
+    return InputPosterior::Equations{out};
   };
 }
 
@@ -103,7 +103,7 @@ TEST(InputPosterior, FollowsAValleyWhoseSidesAreRobust) {
 TEST(InputPosterior, AHotLikelihoodLeavesThePrior) {
   const Values h = [](const Eigen::VectorXd& z) { return Eigen::Vector2d(10.0 * z[0], z[1]); };
   InputPosterior p = posterior(rows_of(h, Eigen::Vector2d(20.0, 0.0)), 0.5, 1.0);
-  p.set_temperature(1e6);
+  p.set_temperature(0, 1e6);
   const InputPosterior::Fit mode = p.mode(Eigen::VectorXd::Zero(1));
   EXPECT_NEAR(mode.z[0], 0.0, 1e-3);
   EXPECT_NEAR(p.covariance(mode.normal)(0, 0), 0.25, 1e-3);
