@@ -178,7 +178,7 @@ std::string timing_table(const Results& results) {
 
 /// Returns the headline's parameters against time. Other parameters can be unfolded.
 std::string courses(const Results& results) {
-  if (results.used() == 0) return "";
+  if (results.frames.empty() || results.used() == 0) return "";
   const std::vector<ParameterEstimate> first = headline(results.parameters);
   std::string charts, others;
   for (const ParameterEstimate& p : results.parameters) {
@@ -190,7 +190,7 @@ std::string courses(const Results& results) {
 }
 
 std::string misfit(const Results& results) {
-  if (results.used() == 0) return "";
+  if (results.frames.empty() || results.used() == 0) return "";
   return section(
       "fails", "When the model fails",
       chart_place("misfit") +
@@ -211,9 +211,9 @@ std::string report_html(const Results& results, const Showing& showing) {
   page.title = short_path(results.model) + " - tissue stiffness";
   page.heading = "Tissue stiffness";
   page.subheading = short_path(results.model) + " · " + short_path(results.recording);
-  page.body = answer(results) + facts(results) + courses(results) + player(showing) + misfit(results) +
-              parameter_table(results) + input_section(results) + (results.map ? map_table(*results.map) : "") +
-              skipped_table(results) + choices(results) +
+  page.body = answer(results) + facts(results) + recordings_table(results.recordings) + courses(results) + player(showing) +
+              misfit(results) + parameter_table(results) + input_section(results) +
+              (results.map ? map_table(*results.map) : "") + skipped_table(results) + choices(results) +
               section("model", "", file_details("Model file", results.model_text, "", true)) + timing_table(results) +
               colophon(results.command_line, results.versions);
   page.data = "{\"results\":" + results_json(results) + ",\"course\":" + course_json(results, showing.first_stamp) +

@@ -6,11 +6,14 @@
 namespace tissue_stiffness {
 
 int Results::used() const {
-  return static_cast<int>(std::count_if(frames.begin(), frames.end(), [](const FrameRecord& f) { return f.used; }));
+  int of_several = 0;
+  for (const RecordingRecord& recording : recordings) of_several += recording.predicted ? 0 : recording.frames;
+  return of_several +
+         static_cast<int>(std::count_if(frames.begin(), frames.end(), [](const FrameRecord& f) { return f.used; }));
 }
 
 int Results::skipped() const {
-  return static_cast<int>(frames.size()) - used();
+  return static_cast<int>(std::count_if(frames.begin(), frames.end(), [](const FrameRecord& f) { return !f.used; }));
 }
 
 double Results::frame_seconds_quantile(double p) const {

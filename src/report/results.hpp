@@ -33,6 +33,25 @@ struct FrameRecord {
   int outliers = 0;  ///< number of rows whose weight is below one half
 };
 
+/// One of several recordings that were fitted together, or were predicted by such a fit.
+struct RecordingRecord {
+  std::string name;
+  bool predicted = false;
+  int frames = 0;
+  EstimateState state_alone = EstimateState::no_data;                ///< by this recording alone
+  std::vector<ParameterEstimate> alone;                              ///< by this recording alone; empty: predicted
+  std::vector<ParameterEstimate> own;                                ///< parameters that only it has, by all recordings
+  double rms_error = std::numeric_limits<double>::quiet_NaN();       ///< of the free run at the joint estimate [m]
+  double noise_rms = std::numeric_limits<double>::quiet_NaN();       ///< as stated in the model file [m]
+  double rms_sigma = std::numeric_limits<double>::quiet_NaN();       ///< rms error over sigma [-]
+  double relative_error = std::numeric_limits<double>::quiet_NaN();  ///< rms error / rms motion [-]
+  bool misfit_passes = false;
+  double misfit_z = std::numeric_limits<double>::quiet_NaN();  ///< of the misfit's test; NaN: not tested
+  bool agrees = false;
+  double agreement_z = std::numeric_limits<double>::quiet_NaN();  ///< of the agreement with the others; NaN: not tested
+  int agreement_dof = 0;
+};
+
 /// All results of an estimation run.
 struct Results {
   std::string model;                          ///< name of the model file
@@ -50,8 +69,9 @@ struct Results {
   double basis_error = std::numeric_limits<double>::quiet_NaN();  ///< of the reduced basis, an upper bound [m]
   double nis_mean_per_dof = std::numeric_limits<double>::quiet_NaN();
   double nis_p_value = std::numeric_limits<double>::quiet_NaN();
-  int nodes = 0, tetrahedra = 0;    ///< of the mesh
-  std::optional<StiffnessMap> map;  ///< if the model file asks for one
+  int nodes = 0, tetrahedra = 0;            ///< of the mesh
+  std::optional<StiffnessMap> map;          ///< if the model file asks for one
+  std::vector<RecordingRecord> recordings;  ///< of several; `parameters` are then those that they share
   std::vector<FrameRecord> frames;
   std::vector<double> frame_seconds;                          ///< wall time of each used frame
   std::vector<std::pair<std::string, double>> stage_seconds;  ///< wall time of each stage over the whole run

@@ -41,6 +41,31 @@ json inputs_json(const std::vector<InputUncertainty>& inputs) {
   return out;
 }
 
+json recordings_json(const std::vector<RecordingRecord>& recordings) {
+  const auto parameters = [](const std::vector<ParameterEstimate>& all) {
+    json out = json::object();
+    for (const ParameterEstimate& p : all) out[p.name] = parameter_json(p);
+    return out;
+  };
+  json out = json::array();
+  for (const RecordingRecord& r : recordings) {
+    json one = {{"recording", r.name},
+                {"predicted", r.predicted},
+                {"frames", r.frames},
+                {"parameters", parameters(r.own)},
+                {"rms_error", number(r.rms_error)},
+                {"noise_rms", number(r.noise_rms)},
+                {"rms_sigma", number(r.rms_sigma)},
+                {"relative_error", number(r.relative_error)}};
+    if (!r.predicted) one["alone"] = {{"state", to_string(r.state_alone)}, {"parameters", parameters(r.alone)}};
+    if (std::isfinite(r.misfit_z)) one["misfit"] = {{"z", r.misfit_z}, {"passes", r.misfit_passes}};
+    if (std::isfinite(r.agreement_z))
+      one["agreement"] = {{"z", r.agreement_z}, {"dof", r.agreement_dof}, {"passes", r.agrees}};
+    out.push_back(one);
+  }
+  return out;
+}
+
 json map_json(const StiffnessMap& map) {
   json levels = json::array(), patches = json::array();
   for (const StiffnessLevel& level : map.levels) {
@@ -103,6 +128,7 @@ std::string results_json(const Results& results) {
       {"versions", versions},
   };
   if (!results.interrupted.empty()) root["interrupted_during"] = results.interrupted;
+  if (!results.recordings.empty()) root["recordings"] = recordings_json(results.recordings);
   if (results.map) root["map"] = map_json(*results.map);
   return root.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }

@@ -21,7 +21,7 @@ void make_folder(const std::string& directory) {
 void write_results(const Results& results, const Showing& showing, const std::string& directory) {
   make_folder(directory);
   const std::filesystem::path folder(directory);
-  write_text((folder / "estimates.csv").string(), estimates_csv(results));
+  if (results.recordings.empty()) write_text((folder / "estimates.csv").string(), estimates_csv(results));
   write_text((folder / "report.html").string(), report_html(results, showing));
   write_text((folder / "results.json").string(), results_json(results));
 }

@@ -1,14 +1,15 @@
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "report/write_results.hpp"
 #include "tissue_stiffness/types/error.hpp"
 #include "tools/check_setup.hpp"
-#include "tools/estimate_recording.hpp"
-#include "tools/merge_manifest.hpp"
+#include "tools/estimate_jointly.hpp"
+#include "tools/manifest_option.hpp"
 #include "tools/model_option.hpp"
+#include "tools/pack_recording.hpp"
 #include "tools/progress.hpp"
-#include "tools/run_manifest.hpp"
 #include "tools/run_tool.hpp"
 #include "tools/stop_on_signals.hpp"
 
@@ -22,25 +23,6 @@ std::string join_arguments(int argc, char** argv) {
   return line;
 }
 
-/// Arguments of `estimate` for the recordings of a manifest.
-struct ManifestArguments {
-  std::string file, shard = "1/1", merged;
-  ManifestTask task;
-
-  void add_to(CLI::App& app) {
-    CLI::Option* const manifest =
-        app.add_option("--manifest", file, "CSV file with the columns model and recording: estimate from each of its rows");
-    app.add_option("--shard", shard, "I/N: every N-th row of the manifest, beginning with the I-th (default: 1/1)")
-        ->needs(manifest);
-    app.add_option("--threads", task.processes, "rows of the manifest that are estimated at once (default: 1)")
-        ->needs(manifest)
-        ->check(CLI::Range(1, 1000));
-    app.add_flag("--resume", task.resume, "keep the rows of the manifest that are answered already")->needs(manifest);
-    app.add_option("--merge", merged, "estimate nothing; write this CSV file with a row for each row of the manifest")
-        ->needs(manifest);
-  }
-};
-
 // Returns the arguments that every row's results depend on.
 std::vector<std::string> row_arguments(const ModelOption& model, std::size_t frames) {
   std::vector<std::string> out;
@@ -49,25 +31,24 @@ std::vector<std::string> row_arguments(const ModelOption& model, std::size_t fra
   return out;
 }
 
-ExitCode estimate_manifest(ManifestArguments& arguments, bool quiet, const StopRequest& stop) {
-  const Manifest manifest = read_manifest(arguments.file);
-  ManifestTask& task = arguments.task;
-  read_shard(arguments.shard, task);
-  if (!arguments.merged.empty()) {
-    write_text(arguments.merged, merge_manifest(manifest, task.output, task.arguments));
-    return ExitCode::answered;
-  }
-  make_folder(task.output);
-  Progress progress(std::cerr, Progress::style_of_stderr(quiet), "estimate");
-  const ManifestOutcome out = run_manifest(
-      manifest, task, [&](std::size_t over, std::size_t total) { progress.show(over, total); }, stop);
-  progress.finish();
-  if (!quiet) {
-    std::cout << out.answered << " rows answered, " << out.kept << " kept, " << out.failed << " failed, " << out.interrupted
-              << " not finished; in " << task.output << "\n";
-  }
-  if (out.interrupted > 0) return ExitCode::interrupted;
-  return out.failed > 0 ? ExitCode::failed : ExitCode::answered;
+// Packs the files into a bag in the output folder, and returns its name.
+std::string pack_data(const ModelOption& model, const std::vector<std::string>& data, double scale,
+                      const std::string& folder) {
+  std::vector<PackedTopic> topics;
+  topics.reserve(data.size());
+  for (const std::string& text : data) topics.push_back(read_packed_topic(text));
+  const std::string bag = folder + "/recording.bag";
+  pack_recording(model.load(), topics, scale, bag);
+  return bag;
+}
+
+// Returns the recordings to fit and those to foretell.
+std::vector<RecordingFile> recordings_of(const ModelOption& model, const std::vector<std::string>& fitted,
+                                         const std::vector<std::string>& predicted) {
+  std::vector<RecordingFile> out = pair_files(fitted, model.file, false);
+  for (RecordingFile& file : pair_files(predicted, model.file, true)) out.push_back(std::move(file));
+  for (const RecordingFile& file : out) ModelOption{file.model, model.allow_outside}.check();
+  return out;
 }
 
 }  // namespace
@@ -76,14 +57,23 @@ int main(int argc, char** argv) {
   StopRequest& stop = stop_on_signals();
   CLI::App app("Estimates the unknown parameters of a model, Young's modulus first, from a recording.", "estimate");
   ModelOption model;
-  std::string recording, output;
+  std::string output;
+  std::vector<std::string> files, data, predicted, own;
+  double scale = 1.0;
   std::size_t frames = 0;
   double time_limit = 0.0;
   bool quiet = false, json = false;
-  ManifestArguments many;
+  ManifestOption many;
   model.add_to(app);
   app.get_option("MODEL")->required(false);
-  app.add_option("RECORDING", recording, "rosbag");
+  app.add_option("RECORDING", files, "rosbag; several of one body are fitted together, each with the model file before it");
+  app.add_option("--data", data, "instead of a rosbag: TOPIC=FILE.csv for each topic of the model, as `pack` takes them")
+      ->take_all();
+  app.add_option("--scale", scale, "what converts the lengths of --data to metres, such as 0.001")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--predict", predicted, "rosbags that the fit of the others foretells; MODEL RECORDING for another model")
+      ->take_all();
+  app.add_option("--own", own, "parameter, effect or topic that each of several recordings has for itself")->take_all();
   app.add_option("--output", output, "folder for results.json, estimates.csv, report.html and map.vtk")->required();
   app.add_option("--frames", frames, "stop after so many frames (default: all)")->check(CLI::PositiveNumber);
   app.add_option("--time-limit", time_limit, "end after so many seconds with what is known then")
@@ -91,7 +81,11 @@ int main(int argc, char** argv) {
   app.add_flag("--quiet", quiet, "no progress and no table");
   app.add_flag("--json", json, "print results.json instead of the table");
   many.add_to(app);
-  app.footer(std::string("Example: estimate model.yaml recording.bag --output out\n") + exit_code_help);
+  app.footer(std::string(
+                 "Example: estimate model.yaml recording.bag --output out\n"
+                 "Without ROS: estimate model.yaml --data /tissue/vertices=points.csv /tool/wrench=force.csv --output out\n"
+                 "Several recordings: estimate a.yaml 1.bag 2.bag b.yaml 3.bag --predict 4.bag --output out\n") +
+             exit_code_help);
   return run_tool(app, argc, argv, [&] {
     if (time_limit > 0.0) stop.end_after(time_limit);
     if (!many.file.empty()) {
@@ -100,21 +94,32 @@ int main(int argc, char** argv) {
       many.task.arguments = row_arguments(model, frames);
       return estimate_manifest(many, quiet, stop);
     }
-    if (recording.empty()) throw CLI::RequiredError(model.file.empty() ? "MODEL" : "RECORDING");
+    if (model.file.empty()) throw CLI::RequiredError("MODEL");
+    if (files.empty() == data.empty())
+      throw InputError("RECORDING", data.empty() ? "nothing" : files.front() + " beside --data", "rosbags, or --data");
+    make_folder(output);
+    if (!data.empty()) files.push_back(pack_data(model, data, scale, output));
+    const std::vector<RecordingFile> recordings = recordings_of(model, files, predicted);
+    const bool several = recordings.size() > 1;
+    if (!several && !own.empty()) throw InputError("--own", own.front(), "nothing, with a single recording");
     EstimationRun run;  // as long as nothing is known
     run.results.interrupted = "reading the model and the recording";
-    make_folder(output);
     write_text(output + "/results.json", results_json(run.results));
     Progress progress(std::cerr, Progress::style_of_stderr(quiet || json), "estimate");
+    StepProgress steps(std::cerr, Progress::style_of_stderr(quiet || json || !several), "estimate");
     const auto show = [&](std::size_t done, std::size_t total) { progress.show(done, total); };
     try {
-      const ModelSettings settings = model.load();
-      warn_of_setup(
-          "estimate", settings, recording, [&] { stop.check(); }, std::cerr);
-      run = estimate_recording(settings, recording, frames, show, stop);
+      for (const RecordingFile& file : recordings) {
+        warn_of_setup(
+            "estimate", load_model(file.model), file.recording, [&] { stop.check(); }, std::cerr);
+      }
+      run = several ? estimate_jointly(recordings, own, frames, steps, stop)
+                    : estimate_recording(load_model(recordings.front().model), recordings.front().recording, frames, show,
+                                         stop);
     } catch (const Interrupted&) {
     }
     progress.finish();
+    steps.finish();
     run.results.command_line = join_arguments(argc, argv);
     if (run.results.map) write_text(output + "/map.vtk", run.map_vtk);
     write_results(run.results, run.showing, output);
@@ -122,7 +127,7 @@ int main(int argc, char** argv) {
       std::cout << results_json(run.results) << "\n";
     } else if (!quiet) {
       print_summary(run, Paint::for_stdout(), std::cout);
-      std::cout << "written       " << output << "/{results.json,estimates.csv,report.html"
+      std::cout << "written       " << output << "/{results.json,report.html" << (several ? "" : ",estimates.csv")
                 << (run.results.map ? ",map.vtk}\n" : "}\n");
     }
     return exit_code(run.results);

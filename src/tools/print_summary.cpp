@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "report/input_table.hpp"
+#include "report/page.hpp"
 #include "report/text.hpp"
 #include "tools/estimate_recording.hpp"
 
@@ -70,6 +71,23 @@ void print_map(const StiffnessMap& map, std::ostream& out) {
   }
 }
 
+void print_recordings(const std::vector<RecordingRecord>& recordings, const Paint& paint, std::ostream& out) {
+  out << paint.bold(formatted("%-32s %-10s %7s %11s %9s %10s  %s", "recording", "", "frames", "error [mm]", "of noise",
+                              "misfit", "agreement"))
+      << "\n";
+  const auto verdict = [](double z, bool passes) {
+    return std::isfinite(z) ? short_number(z, 2) + (passes ? " sd" : " sd!") : std::string("-");
+  };
+  for (const RecordingRecord& r : recordings) {
+    print_line(out, "%-32s %-10s %7d %11s %9s %10s  %s", short_path(r.name).c_str(), r.predicted ? "predicted" : "fitted",
+               r.frames, short_number(1e3 * r.rms_error, 3).c_str(), short_number(r.rms_sigma, 3).c_str(),
+               verdict(r.misfit_z, r.misfit_passes).c_str(), verdict(r.agreement_z, r.agrees).c_str());
+    for (const ParameterEstimate& p : r.own)
+      print_line(out, "  %-30s %s -+ %s %s", p.name.c_str(), short_number(p.mean, 4).c_str(),
+                 short_number(1.96 * p.std, 2).c_str(), p.unit.c_str());
+  }
+}
+
 void print_stages(const EstimationRun& run, const Paint& paint, std::ostream& out) {
   out << paint.bold(formatted("%-12s %12s %12s %12s", "stage", "median [ms]", "p99 [ms]", "total [s]")) << "\n";
   for (const char* stage : {"segment", "predict", "observe", "update", "reprocess", "studies"}) {
@@ -89,7 +107,7 @@ void print_summary(const EstimationRun& run, const Paint& paint, std::ostream& o
   if (!results.interrupted.empty()) {
     out << paint.warning("incomplete") << "    interrupted during: " << results.interrupted << "\n";
   }
-  if (results.frames.empty()) return;
+  if (results.frames.empty() && results.recordings.empty()) return;
   print_parameters(results, paint, out);
   for (std::size_t i = 0; i < results.variance.size() && i < results.parameters.size(); ++i) {
     const std::string name = results.variance.size() > 1 ? results.parameters[i].name + ": " : "";
@@ -97,8 +115,9 @@ void print_summary(const EstimationRun& run, const Paint& paint, std::ostream& o
   }
   out << "inputs        " << inputs_line(results) << "\n";
   out << "state         " << painted(results.state, paint) << ": " << results.state_reason << "\n";
-  print_line(out, "frames        %d used, %d skipped, %d late messages; %.3g frames/s", results.used(), results.skipped(),
-             run.late, static_cast<double>(results.frames.size()) / run.seconds);
+  if (results.recordings.empty())
+    print_line(out, "frames        %d used, %d skipped, %d late messages; %.3g frames/s", results.used(), results.skipped(),
+               run.late, static_cast<double>(results.frames.size()) / run.seconds);
   if (run.broken_stamps > 0) {
     out << paint.warning("left out") << "      " << run.broken_stamps << " messages with broken stamps; the last one is on "
         << run.last_broken_stamp << "\n";
@@ -108,6 +127,7 @@ void print_summary(const EstimationRun& run, const Paint& paint, std::ostream& o
                short_number(1e3 * results.rms_error, 4).c_str(), results.rms_error / results.noise_rms,
                100.0 * results.relative_error);
   }
+  if (!results.recordings.empty()) return print_recordings(results.recordings, paint, out);
   print_line(out, "NIS           %.3g a degree of freedom, p = %.2g", results.nis_mean_per_dof, results.nis_p_value);
   if (results.map) print_map(*results.map, out);
   print_stages(run, paint, out);
