@@ -58,6 +58,8 @@ SavedResults read_results(const std::string& path) {
   const json root = json::parse(read_file(out.file, out.file, kAllowed, kLargestFile), nullptr, false);
   if (!root.is_object()) throw InputError(out.file, "no JSON object", kAllowed);
   const Entry all(root, out.file);
+  if (all.has("recordings"))
+    throw InputError(out.file + ": recordings", "several recordings", "the results of one recording");
   out.model = all.at("model").as<std::string>();
   out.recording = all.at("recording").as<std::string>();
   out.model_text = all.at("model_text").as<std::string>();

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "outcome.hpp"
+#include "report/read_results.hpp"
 #include "workbench.hpp"
 
 namespace tissue_stiffness {
@@ -64,6 +65,7 @@ TEST_F(EstimateJointly, FitsTogetherAndForetells) {
   EXPECT_FALSE(other["agreement"]["passes"].get<bool>()) << other.dump();
   EXPECT_NE(read("out/report.html").find("Recordings of one body"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(path("out/estimates.csv")));
+  EXPECT_THROW(read_results(path("out")), InputError);  // its models may differ
 }
 
 TEST_F(EstimateJointly, ListsWhatEachHasForItself) {
