@@ -7,7 +7,7 @@ import time
 import unittest
 
 import tissue_stiffness as ts
-from bench import DAMPING, FALLEN, GRAVITY, INERTIA, Bench, arrays, elasticity, unknown
+from bench import BAR, DAMPING, FALLEN, GRAVITY, INERTIA, Bench, arrays, elasticity, unknown
 
 
 class DiagnosisTest(Bench):
@@ -32,8 +32,8 @@ class DiagnosisTest(Bench):
         tools = ts.read_diagnosis(self.path('diagnosis.json'))
         for key in set(found.content) - {'seconds'}:
             self.assertEqual(found.content[key], tools.content[key], key)
-        self.assertEqual((found.set, found.probabilities, found.z, found.model_next),
-                         (tools.set, tools.probabilities, tools.z, tools.model_next))
+        self.assertEqual((found.set, found.probabilities, found.z), (tools.set, tools.probabilities, tools.z))
+        self.assertEqual(found.model_next.replace(BAR, 'model_files/bar.vtk'), tools.model_next)
 
     def test_the_next_model_has_the_effect(self):
         model, _, frames = self.hidden_damping()
