@@ -11,6 +11,7 @@
 #include "effects/proposal.hpp"
 #include "effects/terms.hpp"
 #include "fem/discretisation.hpp"
+#include "fem/neo_hookean.hpp"
 #include "tissue_stiffness/settings/model_settings.hpp"
 #include "tissue_stiffness/types/load_sample.hpp"
 #include "tissue_stiffness/types/tet_mesh.hpp"
@@ -95,6 +96,21 @@ class NonlinearForce {
   ~NonlinearForce() = default;
 };
 
+/// A law whose stress follows from the deformation gradient F at the same place alone. Reduced models then need its stress
+/// at few quadrature points.
+class PointForm {
+ public:
+  /// Adds the first Piola-Kirchhoff stress P(F) [Pa] at quadrature point q of element e, and its derivative. Both throw
+  /// NumericalError where the law has no stress.
+  virtual void add_stress(int e, int q, const Eigen::Matrix3d& f, const Parameters&, Eigen::Matrix3d& stress) const = 0;
+  virtual void add_tangent(int e, int q, const Eigen::Matrix3d& f, const Parameters&, StressTangent& tangent) const = 0;
+  /// Returns the moduli at rest of a law that has_strain_form() [Pa].
+  virtual Lame rest_moduli(int /*e*/, int /*q*/, const Parameters&) const { return {0.0, 0.0}; }
+
+ protected:
+  ~PointForm() = default;
+};
+
 /// What replaces an effect's linear stiffness and loads under finite strain.
 class FiniteStrainForm {
  public:
@@ -111,6 +127,9 @@ class FiniteStrainForm {
   virtual void add_strain_force(const Eigen::VectorXd& /*u*/, const Eigen::Ref<const Eigen::VectorXd>& /*strains*/,
                                 const Parameters&, double /*scale*/, Eigen::VectorXd&) const {}
   virtual void add_strain_tangent(const Eigen::VectorXd& /*u*/, const Parameters&, double /*scale*/, SparseMatrix&) const {}
+
+  /// Returns the same force point by point; null: it has no such form, and its models are never reduced.
+  virtual const PointForm* point_form() const { return nullptr; }
 
  protected:
   ~FiniteStrainForm() = default;

@@ -12,13 +12,14 @@ double everywhere(int, int) {
   return 1.0;
 }
 
-class Elasticity : public Effect, public FiniteStrainForm {
+class Elasticity : public Effect, public FiniteStrainForm, public PointForm {
  public:
   Elasticity(const Value& arguments, const EffectContext& context)
       : elements_(solid_elements(arguments, context.fem.element_count(), context.regions)), solid_(context.fem, elements_) {
     finite_strain_ = arguments.at("law").as_choice({"linear", "neo_hookean"}) == "neo_hookean";
     Eigen::VectorXd inside = Eigen::VectorXd::Zero(context.fem.element_count());
     for (const int e : elements_) inside[e] = 1.0;
+    inside_.assign(inside.data(), inside.data() + inside.size());
     const auto kept = [&](SparseMatrix&& part) {
       if (arguments.has("region")) {  // of many regions each keeps its own entries alone
         part.prune(0.0);
@@ -61,6 +62,14 @@ class Elasticity : public Effect, public FiniteStrainForm {
                           SparseMatrix& stiffness) const override {
     solid_.add_strain_tangent(lame(scale * p[0], p[1]), u, everywhere, stiffness);
   }
+  const PointForm* point_form() const override { return this; }
+  void add_stress(int e, int, const Eigen::Matrix3d& f, const Parameters& p, Eigen::Matrix3d& stress) const override {
+    if (holds(e)) stress += neo_hookean_stress(lame(p[0], p[1]), f);
+  }
+  void add_tangent(int e, int, const Eigen::Matrix3d& f, const Parameters& p, StressTangent& tangent) const override {
+    if (holds(e)) tangent += neo_hookean_tangent(lame(p[0], p[1]), f);
+  }
+  Lame rest_moduli(int e, int, const Parameters& p) const override { return holds(e) ? lame(p[0], p[1]) : Lame{0.0, 0.0}; }
   double energy(const Motion& motion, const Parameters& p) const override {
     const Eigen::VectorXd& u = motion.displacement;
     double sum = 0.0;
@@ -73,7 +82,10 @@ class Elasticity : public Effect, public FiniteStrainForm {
   }
 
  private:
+  bool holds(int e) const { return inside_[static_cast<std::size_t>(e)] != 0; }
+
   std::vector<int> elements_;
+  std::vector<char> inside_;  ///< for each element: whether it is one of them
   NeoHookean solid_;
   bool finite_strain_ = false;
   std::vector<MatrixTerm> linear_;  ///< one alone where Poisson's ratio is known

@@ -81,14 +81,16 @@ const std::vector<Relaxation>& DynamicSystem::relaxations() const {
   return none;
 }
 
+AlphaCoefficients::AlphaCoefficients(double spectral_radius) {
+  if (spectral_radius >= 1.0) return;
+  alpha_m = (2.0 * spectral_radius - 1.0) / (spectral_radius + 1.0);
+  alpha_f = spectral_radius / (spectral_radius + 1.0);
+  gamma = 0.5 - alpha_m + alpha_f;
+  beta = 0.25 * std::pow(1.0 - alpha_m + alpha_f, 2);
+}
+
 GeneralizedAlpha::GeneralizedAlpha(std::vector<const DynamicSystem*> systems, double spectral_radius, double tolerance)
-    : tolerance_(tolerance) {
-  if (spectral_radius < 1.0) {
-    alpha_m_ = (2.0 * spectral_radius - 1.0) / (spectral_radius + 1.0);
-    alpha_f_ = spectral_radius / (spectral_radius + 1.0);
-    gamma_ = 0.5 - alpha_m_ + alpha_f_;
-    beta_ = 0.25 * std::pow(1.0 - alpha_m_ + alpha_f_, 2);
-  }
+    : alpha_(spectral_radius), tolerance_(tolerance) {
   columns_.resize(systems.size());
   for (std::size_t i = 0; i < systems.size(); ++i) columns_[i].system = systems[i];
 }
@@ -130,7 +132,7 @@ void GeneralizedAlpha::cut_step(std::vector<DynamicState>& states, const std::ve
 
 void GeneralizedAlpha::find_acceleration(const Column& c, const Eigen::VectorXd& x, Eigen::VectorXd& a) const {
   const DynamicState& s = *c.before;
-  a = (x - c.step * s.velocity) / (beta_ * c.step * c.step) - (0.5 / beta_ - 1.0) * s.acceleration;
+  a = (x - c.step * s.velocity) / (alpha_.beta * c.step * c.step) - (0.5 / alpha_.beta - 1.0) * s.acceleration;
 }
 
 // Computes the residual of the balance at the weighted instants for the displacement increment x.
@@ -140,10 +142,11 @@ void GeneralizedAlpha::find_residual(Column& c, const Eigen::VectorXd& x, Eigen:
   DynamicState& middle = c.middle;
   const double h = c.step;
   find_acceleration(c, x, middle.acceleration);
-  middle.velocity = s.velocity + (1.0 - alpha_f_) * h * ((1.0 - gamma_) * s.acceleration + gamma_ * middle.acceleration);
-  middle.acceleration = (1.0 - alpha_m_) * middle.acceleration + alpha_m_ * s.acceleration;
-  middle.time = s.time + (1.0 - alpha_f_) * h;
-  middle.displacement = s.displacement + (1.0 - alpha_f_) * x;
+  middle.velocity = s.velocity + (1.0 - alpha_.alpha_f) * h *
+                                     ((1.0 - alpha_.gamma) * s.acceleration + alpha_.gamma * middle.acceleration);
+  middle.acceleration = (1.0 - alpha_.alpha_m) * middle.acceleration + alpha_.alpha_m * s.acceleration;
+  middle.time = s.time + (1.0 - alpha_.alpha_f) * h;
+  middle.displacement = s.displacement + (1.0 - alpha_.alpha_f) * x;
   r.setZero(x.size());
   system.add_force(middle.time, middle.displacement, middle.velocity, r);
   subtract_product(system.mass(), middle.acceleration, r);
@@ -151,7 +154,7 @@ void GeneralizedAlpha::find_residual(Column& c, const Eigen::VectorXd& x, Eigen:
   if (const auto& branches = system.relaxations(); !branches.empty()) {
     middle.relaxed = s.relaxed;
     system.find_relaxing_strain(middle.displacement, c.strain);
-    relax(branches, (1.0 - alpha_f_) * h, c.strain_before, c.strain, middle.relaxed);
+    relax(branches, (1.0 - alpha_.alpha_f) * h, c.strain_before, c.strain, middle.relaxed);
     overstretch(branches, c.strain, middle.relaxed, c.stretch);
     system.subtract_relaxing_force(middle.displacement, c.stretch, r);
   }
@@ -161,16 +164,16 @@ void GeneralizedAlpha::find_residual(Column& c, const Eigen::VectorXd& x, Eigen:
 void GeneralizedAlpha::factorize(const Column& c) {
   const double h = c.step;
   SparseMatrix j = c.system->stiffness(c.middle.time, c.middle.displacement, c.middle.velocity);
-  j *= 1.0 - alpha_f_;
-  add_scaled(j, (1.0 - alpha_m_) / (beta_ * h * h), c.system->mass());
-  const double to_velocity = (1.0 - alpha_f_) * gamma_ / (beta_ * h);
+  j *= 1.0 - alpha_.alpha_f;
+  add_scaled(j, (1.0 - alpha_.alpha_m) / (alpha_.beta * h * h), c.system->mass());
+  const double to_velocity = (1.0 - alpha_.alpha_f) * alpha_.gamma / (alpha_.beta * h);
   if (c.system->damped()) add_scaled(j, to_velocity, c.system->damping());
   if (c.system->has_velocity_tangent()) {
     add_scaled(j, to_velocity, c.system->friction(c.middle.time, c.middle.displacement, c.middle.velocity));
   }
   for (const Relaxation& branch : c.system->relaxations()) {
-    const double quick = branch.modulus * (1.0 - RelaxationStep(branch, (1.0 - alpha_f_) * h).to);
-    add_scaled(j, (1.0 - alpha_f_) * quick, c.system->relaxing_stiffness());
+    const double quick = branch.modulus * (1.0 - RelaxationStep(branch, (1.0 - alpha_.alpha_f) * h).to);
+    add_scaled(j, (1.0 - alpha_.alpha_f) * quick, c.system->relaxing_stiffness());
   }
   fix_dofs(j, c.system->fixed(), j.diagonal().mean());
   solver_.factorize(j);
@@ -342,7 +345,7 @@ void GeneralizedAlpha::accept(Column& c, DynamicState& state) const {
   Eigen::VectorXd &a = c.middle.acceleration, &u = c.middle.displacement;
   find_acceleration(c, c.increment, a);
   u = state.displacement + c.increment;
-  state.velocity += c.step * ((1.0 - gamma_) * state.acceleration + gamma_ * a);
+  state.velocity += c.step * ((1.0 - alpha_.gamma) * state.acceleration + alpha_.gamma * a);
   if (const auto& branches = c.system->relaxations(); !branches.empty()) {
     c.system->find_relaxing_strain(u, c.strain);
     relax(branches, c.step, c.strain_before, c.strain, state.relaxed);

@@ -40,6 +40,13 @@ class DynamicSystem {
   virtual void find_rotations(const Eigen::VectorXd&, Eigen::Matrix3Xd& rotations) const { rotations.resize(3, 0); }
 };
 
+/// Coefficients of the generalised-alpha family (Chung & Hulbert 1993, eq. 17, 18, 25).
+struct AlphaCoefficients {
+  /// `spectral_radius`: at infinite frequency; 1 is Newmark's average acceleration.
+  explicit AlphaCoefficients(double spectral_radius);
+  double alpha_m = 0.0, alpha_f = 0.0, beta = 0.25, gamma = 0.5;
+};
+
 /// State of a dynamic system at one instant.
 struct DynamicState {
   double time = 0.0;
@@ -80,7 +87,7 @@ class GeneralizedAlpha {
   int iterations() const { return iterations_; }
 
   /// Returns the share of the state before in the forces that a step balances, alpha_f.
-  double force_share() const { return alpha_f_; }
+  double force_share() const { return alpha_.alpha_f; }
 
  private:
   /// One system during a step.
@@ -119,7 +126,7 @@ class GeneralizedAlpha {
   void find_residual(Column& column, const Eigen::VectorXd& increment, Eigen::VectorXd& residual) const;
   void accept(Column& column, DynamicState& state) const;
 
-  double alpha_m_ = 0.0, alpha_f_ = 0.0, beta_ = 0.25, gamma_ = 0.5;
+  AlphaCoefficients alpha_;
   double tolerance_;
   std::vector<Column> columns_;
   std::vector<Column*> active_;  ///< columns that are not done

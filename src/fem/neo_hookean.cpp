@@ -18,16 +18,43 @@ struct Deformation {
   double log_volume;
 };
 
+// Returns false where the material is turned inside out.
+bool invert(Deformation& d) {
+  const double volume = d.gradient.determinant();
+  if (!(volume > 0.0)) return false;
+  d.inverse = d.gradient.inverse();
+  d.log_volume = std::log(volume);
+  return true;
+}
+
 template <int N>
 Deformation deform(const Nodal<N>& u, const Eigen::Map<const Nodal<N>>& g, int e) {
   Deformation d;
   d.gradient.noalias() = u * g.transpose();
   d.gradient.diagonal().array() += 1.0;
-  const double volume = d.gradient.determinant();
-  if (!(volume > 0.0)) throw NumericalError("tetrahedron " + std::to_string(e) + " turned inside out");
-  d.inverse = d.gradient.inverse();
-  d.log_volume = std::log(volume);
+  if (!invert(d)) throw NumericalError("tetrahedron " + std::to_string(e) + " turned inside out");
   return d;
+}
+
+Deformation deform_point(const Eigen::Matrix3d& f) {
+  Deformation d;
+  d.gradient = f;
+  if (!invert(d)) throw NumericalError("a sampled point turned inside out");
+  return d;
+}
+
+// Calls entry(i, j, k, l) for the derivative of component i j of the stress with respect to component k l.
+template <typename Entry>
+StressTangent stress_tangent(const Entry& entry) {
+  StressTangent a;
+  for (int l = 0; l < 3; ++l) {
+    for (int k = 0; k < 3; ++k) {
+      for (int j = 0; j < 3; ++j) {
+        for (int i = 0; i < 3; ++i) a(i + 3 * j, k + 3 * l) = entry(i, j, k, l);
+      }
+    }
+  }
+  return a;
 }
 
 double energy_density(const Lame& c, const Deformation& d) {
@@ -117,6 +144,34 @@ double stored(const Discretisation& fem, const std::vector<int>& list, const Lam
 }
 
 }  // namespace
+
+Eigen::Matrix3d neo_hookean_stress(const Lame& c, const Eigen::Matrix3d& f) {
+  return stress(c, deform_point(f));
+}
+
+StressTangent neo_hookean_tangent(const Lame& c, const Eigen::Matrix3d& f) {
+  const Deformation d = deform_point(f);
+  const Eigen::Matrix3d& h = d.inverse;
+  const double s = c.mu - c.lambda * d.log_volume;
+  StressTangent a =
+      stress_tangent([&](int i, int j, int k, int l) { return s * h(j, k) * h(l, i) + c.lambda * h(j, i) * h(l, k); });
+  a.diagonal().array() += c.mu;
+  return a;
+}
+
+Eigen::Matrix3d viscous_stress(const Lame& c, const Eigen::Matrix3d& f, const Eigen::Matrix3d& rate) {
+  const Eigen::Matrix3d half = f.transpose() * rate;
+  Eigen::Matrix3d second = c.mu * (half + half.transpose());
+  second.diagonal().array() += c.lambda * half.trace();
+  return f * second;
+}
+
+StressTangent viscous_tangent(const Lame& c, const Eigen::Matrix3d& f) {
+  const Eigen::Matrix3d left = f * f.transpose();
+  return stress_tangent([&](int i, int j, int k, int l) {
+    return c.lambda * f(i, j) * f(k, l) + c.mu * (f(i, l) * f(k, j) + (j == l ? left(i, k) : 0.0));
+  });
+}
 
 NeoHookean::NeoHookean(const Discretisation& fem, std::vector<int> elements)
     : fem_(fem),

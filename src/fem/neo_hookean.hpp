@@ -23,6 +23,17 @@ inline Lame lame(double young_modulus, double poisson_ratio) {
           young_modulus / (2.0 * (1.0 + poisson_ratio))};
 }
 
+/// Derivative of a stress P with respect to F, both by columns: entry (i + 3 J, k + 3 L) is dP_iJ / dF_kL [Pa].
+using StressTangent = Eigen::Matrix<double, 9, 9>;
+
+/// Returns the first Piola-Kirchhoff stress P = mu (F - F^-T) + lambda ln J F^-T of the solid below at one point [Pa], and
+/// its derivative (Bonet & Wood 2008, eq. 6.29, 6.30). Both throw NumericalError unless det F is positive.
+Eigen::Matrix3d neo_hookean_stress(const Lame& lame, const Eigen::Matrix3d& f);
+StressTangent neo_hookean_tangent(const Lame& lame, const Eigen::Matrix3d& f);
+/// Returns P = F (lambda tr(E') I + 2 mu E') of the strain rate E' = sym(F^T F') at one point, and dP / dF'.
+Eigen::Matrix3d viscous_stress(const Lame& viscosity, const Eigen::Matrix3d& f, const Eigen::Matrix3d& rate);
+StressTangent viscous_tangent(const Lame& viscosity, const Eigen::Matrix3d& f);
+
 /// Factor of the stress at a quadrature point, and its derivative with respect to the energy density psi [1/Pa].
 struct StressScale {
   double value = 1.0;

@@ -110,6 +110,7 @@ class FullTrajectories : public Trajectories {
 
   void leap(const std::vector<double>& spans) {
     for_each_index(states_.size(), [&](std::size_t i) { central_[i].advance(states_[i], spans[i]); });
+    if (options_.after_step) options_.after_step(states_);
   }
 
   void implicit(std::vector<double> spans) {
@@ -120,6 +121,7 @@ class FullTrajectories : public Trajectories {
       if (reactions_.front().rows() > 0) before_ = states_;
       stepper_.step(states_, spans);
       note_reactions();
+      if (options_.after_step) options_.after_step(states_);
     }
   }
 

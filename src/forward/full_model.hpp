@@ -1,8 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "fem/generalized_alpha.hpp"
 #include "fem/nodal_rotation.hpp"
@@ -20,6 +22,8 @@ class FullModel : public ForwardModel {
     int steps_per_frame = 4;       ///< used when step is 0
     double spectral_radius = 0.9;  ///< of generalised-alpha at infinite frequency; 1 is Newmark's average acceleration
     double tolerance = 3e-6;  ///< neglected corrections over the body's size; small, as the filter uses differences of runs
+    /// Called after every step with the states of all runs that are stepped together; null: not.
+    std::function<void(const std::vector<DynamicState>&)> after_step = nullptr;
   };
   FullModel(const Model& model, const Options& options);
   ~FullModel() override;
@@ -31,6 +35,7 @@ class FullModel : public ForwardModel {
   std::unique_ptr<Trajectories> resume_all(const std::vector<Eigen::VectorXd>& thetas,
                                            const Trajectory& from) const override;
   std::string description() const override;
+  const Options& options() const { return options_; }
 
  private:
   bool hold_the_same(const std::vector<Eigen::VectorXd>& thetas) const;

@@ -1,8 +1,5 @@
 #include "forward/reduced_model.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -15,15 +12,6 @@ namespace {
 
 constexpr std::size_t kKept = 16;  // modes of the last theta
 constexpr int kBits = 44;          // of proportions
-
-// Computes out = tall * small for blocks of rows in parallel, so that the tall matrix is read once.
-void multiply(const Eigen::MatrixXd& tall, const Eigen::MatrixXd& small, Eigen::Ref<Eigen::MatrixXd> out) {
-  constexpr Eigen::Index block = 1024;
-  tbb::parallel_for(tbb::blocked_range<Eigen::Index>(0, tall.rows(), block), [&](const auto& part) {
-    const Eigen::Index count = part.end() - part.begin();
-    out.middleRows(part.begin(), count).noalias() = tall.middleRows(part.begin(), count) * small;
-  });
-}
 
 Eigen::MatrixXd chosen(const Eigen::MatrixXd& m, const std::vector<int>& rows, const std::vector<int>& columns) {
   Eigen::MatrixXd part(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(columns.size()));
@@ -137,7 +125,7 @@ std::unique_ptr<ReducedModel> ReducedModel::grown() const {
   options.adopt = false;
   auto out = std::make_unique<ReducedModel>(model_, options, this);
   if (out->basis_.vectors.cols() <= basis_.vectors.cols()) return nullptr;
-  out->restrict_output_to(output_nodes_);
+  out->restrict_output_to(output_.nodes());
   return out;
 }
 
@@ -284,11 +272,7 @@ void ReducedModel::advance_through(Trajectory& run, const std::vector<double>& t
 }
 
 Eigen::MatrixXd ReducedModel::basis_at(const std::vector<int>& nodes) const {
-  Eigen::MatrixXd rows(3 * static_cast<Eigen::Index>(nodes.size()), basis_.vectors.cols());
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    rows.middleRows<3>(3 * static_cast<Eigen::Index>(i)) = basis_.vectors.middleRows<3>(3 * nodes[i]);
-  }
-  return rows;
+  return basis_rows(basis_.vectors, nodes);
 }
 
 const Eigen::MatrixXd& ReducedModel::start_shapes() const {
@@ -313,8 +297,7 @@ const Eigen::MatrixXd& ReducedModel::start_shapes() const {
 }
 
 void ReducedModel::restrict_output_to(const std::vector<int>& nodes) {
-  output_nodes_ = nodes;
-  basis_at_output_ = PackedMatrix(basis_at(nodes));
+  output_.restrict_to(basis_.vectors, nodes);
 }
 
 Eigen::VectorXd ReducedModel::displacement(const Eigen::VectorXd& coordinates) const {
@@ -324,22 +307,11 @@ Eigen::VectorXd ReducedModel::displacement(const Eigen::VectorXd& coordinates) c
 }
 
 void ReducedModel::displacements(const Eigen::MatrixXd& coordinates, Eigen::MatrixXd& out) const {
-  if (output_nodes_.empty()) {
-    multiply(basis_.vectors, coordinates, out.topLeftCorner(basis_.vectors.rows(), coordinates.cols()));
-    return;
-  }
-  VectorPool::Loan scratch(scratch_, basis_at_output_.rows() * coordinates.cols());
-  Eigen::Map<Eigen::MatrixXd> seen(scratch->data(), basis_at_output_.rows(), coordinates.cols());
-  basis_at_output_.multiply(coordinates, seen);
-  for (Eigen::Index k = 0; k < seen.cols(); ++k) {
-    for (std::size_t i = 0; i < output_nodes_.size(); ++i) {
-      out.block<3, 1>(3 * output_nodes_[i], k) = seen.block<3, 1>(3 * static_cast<Eigen::Index>(i), k);
-    }
-  }
+  output_.displacements(basis_.vectors, coordinates, out);
 }
 
 void ReducedModel::recover(const Eigen::VectorXd& coordinates, Eigen::Ref<Eigen::VectorXd> displacement) const {
-  multiply(basis_.vectors, coordinates, displacement);
+  multiply_tall(basis_.vectors, coordinates, displacement);
 }
 
 std::string ReducedModel::description() const {

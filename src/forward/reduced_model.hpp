@@ -6,8 +6,8 @@
 #include <mutex>
 #include <vector>
 
-#include "fem/products.hpp"
 #include "forward/forward_model.hpp"
+#include "forward/output_rows.hpp"
 #include "forward/reduced_basis.hpp"
 
 namespace tissue_stiffness {
@@ -144,8 +144,7 @@ class ReducedModel : public ForwardModel {
   const Model& model_;
   BasisOptions options_;
   ReducedBasis basis_;
-  std::vector<int> output_nodes_;     ///< nodes of the output; empty: all
-  PackedMatrix basis_at_output_;      ///< rows of the basis at these nodes
+  OutputRows output_;
   Eigen::MatrixXd reaction_springs_;  ///< for a unit coefficient, basis size x 3 for each reaction
   std::vector<Projected> projected_;  ///< one for each part
   StrainRows strains_;                ///< strains of the basis, if a term needs them for each theta
@@ -154,7 +153,6 @@ class ReducedModel : public ForwardModel {
   mutable std::mutex mutex_;
   mutable std::vector<Known> known_;
   mutable std::vector<Shaped> shaped_;  ///< the last few projections of terms whose place or angle is estimated
-  mutable VectorPool scratch_;          ///< for displacements of the output's nodes
 };
 
 template <typename Run>
