@@ -58,10 +58,18 @@ Scene make_scene(Scene::Law law, int cells, int across, double start) {
   return scene;
 }
 
-std::vector<Frame> film(const Scene& scene, int count) {
-  const Experiment experiment(scene.settings, scene.mesh, {kTruth});
+Eigen::MatrixXd move(const Scene& scene, int count, double truth) {
+  const Experiment experiment(scene.settings, scene.mesh, {truth});
+  Eigen::MatrixXd motion(3 * scene.mesh.node_count(), count);
+  const auto moments = experiment.film(0.0, kFrameInterval, count + 1);
+  for (int k = 0; k < count; ++k) motion.col(k) = moments[static_cast<std::size_t>(k) + 1].displacement;
+  return motion;
+}
+
+std::vector<Frame> film(const Scene& scene, int count, double truth, unsigned seed) {
+  const Experiment experiment(scene.settings, scene.mesh, {truth});
   const auto sensors = make_observation_operators(experiment.model());
-  std::mt19937 engine(1);
+  std::mt19937 engine(seed);
   Observation blank;
   blank.kind = ObservationKind::markers;
   blank.ids = Eigen::VectorXi::LinSpaced(kMarkers, 0, kMarkers - 1);

@@ -24,7 +24,9 @@ constexpr double kTruth = 60e3, kMarkerNoise = 3e-4, kFrameInterval = 1.0 / 30.0
 /// `start` from the truth.
 Scene make_scene(Scene::Law law, int cells, int across, double start = 1.5);
 
-/// `count` frames, the first one interval after the release.
-std::vector<Frame> film(const Scene& scene, int count);
+/// `count` frames, the first one interval after the release, of a body with Young's modulus `truth` [Pa].
+std::vector<Frame> film(const Scene& scene, int count, double truth = kTruth, unsigned seed = 1);
+/// The motion of the whole body in these frames, in full, 3n in each column [m].
+Eigen::MatrixXd move(const Scene& scene, int count, double truth);
 
 }  // namespace tissue_stiffness

@@ -12,6 +12,12 @@ namespace {
 
 constexpr std::size_t kComparedFrames = 32;  // frames compared, about
 
+std::size_t stride(const FitProblem& problem) {
+  return (problem.frames.size() + kComparedFrames - 1) / kComparedFrames;
+}
+
+}  // namespace
+
 double least_noise(const Model& model) {
   double least = std::numeric_limits<double>::infinity();
   for (const ObservationSettings& observation : model.settings().observations) {
@@ -20,15 +26,9 @@ double least_noise(const Model& model) {
   return least;
 }
 
-std::size_t stride(const FitProblem& problem) {
-  return (problem.frames.size() + kComparedFrames - 1) / kComparedFrames;
-}
-
 bool is_checked(std::size_t frame, const FitProblem& problem) {
   return frame % stride(problem) == 0 || frame + 1 == problem.frames.size();
 }
-
-}  // namespace
 
 BasisError basis_error(const ReducedModel& reduced, const FitProblem& problem, const Eigen::VectorXd& w,
                        const std::vector<int>& nodes) {
@@ -50,17 +50,24 @@ BasisError basis_error(const ReducedModel& reduced, const FitProblem& problem, c
 
 Eigen::VectorXd basis_shift(const ReducedModel& reduced, const FitProblem& problem, const Eigen::VectorXd& w,
                             const Eigen::VectorXd& spread, const Eigen::VectorXd& prior_std) {
+  const auto whole = reduced.start(problem.model.parameters().theta(w), problem.start.time);
+  const auto half = [&](const Eigen::VectorXd& theta) { return reduced.start_in_half(theta, problem.start.time); };
+  return kBasisSafety * fitted_shift(problem, *whole, half, w, spread, prior_std);
+}
+
+Eigen::VectorXd fitted_shift(const FitProblem& problem, Trajectory& truth,
+                             const std::function<std::unique_ptr<Trajectory>(const Eigen::VectorXd&)>& start,
+                             const Eigen::VectorXd& w, const Eigen::VectorXd& spread, const Eigen::VectorXd& prior_std) {
   PosteriorLinearizationFilter filter(w, prior_std.cwiseAbs2().asDiagonal());
   filter.move_anchor(w, spread);
   const Eigen::MatrixXd& points = filter.sigma_points();
   const auto count = static_cast<std::size_t>(points.cols());
   const Eigen::VectorXd theta = problem.model.parameters().theta(w);
-  const auto whole = reduced.start(theta, problem.start.time);
   std::vector<Eigen::VectorXd> thetas(count);
-  std::vector<std::unique_ptr<Trajectory>> halves(count);
+  std::vector<std::unique_ptr<Trajectory>> runs(count);
   for (std::size_t i = 0; i < count; ++i) {
     thetas[i] = problem.model.parameters().theta(points.col(static_cast<Eigen::Index>(i)));
-    halves[i] = reduced.start_in_half(thetas[i], problem.start.time);
+    runs[i] = start(thetas[i]);
   }
   for (std::size_t k = 0; k < problem.frames.size(); ++k) {
     const Frame& frame = problem.frames[k];
@@ -69,14 +76,14 @@ Eigen::VectorXd basis_shift(const ReducedModel& reduced, const FitProblem& probl
       run.advance(frame.time - problem.model.sensors().delay(at));
       return at_this_frame ? predict_frame(problem.model, problem.operators, frame, at, run.output()) : Prediction{};
     };
-    const Prediction truth = moved(*whole, theta);
-    Eigen::MatrixXd rows(truth.predicted.size(), points.cols());
-    for (std::size_t i = 0; i < count; ++i) rows.col(static_cast<Eigen::Index>(i)) = moved(*halves[i], thetas[i]).predicted;
+    const Prediction wanted = moved(truth, theta);
+    Eigen::MatrixXd rows(wanted.predicted.size(), points.cols());
+    for (std::size_t i = 0; i < count; ++i) rows.col(static_cast<Eigen::Index>(i)) = moved(*runs[i], thetas[i]).predicted;
     if (!at_this_frame) continue;
-    const Eigen::VectorXd variance = truth.sigma.cwiseAbs2() / static_cast<double>(stride(problem));
-    filter.update(truth.predicted, rows, variance, Eigen::VectorXd::Ones(variance.size()));
+    const Eigen::VectorXd variance = wanted.sigma.cwiseAbs2() / static_cast<double>(stride(problem));
+    filter.update(wanted.predicted, rows, variance, Eigen::VectorXd::Ones(variance.size()));
   }
-  return kBasisSafety * (filter.mean() - w);
+  return filter.mean() - w;
 }
 
 }  // namespace tissue_stiffness

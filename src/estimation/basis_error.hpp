@@ -1,5 +1,8 @@
 #pragma once
 
+#include <functional>
+#include <memory>
+
 #include "fit/fit_problem.hpp"
 #include "forward/reduced_model.hpp"
 
@@ -19,11 +22,22 @@ constexpr double kBasisShare = 0.1;  ///< of the noise: what a basis may leave o
 BasisError basis_error(const ReducedModel& reduced, const FitProblem& problem, const Eigen::VectorXd& w,
                        const std::vector<int>& nodes);
 
+/// Returns the standard deviation of the most precise sensor's noise [m].
+double least_noise(const Model& model);
+/// Returns whether a frame of the problem is one of those that are compared.
+bool is_checked(std::size_t frame, const FitProblem& problem);
+
 /// Returns what the reduced basis does to the parameters, about 1 sigma, in filter coordinates. The basis' earlier half is
 /// fitted to a run in all of it, from w on, and the shift is multiplied by kBasisSafety. The fit is one Gauss-Newton step
 /// over the frames that basis_error takes. `spread` is that of the sigma points; `prior_std` holds what the data do not
 /// determine.
 Eigen::VectorXd basis_shift(const ReducedModel& reduced, const FitProblem& problem, const Eigen::VectorXd& w,
                             const Eigen::VectorXd& spread, const Eigen::VectorXd& prior_std);
+
+/// Fits runs that `start` begins at any theta to `truth`, a run at w, in the same way. Returns by how much the parameters
+/// move, without a safety factor.
+Eigen::VectorXd fitted_shift(const FitProblem& problem, Trajectory& truth,
+                             const std::function<std::unique_ptr<Trajectory>(const Eigen::VectorXd&)>& start,
+                             const Eigen::VectorXd& w, const Eigen::VectorXd& spread, const Eigen::VectorXd& prior_std);
 
 }  // namespace tissue_stiffness

@@ -5,7 +5,9 @@
 #include <utility>
 
 #include "estimation/basis_error.hpp"
+#include "estimation/hyper_reduction.hpp"
 #include "fit/coordinate_scan.hpp"
+#include "forward/hyper_reduced_model.hpp"
 #include "forward/reduced_model.hpp"
 #include "meshing/surface.hpp"
 #include "observation/frame_misfit.hpp"
@@ -28,6 +30,9 @@ constexpr int kScanPoints = 25;                 // points on either side of the 
 constexpr std::size_t kFirstBasisCheck = 4;     // frames before the first check of the basis
 constexpr int kMostGrowths = 4;                 // growths of the basis at once, by half each
 constexpr double kChangedSpread = 0.05;         // prior standard deviations, of the sigma points after a change
+constexpr double kHyperGrowth = 1.5;            // growth of the recording between checks of a hyper-reduced model
+constexpr int kWatchedFrames = 4;               // frames between looks at the residual in full, which cost as many frames
+constexpr double kSurprise = 2.0;               // times the residual of the last check: it has to be made again
 constexpr double kGrowthHelps = 0.7;            // of the error: a growth that leaves no more is worth another
 
 }  // namespace
@@ -65,6 +70,20 @@ void IteratedFilter::expect(const Estimate& near) {
 void IteratedFilter::begin() {
   ensemble_ = std::make_unique<Ensemble>(model_, *forward_, operators_);
   ensemble_->restart(filter_.sigma_points(), start_);
+  residual_ = nullptr;
+}
+
+void IteratedFilter::advance(double time) {
+  ensemble_->advance(time);
+  if (++unwatched_ < kWatchedFrames || !std::dynamic_pointer_cast<HyperReducedModel>(forward_)) return;
+  unwatched_ = 0;
+  watch_residual();
+}
+
+void IteratedFilter::watch_residual() {
+  if (!residual_) residual_ = std::make_unique<FullResidual>(model_, theta(filter_.sigma_points().col(0)));
+  const auto& central = dynamic_cast<const HyperReducedTrajectory&>(ensemble_->trajectory(0));
+  notes_.surprised = notes_.surprised || residual_->of(central) > kSurprise * notes_.residual;
 }
 
 PosteriorLinearizationFilter::Innovation IteratedFilter::absorb(const Ensemble::Predicted& predicted) {
@@ -76,6 +95,10 @@ PosteriorLinearizationFilter::Innovation IteratedFilter::absorb(const Ensemble::
 PosteriorLinearizationFilter::Innovation IteratedFilter::absorb(const Frame& frame) {
   ensemble_->advance(frame.time);
   return absorb(ensemble_->predict(frame));
+}
+
+Eigen::VectorXd IteratedFilter::mean() const {
+  return notes_.correction.size() > 0 ? Eigen::VectorXd(filter_.mean() - notes_.correction) : filter_.mean();
 }
 
 Eigen::MatrixXd IteratedFilter::covariance() const {
@@ -104,7 +127,11 @@ bool IteratedFilter::scan_is_due(std::size_t count) const {
 }
 
 bool IteratedFilter::basis_is_due(std::size_t count) const {
-  return !model_.nonlinear() && !start_.motion && count >= std::max(kFirstBasisCheck, 2 * notes_.basis);
+  if (start_.motion) return false;
+  if (!model_.nonlinear()) return count >= std::max(kFirstBasisCheck, 2 * notes_.basis);
+  const double due = kHyperGrowth * static_cast<double>(notes_.basis);
+  return may_be_hyper_reduced(model_) && count >= kFirstBasisCheck &&
+         (notes_.surprised || static_cast<double>(count) >= due);
 }
 
 bool IteratedFilter::wants_relinearization(std::size_t count) const {
@@ -235,6 +262,7 @@ bool IteratedFilter::scan(const FitProblem& problem) {
 bool IteratedFilter::grow_basis(const FitProblem& problem) {
   if (!basis_is_due(problem.frames.size())) return false;
   notes_.basis = problem.frames.size();
+  if (model_.nonlinear()) return check_hyper_reduction(problem);
   auto reduced = std::dynamic_pointer_cast<ReducedModel>(forward_);
   const std::vector<int> surface = surface_nodes(model_.mesh());
   for (int k = 0;; ++k) {
@@ -250,6 +278,20 @@ bool IteratedFilter::grow_basis(const FitProblem& problem) {
   }
   notes_.basis_shift = basis_shift(*reduced, problem, filter_.mean(), filter_.spread(), model_.parameters().prior_std());
   return std::exchange(forward_, reduced) != reduced;
+}
+
+bool IteratedFilter::check_hyper_reduction(const FitProblem& problem) {
+  HyperReduction reduced = hyper_reduce(
+      problem, forward_,
+      {filter_.mean(), filter_.sigma_points(), filter_.spread(), model_.parameters().prior_std(), notes_.accepted});
+  notes_.basis_error = reduced.error;
+  notes_.basis_shift = notes_.correction = std::move(reduced.shift);
+  notes_.residual = reduced.residual;
+  notes_.accepted = reduced.accepted;
+  notes_.surprised = false;
+  const bool changed = reduced.forward != forward_;
+  forward_ = std::move(reduced.forward);
+  return changed;
 }
 
 void IteratedFilter::replay(const FitProblem& problem, const Eigen::VectorXd& anchor, const Eigen::VectorXd& spread) {

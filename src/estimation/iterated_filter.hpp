@@ -10,6 +10,7 @@
 #include "filter/posterior_linearization_filter.hpp"
 #include "fit/ensemble.hpp"
 #include "fit/fit_problem.hpp"
+#include "forward/full_residual.hpp"
 #include "tissue_stiffness/types/estimate.hpp"
 
 namespace tissue_stiffness {
@@ -28,6 +29,8 @@ class IteratedFilter {
   std::unique_ptr<IteratedFilter> clone_unstarted() const;
 
   const PosteriorLinearizationFilter& filter() const { return filter_; }
+  /// Returns the parameters: the filter's, less what a hyper-reduced model shifts them by.
+  Eigen::VectorXd mean() const;
   /// Returns the parameters' covariance: the filter's, plus what the reduced basis and a change at the start leave open.
   Eigen::MatrixXd covariance() const;
   const std::shared_ptr<ForwardModel>& forward() const { return forward_; }
@@ -40,7 +43,8 @@ class IteratedFilter {
   /// Places the sigma points of a filter that has not begun around an estimate from elsewhere.
   void expect(const Estimate& near);
   void begin();
-  void advance(double time) { ensemble_->advance(time); }
+  /// Advances the runs. Every few frames a hyper-reduced model's residual in full is compared with that of its last check.
+  void advance(double time);
   Ensemble::Predicted predict(const Frame& frame) const { return ensemble_->predict(frame); }
   /// Updates the filter with a frame that was predicted.
   PosteriorLinearizationFilter::Innovation absorb(const Ensemble::Predicted& predicted);
@@ -80,6 +84,8 @@ class IteratedFilter {
   void move_anchor(const FitProblem& problem);
   bool scan(const FitProblem& problem);
   bool grow_basis(const FitProblem& problem);
+  bool check_hyper_reduction(const FitProblem& problem);
+  void watch_residual();
   void replay(const FitProblem& problem, const Eigen::VectorXd& anchor, const Eigen::VectorXd& spread);
   FitProblem problem(const std::vector<Frame>& frames, const Checkpoint& checkpoint) const;
 
@@ -87,8 +93,12 @@ class IteratedFilter {
   struct Notes {
     std::size_t settled = 0, scanned = 1, basis = 0;
     std::optional<double> basis_error;  ///< [m]
+    double residual = 0.0;              ///< largest of a hyper-reduced model at its last check
+    double accepted = 0.0;              ///< see ReductionQuestion
+    bool surprised = false;             ///< it has become much larger since then
     bool basis_exhausted = false;       ///< more vectors do not help
-    Eigen::VectorXd basis_shift;        ///< what the basis does to the parameters; empty: not known yet
+    Eigen::VectorXd basis_shift;        ///< what the basis does to the parameters, 1 sigma; empty: not known yet
+    Eigen::VectorXd correction;         ///< what a hyper-reduced model shifts them by; empty: nothing
   };
 
   const Model& model_;
@@ -99,6 +109,8 @@ class IteratedFilter {
   std::unique_ptr<Ensemble> ensemble_;
   Eigen::VectorXd discrepancy_;  ///< from a change at the start; empty: from rest
   Notes notes_;
+  std::unique_ptr<FullResidual> residual_;  ///< of the central run; null: not needed yet
+  int unwatched_ = 0;                       ///< frames since it was last computed
 };
 
 }  // namespace tissue_stiffness

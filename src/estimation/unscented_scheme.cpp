@@ -4,6 +4,7 @@
 #include "estimation/background_reprocessing.hpp"
 #include "estimation/change_history.hpp"
 #include "estimation/change_watch.hpp"
+#include "estimation/hyper_reduction.hpp"
 #include "estimation/initial_velocity.hpp"
 #include "estimation/posterior.hpp"
 #include "estimation/scheme.hpp"
@@ -74,6 +75,7 @@ class UnscentedScheme : public Scheme {
   void forget() override {
     frames_.clear();
     waiting_.clear();
+    forward_ = in_full(forward_);  // a hyper-reduced model has to prove itself again
     filter_run_ = new_filter();
     studies_.reset();
     systematic_.reset();
@@ -231,7 +233,7 @@ class UnscentedScheme : public Scheme {
 
   SystematicError::Filtered filtered() const {
     const PosteriorLinearizationFilter& filter = filter_run_->filter();
-    return {filter.mean(), filter_run_->covariance(), filter.misfit_scale()};
+    return {filter_run_->mean(), filter_run_->covariance(), filter.misfit_scale()};
   }
 
   StateJudgement judge(const Misfit& misfit, const SystematicError::Filtered& now,

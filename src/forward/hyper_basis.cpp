@@ -19,7 +19,9 @@ namespace {
 constexpr double kRigid = 1e-8;   // of the highest omega^2: below it a vector has no strain
 constexpr double kVolume = 0.03;  // weight of the body's volume beside the forces
 constexpr double kAtRest = 0.1;   // weight of the forces of each vector at rest
-constexpr double kStill = 1e-3;   // of the largest force: states with less hardly count
+constexpr int kMostVectors = 28, kMostPoints = 400;
+constexpr double kLeastEnergy = 1e-10, kLeastForce = 3e-5;  // shares left
+constexpr double kStill = 1e-3;                             // of the largest force: states with less hardly count
 
 // Reorders the numbers from 0 to count - 1 as if at random, alike on every machine (splitmix64: Steele, Lea & Flood 2014).
 std::vector<int> shuffled(int count) {
@@ -260,10 +262,10 @@ FullMotions FullMotions::thinned(Eigen::Index count) const {
 
 HyperOptions HyperOptions::finer() const {
   HyperOptions out = *this;
-  out.largest += 8;
-  out.energy_left *= 0.1;
-  out.force_left *= 0.3;
-  out.states += 8;
+  out.largest = std::min(kMostVectors, largest + 8);
+  out.most_points = std::min(kMostPoints, most_points + 100);
+  out.energy_left = std::max(kLeastEnergy, 0.1 * energy_left);
+  out.force_left = std::max(kLeastForce, 0.3 * force_left);
   return out;
 }
 

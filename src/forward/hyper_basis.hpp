@@ -21,14 +21,14 @@ struct FullMotions {
 
 struct HyperOptions {
   FullModel::Options full;    ///< of the runs in full that it stands for; its steps are theirs
-  int largest = 24;           ///< vectors
+  int largest = 20;           ///< vectors
   double energy_left = 1e-8;  ///< share of the snapshots' energy that the vectors may leave out
   double force_left = 3e-4;   ///< share of their elastic forces that the sampled points may leave out
-  int most_points = 1200;     ///< sampled points
-  int candidates = 4000;      ///< quadrature points that they are chosen from
+  int most_points = 300;      ///< sampled points
+  int candidates = 3000;      ///< quadrature points that they are chosen from
   int states = 24;            ///< snapshots whose forces choose them
 
-  /// Returns options with more vectors and points.
+  /// Returns options with more vectors and points, up to a limit.
   HyperOptions finer() const;
 };
 

@@ -94,6 +94,11 @@ void HyperReducedModel::recover(const Eigen::VectorXd& coordinates, Eigen::Ref<E
   multiply_tall(basis_.vectors, coordinates, displacement);
 }
 
+int HyperReducedModel::steps(double span) const {
+  const double step = options_.full.step;
+  return step > 0.0 ? static_cast<int>(std::ceil(span / step * (1.0 - 1e-9))) : options_.full.steps_per_frame;
+}
+
 std::string HyperReducedModel::description() const {
   return "hyper-reduced: " + std::to_string(basis_.vectors.cols()) + " vectors for " +
          std::to_string(basis_.vectors.rows()) + " degrees of freedom, " + std::to_string(basis_.points.size()) + " of " +

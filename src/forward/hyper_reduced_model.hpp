@@ -49,6 +49,8 @@ class HyperReducedModel : public ForwardModel {
   const std::vector<Projected>& projected() const { return projected_; }
   /// Returns the coordinates of a unit velocity along each axis of all nodes that are not held, m x 3.
   const Eigen::MatrixX3d& unit_velocity() const { return unit_velocity_; }
+  /// Returns the number of steps over a span between frames [s].
+  int steps(double span) const;
   /// Returns the least correction of coordinates that a step takes.
   double tolerance() const { return tolerance_; }
 

@@ -34,14 +34,13 @@ HyperReducedTrajectory::HyperReducedTrajectory(const HyperReducedModel& reduced,
 void HyperReducedTrajectory::initialise() {
   system_.force(state_.time, state_.position, state_.rate, residual_);
   state_.acceleration = system_.mass().llt().solve(residual_);
+  middle_ = state_;
 }
 
 void HyperReducedTrajectory::advance(double time) {
   const double span = time - state_.time;
   if (!(span > 0.0)) return;
-  const FullModel::Options& options = reduced_.options().full;
-  const int count =
-      options.step > 0.0 ? static_cast<int>(std::ceil(span / options.step * (1.0 - 1e-9))) : options.steps_per_frame;
+  const int count = reduced_.steps(span);
   for (int k = 0; k < count; ++k) cut_step(span / count, 0);
   state_.time = time;
 }
@@ -127,6 +126,15 @@ Eigen::VectorXd HyperReducedTrajectory::output() const {
 Eigen::VectorXd HyperReducedTrajectory::velocity() const {
   Eigen::VectorXd out(reduced_.basis().vectors.rows());
   reduced_.recover(state_.rate, out);
+  return out;
+}
+
+DynamicState HyperReducedTrajectory::balanced() const {
+  const Eigen::Index n = reduced_.basis().vectors.rows();
+  DynamicState out{middle_.time, Eigen::VectorXd(n), Eigen::VectorXd(n), Eigen::VectorXd(n), {}};
+  reduced_.recover(middle_.position, out.displacement);
+  reduced_.recover(middle_.rate, out.velocity);
+  reduced_.recover(middle_.acceleration, out.acceleration);
   return out;
 }
 

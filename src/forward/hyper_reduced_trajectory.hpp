@@ -27,6 +27,9 @@ class HyperReducedTrajectory : public Trajectory {
   Eigen::VectorXd output() const override;
   Eigen::VectorXd velocity() const override;
   const Eigen::VectorXd& coordinates() const { return state_.position; }
+  /// Returns the motion of every node at the weighted instants of the last step, where the forces are balanced;
+  /// before the first step, at the start.
+  DynamicState balanced() const;
 
  private:
   void initialise();

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "../box_model.hpp"
+#include "forward/full_residual.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
@@ -143,6 +144,35 @@ TEST_F(HyperReducedBar, GoesOnFromWhereAnotherRunIs) {
   EXPECT_LT((run->displacement() - next->displacement()).cwiseAbs().maxCoeff(),
             1e-3 * run->displacement().cwiseAbs().maxCoeff());
   EXPECT_GT(run->velocity().norm(), 0.0);
+}
+
+// The residual of the model in full shows a load that pulls where nothing pulled in the training.
+TEST(FullResidual, GrowsWhereTheTrainingKnewNothing) {
+  Model model(box_settings({"inertia: {density: 1000}", "fixed: {region: clamp}", elasticity("neo_hookean"),
+                            "gravity: {acceleration: [0, 0, -4]}", "traction: {region: tip, topic: /push}"}),
+              bar_mesh(4, 1, 1));
+  Course& course = *model.loads().courses().at("/push");
+  course.add(0.0, Eigen::VectorXd::Zero(6));
+  const Eigen::VectorXd theta = at_modulus(model, 60e3);
+  const HyperReducedModel reduced(model, motions_of(model, {60e3}), options());
+  const FullResidual residual(model, theta);
+  HyperReducedTrajectory run(reduced, theta, 0.0);
+  double trained = 0.0, pulled = 0.0;
+  for (int k = 1; k <= kTraining; ++k) {
+    run.advance(kFrame * k);
+    trained = std::max(trained, residual.of(run));
+  }
+  course.add(kFrame * kTraining, Eigen::VectorXd::Zero(6));
+  Eigen::VectorXd sideways = Eigen::VectorXd::Zero(6);
+  sideways[1] = 0.05;
+  course.add(kFrame * (kTraining + 2), sideways);
+  course.add(1.0, sideways);
+  for (int k = kTraining + 1; k <= kTraining + 4; ++k) {
+    run.advance(kFrame * k);
+    pulled = std::max(pulled, residual.of(run));
+  }
+  EXPECT_GT(trained, 0.0);
+  EXPECT_GT(pulled, 3.0 * trained);
 }
 
 TEST(HyperReducedModel, TellsWhatItCannotStandFor) {
