@@ -107,10 +107,7 @@ class Chooser {
   // Returns 1 / omega; motions without strain count as the softest with strain.
   Eigen::VectorXd root_compliance() const {
     const double most = out_.square[out_.square.size() - 1];
-    double softest = most;
-    for (const double square : out_.square) {
-      if (square > kRigid * most) softest = std::min(softest, square);
-    }
+    const double softest = (out_.square.array() > kRigid * most).select(out_.square, most).minCoeff();
     return out_.square.cwiseMax(softest).cwiseSqrt().cwiseInverse();
   }
 
