@@ -30,7 +30,6 @@ constexpr int kScanPoints = 25;                 // points on either side of the 
 constexpr std::size_t kFirstBasisCheck = 4;     // frames before the first check of the basis
 constexpr int kMostGrowths = 4;                 // growths of the basis at once, by half each
 constexpr double kChangedSpread = 0.05;         // prior standard deviations, of the sigma points after a change
-constexpr double kHyperGrowth = 1.5;            // growth of the recording between checks of a hyper-reduced model
 constexpr int kWatchedFrames = 4;               // frames between looks at the residual in full, which cost as many frames
 constexpr double kSurprise = 2.0;               // times the residual of the last check: it has to be made again
 constexpr double kGrowthHelps = 0.7;            // of the error: a growth that leaves no more is worth another
@@ -127,11 +126,9 @@ bool IteratedFilter::scan_is_due(std::size_t count) const {
 }
 
 bool IteratedFilter::basis_is_due(std::size_t count) const {
-  if (start_.motion) return false;
-  if (!model_.nonlinear()) return count >= std::max(kFirstBasisCheck, 2 * notes_.basis);
-  const double due = kHyperGrowth * static_cast<double>(notes_.basis);
-  return may_be_hyper_reduced(model_) && count >= kFirstBasisCheck &&
-         (notes_.surprised || static_cast<double>(count) >= due);
+  const bool reduced = !model_.nonlinear() || may_be_hyper_reduced(model_);
+  if (!reduced || start_.motion || count < kFirstBasisCheck) return false;
+  return notes_.surprised || count >= 2 * notes_.basis;
 }
 
 bool IteratedFilter::wants_relinearization(std::size_t count) const {
