@@ -65,6 +65,7 @@ JointFit::JointFit(const std::vector<BodyRecording>& recordings, const std::vect
       fits_(fits(recordings)),
       shared_(sharing_, models_of(fits_)),
       prior_(shared_.prior_std()),
+      noise_(recordings.size(), 1.0),
       misfit_scales_(recordings.size(), 1.0),
       alone_(recordings.size()),
       filter_(shared_.prior_mean(), prior_.cwiseAbs2().asDiagonal()) {}
@@ -101,6 +102,12 @@ void JointFit::estimate_alone(std::size_t r) {
   for (const LoadSample& load : given.recording.loads) estimator.add_load(load);
   estimator.replay(given.recording.frames, nullptr, given.recording.checkpoint);
   alone_[r] = estimator.estimate();
+  double square = 0.0, rows = 0.0;
+  for (const Misfit& misfit : estimator.free_run()) {
+    square += misfit.count * misfit.rms_sigma * misfit.rms_sigma;
+    rows += misfit.count;
+  }
+  noise_[r] = std::max(1.0, square / std::max(1.0, rows));
 }
 
 void JointFit::run() {
@@ -134,14 +141,12 @@ void JointFit::run() {
 
 void JointFit::fit_together(const Eigen::VectorXd& start, const Eigen::VectorXd& spread) {
   progress_("fit all together", 0, 1);
-  const PosteriorLinearizationFilter prior = filter_;
-  filter_ = fit_filter(parts(), prior, start, spread);
+  filter_ = fit_filter(parts(), PosteriorLinearizationFilter(filter_), start, spread);
   for (std::size_t r = 0; r < fits_.size(); ++r) {
     if (recordings_[r].predicted) continue;
     const FreeFit fit = free_fit(fits_[r]->whole(), shared_.of(r, filter_.anchor()));
     misfit_scales_[r] = fit.cost / std::max(1.0, fit.rows);
   }
-  filter_ = fit_filter(parts(), prior, filter_.anchor(), filter_.spread());
 }
 
 }  // namespace tissue_stiffness

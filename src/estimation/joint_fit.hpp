@@ -67,7 +67,8 @@ class JointFit {
   Sharing sharing_;
   std::vector<std::unique_ptr<RecordingFit>> fits_;
   SharedParameters shared_;
-  Eigen::VectorXd prior_;  ///< standard deviations
+  Eigen::VectorXd prior_;      ///< standard deviations
+  std::vector<double> noise_;  ///< factor on the variance of each recording's noise: its misfit where it is fitted alone
   std::vector<double> misfit_scales_;
   std::vector<Estimate> alone_;
   PosteriorLinearizationFilter filter_;
