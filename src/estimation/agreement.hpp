@@ -22,8 +22,8 @@ struct NormalPrior {
 };
 
 /// Tells whether a recording asks for the same parameters as others do. Both may have parameters w of their own, w_1 and
-/// w_2, while the errors of the rig eta are the same. With d the posterior mean of w_1 - w_2, L its covariance and 2 P that
-/// of its prior, each direction in which L is below a quarter of 2 P counts once:
+/// w_2, while the errors of the rig eta are the same. Let d be the posterior mean of w_1 - w_2, L its covariance, and 2 P
+/// the covariance of its prior. Each direction in which L is below a quarter of 2 P counts once:
 ///   chi2 = sum d_i^2 / (L_i (1 - L_i)),   d_i and L_i in units of the prior.
 /// Without a difference a linear model under normal errors gives it the distribution chi^2(dof).
 struct Agreement {

@@ -9,8 +9,8 @@
 
 namespace tissue_stiffness {
 
-/// This is the posterior of z = [w; eta], parameters and nuisance parameters, under independent normal priors and the
-/// likelihoods of one or several recordings i, each to the power 1 / temperature (Miller & Dunson 2019):
+/// This is the posterior of z = [w; eta], parameters and nuisance parameters. Their priors are normal and independent. The
+/// likelihood of each recording i is taken to the power 1 / temperature (Miller & Dunson 2019).
 ///   -2 log p(z) = sum_i r_i(z)^T R_i^-1 r_i(z) / s_i + (z - m)^T P^-1 (z - m),
 ///   s_i = temperature_i max(1, mean square of the best r_i).
 class InputPosterior {
