@@ -1,5 +1,6 @@
 #include "estimation/iterated_filter.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -31,6 +32,7 @@ constexpr std::size_t kFirstBasisCheck = 4;     // frames before the first check
 constexpr int kMostGrowths = 4;                 // growths of the basis at once, by half each
 constexpr double kChangedSpread = 0.05;         // prior standard deviations, of the sigma points after a change
 constexpr int kWatchedFrames = 4;               // frames between looks at the residual in full, which cost as many frames
+constexpr double kBeyond = 1.5;                 // times the energy of the training: a larger motion has to be checked
 constexpr double kSurprise = 2.0;               // times the residual of the last check: it has to be made again
 constexpr double kGrowthHelps = 0.7;            // of the error: a growth that leaves no more is worth another
 
@@ -74,7 +76,12 @@ void IteratedFilter::begin() {
 
 void IteratedFilter::advance(double time) {
   ensemble_->advance(time);
-  if (++unwatched_ < kWatchedFrames || !std::dynamic_pointer_cast<HyperReducedModel>(forward_)) return;
+  const auto reduced = std::dynamic_pointer_cast<HyperReducedModel>(forward_);
+  if (!reduced) return;
+  const auto& central = dynamic_cast<const HyperReducedTrajectory&>(ensemble_->trajectory(0));
+  const HyperBasis& basis = reduced->basis();
+  notes_.surprised = notes_.surprised || basis.energy(central.coordinates()) > kBeyond * basis.trained;
+  if (++unwatched_ < kWatchedFrames) return;
   unwatched_ = 0;
   watch_residual();
 }
@@ -105,7 +112,18 @@ Eigen::MatrixXd IteratedFilter::covariance() const {
   for (const Eigen::VectorXd& discrepancy : {discrepancy_, notes_.basis_shift}) {
     if (discrepancy.size() > 0) sum += discrepancy * discrepancy.transpose();
   }
-  return sum;
+  return notes_.correction.size() > 0 ? Eigen::MatrixXd(sum + left_by_hyper_reduction()) : sum;
+}
+
+// The motion that is left out may lie along the change that the parameters make, with all rows alike. Its mean square is d:
+// C = d N C_noise, and no more than the prior.
+Eigen::MatrixXd IteratedFilter::left_by_hyper_reduction() const {
+  const Eigen::MatrixXd prior = model_.parameters().prior_std().cwiseAbs2().asDiagonal();
+  const double d = std::pow(notes_.basis_error.value_or(0.0) / least_noise(model_), 2);
+  const Eigen::MatrixXd along = d * filter_.rows() * filter_.robust_covariance();
+  const Eigen::MatrixXd both = along + prior;
+  const Eigen::MatrixXd out = along * both.ldlt().solve(prior);
+  return 0.5 * (out + out.transpose());
 }
 
 bool IteratedFilter::bent() const {

@@ -86,6 +86,8 @@ class IteratedFilter {
   bool grow_basis(const FitProblem& problem);
   bool check_hyper_reduction(const FitProblem& problem);
   void watch_residual();
+  /// Returns the covariance of what the hyper-reduced model has left out at its last check.
+  Eigen::MatrixXd left_by_hyper_reduction() const;
   void replay(const FitProblem& problem, const Eigen::VectorXd& anchor, const Eigen::VectorXd& spread);
   FitProblem problem(const std::vector<Frame>& frames, const Checkpoint& checkpoint) const;
 

@@ -87,6 +87,9 @@ class Chooser {
     const Eigen::MatrixXd shares = equations(candidates, gradients, wanted);
     const SparseWeights chosen = nonnegative_least_squares(shares, wanted, options_.force_left, options_.most_points);
     out_.force_left = chosen.left;
+    for (Eigen::Index k = 0; k < coordinates_.cols(); ++k) {
+      out_.trained = std::max(out_.trained, out_.energy(coordinates_.col(k)));
+    }
     out_.gradients.resize(9 * static_cast<Eigen::Index>(chosen.columns.size()), out_.vectors.cols());
     for (std::size_t i = 0; i < chosen.columns.size(); ++i) {
       SampledPoint point = candidates[static_cast<std::size_t>(chosen.columns[i])];

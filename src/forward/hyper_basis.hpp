@@ -45,6 +45,10 @@ struct HyperBasis {
   std::vector<SampledPoint> points;
   Eigen::MatrixXd gradients;  ///< of the vectors at the points: nine rows each, entry (i, J) in row i + 3 J
   double force_left = 0.0;    ///< share of the training forces that the points leave out
+  double trained = 0.0;       ///< largest energy of the training states, see energy()
+
+  /// Returns twice the elastic energy of the coordinates q at small strain, sum omega_i^2 q_i^2 [J].
+  double energy(const Eigen::VectorXd& q) const { return square.dot(q.cwiseAbs2()); }
 };
 
 /// Chooses vectors and points. The vectors are the proper orthogonal decomposition of the snapshots, in the inner product

@@ -57,7 +57,8 @@ TEST_F(HyperReductionOfABar, EstimatesTheModulusOfRunsInFull) {
   ASSERT_TRUE(estimator.basis_error().has_value());
   EXPECT_LT(*estimator.basis_error(), kNoise);
   EXPECT_NEAR(value(estimator), kTruth, 5e-3 * kTruth);
-  EXPECT_TRUE(holds(estimator.estimate().parameters.front(), kTruth));
+  const ParameterEstimate& modulus = estimator.estimate().parameters.front();
+  EXPECT_TRUE(holds(modulus, kTruth)) << modulus.mean << ", " << modulus.lower95 << " to " << modulus.upper95 << " Pa";
 }
 
 // A model that was trained with nothing but the first frames is trained again where it is not good enough.
