@@ -188,7 +188,7 @@ TEST_F(CheckTool, NamesAFrameThatNoTransformJoins) {
 
 TEST_F(CheckTool, SaysTheSameBeforeAnEstimateAndADiagnosis) {
   const std::string wrong =
-      model("noise: 1e-4", "noise: 0.1") + " " + kDemo + "recording.bag --quiet --output " + path("out");
+      model("noise: 1e-4", "noise: 0.1") + " " + kDemo + "recording.bag --quiet --allow-outside --output " + path("out");
   for (const std::string tool : {"estimate", "diagnose"}) {
     const Outcome outcome = call(tool + " " + wrong);
     EXPECT_NE(outcome.text.find(tool + ": warning: "), std::string::npos) << outcome.text;
