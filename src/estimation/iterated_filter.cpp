@@ -1,12 +1,12 @@
 #include "estimation/iterated_filter.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "estimation/basis_error.hpp"
 #include "estimation/hyper_reduction.hpp"
+#include "estimation/systematic_error.hpp"
 #include "fit/coordinate_scan.hpp"
 #include "forward/hyper_reduced_model.hpp"
 #include "forward/reduced_model.hpp"
@@ -118,12 +118,8 @@ Eigen::MatrixXd IteratedFilter::covariance() const {
 // The motion that is left out may lie along the change that the parameters make, with all rows alike. Its mean square is d:
 // C = d N C_noise, and no more than the prior.
 Eigen::MatrixXd IteratedFilter::left_by_hyper_reduction() const {
-  const Eigen::MatrixXd prior = model_.parameters().prior_std().cwiseAbs2().asDiagonal();
   const double d = std::pow(notes_.basis_error.value_or(0.0) / least_noise(model_), 2);
-  const Eigen::MatrixXd along = d * filter_.rows() * filter_.robust_covariance();
-  const Eigen::MatrixXd both = along + prior;
-  const Eigen::MatrixXd out = along * both.ldlt().solve(prior);
-  return 0.5 * (out + out.transpose());
+  return within_prior(d * filter_.rows() * filter_.robust_covariance(), model_.parameters().prior_std());
 }
 
 bool IteratedFilter::bent() const {

@@ -18,9 +18,6 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kInvalid = 10.0;            // rms error over noise at which a model says nothing about the body
-constexpr double kFinerLeaves = 16.0 / 9.0;  // see systematic_error.cpp
-
 // Returns the root mean square of the noise that the model file states, over all lengths [m].
 double noise_of(const BodyRecording& given) {
   double sum = 0.0, rows = 0.0;
@@ -188,8 +185,7 @@ class JointStudy {
     }
     const Eigen::MatrixXd of_mesh = mesh_discrepancy(shared_.free(), fit_.nonlinear(), mesh) + inputs_.from_mesh;
     Eigen::MatrixXd model = discrepancy() + (disagreement() - 1.0) * (noise + loads + of_mesh);
-    const Eigen::MatrixXd prior = prior_.cwiseAbs2().asDiagonal();
-    model = prior * (prior + model).ldlt().solve(model);  // whatever is left open, the prior still holds
+    model = within_prior(model, prior_);
     covariance_ = noise + loads + of_mesh + inputs_.from_constants + model;
     out_.estimate = summarise_posterior(shared_.free(), mean, covariance_);
     out_.estimate.inputs = inputs_.inputs;
@@ -259,7 +255,7 @@ class JointStudy {
       estimate.state_reason = std::move(reason);
     };
     for (const RecordingSummary& r : out_.recordings) {
-      if (!r.predicted && r.rms_sigma > kInvalid)
+      if (!r.predicted && r.rms_sigma > kInvalidSigmas)
         return say(EstimateState::model_invalid, r.name + ": no value of the parameters explains the motion");
     }
     if (!inputs_.implausible.empty()) return say(EstimateState::doubtful, inputs_.implausible);

@@ -8,10 +8,9 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kLearnt = 0.5;          // of the prior's standard deviation: what a settled estimate may have left
-constexpr double kWidest = 0.2;          // relative standard deviation of an estimate that is called converged
-constexpr double kInvalidScale = 4.0;    // mean square of all frames' misfit over the noise's
-constexpr double kInvalidSigmas = 10.0;  // rms error over noise at which the model says nothing about the body
+constexpr double kLearnt = 0.5;        // of the prior's standard deviation: what a settled estimate may have left
+constexpr double kWidest = 0.2;        // relative standard deviation of an estimate that is called converged
+constexpr double kInvalidScale = 4.0;  // mean square of all frames' misfit over the noise's
 
 std::string percent(double share) {
   return std::to_string(static_cast<int>(std::lround(100.0 * share))) + " %";

@@ -10,6 +10,8 @@
 
 namespace tissue_stiffness {
 
+constexpr double kInvalidSigmas = 10.0;  ///< rms error over noise at which the model says nothing about the body
+
 /// The state of an estimate is judged by this evidence.
 struct StateEvidence {
   const Model& model;

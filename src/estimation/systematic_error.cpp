@@ -5,11 +5,11 @@
 #include <utility>
 
 namespace tissue_stiffness {
-namespace {
 
-constexpr double kFinerLeaves = 16.0 / 9.0;  // of the mean square that the finer mesh changes: at second order, the whole
-
-}  // namespace
+Eigen::MatrixXd within_prior(const Eigen::MatrixXd& c, const Eigen::VectorXd& prior_std) {
+  const Eigen::MatrixXd prior = prior_std.cwiseAbs2().asDiagonal();
+  return prior * (prior + c).ldlt().solve(c);
+}
 
 SystematicError::SystematicError(const Model& model) : model_(model) {
   refresh();
@@ -24,7 +24,10 @@ SystematicError::Corrected SystematicError::correct(const Filtered& filtered) co
   Eigen::MatrixXd of_model = Eigen::MatrixXd::Zero(out.mean.size(), out.mean.size());
   // The misfit may lie along what the parameters do, with all rows and frames alike (Kennedy & O'Hagan 2001).
   const double discrepancy = inputs_ ? std::max(test_.discrepancy(), unexplained(filtered.misfit_scale)) : 0.0;
-  if (discrepancy > 0.0) of_model = within_prior(discrepancy * inputs_->recordings.front().rows * inputs_->from_noise);
+  if (discrepancy > 0.0) {
+    of_model =
+        within_prior(discrepancy * inputs_->recordings.front().rows * inputs_->from_noise, model_.parameters().prior_std());
+  }
   out.covariance += of_model;
   for (Eigen::Index i = 0; i < out.mean.size(); ++i) {
     const double all = out.covariance(i, i);
@@ -59,12 +62,6 @@ double SystematicError::unexplained(double misfit_scale) const {
   const bool passes = inputs_->implausible.empty() && (!inputs_->fitted || test_.passes());
   if (passes && misfit_scale <= kFullSigmas * kFullSigmas * tested) return 0.0;
   return std::max(0.0, misfit_scale - test_.noise_level() - of_mesh());
-}
-
-/// Returns (C^-1 + P^-1)^-1: whatever is left open, the prior P still holds.
-Eigen::MatrixXd SystematicError::within_prior(const Eigen::MatrixXd& c) const {
-  const Eigen::MatrixXd prior = model_.parameters().prior_std().cwiseAbs2().asDiagonal();
-  return prior * (prior + c).ldlt().solve(c);
 }
 
 Eigen::VectorXd SystematicError::mesh_shift() const {

@@ -13,6 +13,11 @@
 namespace tissue_stiffness {
 
 constexpr double kFullSigmas = 1.5;  ///< rms error over noise that passes where the misfit's shape is not tested
+/// Of the mean square that the finer mesh changes: what the mesh may leave. At second order this is the whole.
+constexpr double kFinerLeaves = 16.0 / 9.0;
+
+/// Returns (C^-1 + P^-1)^-1 of a covariance C that is left open: whatever it is, the prior P still holds.
+Eigen::MatrixXd within_prior(const Eigen::MatrixXd& c, const Eigen::VectorXd& prior_std);
 
 /// A filter cannot see errors that agree from frame to frame: those of the mesh, of the inputs, and of the model itself.
 /// This class takes them from the last studies, all in the filter's coordinates.
@@ -60,7 +65,6 @@ class SystematicError {
  private:
   double unexplained(double misfit_scale) const;
   Eigen::VectorXd mesh_shift() const;
-  Eigen::MatrixXd within_prior(const Eigen::MatrixXd& c) const;
   void refresh();
 
   const Model& model_;

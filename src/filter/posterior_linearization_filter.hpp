@@ -54,9 +54,9 @@ class PosteriorLinearizationFilter {
   /// be certain of its parameters (the reduced chi-square of Press et al. 2007, sec. 15.1).
   double misfit_scale() const;
   /// Returns the mean square of error over sigma without this bound.
+  double mean_square() const { return rows_ > 0 ? data_cost_ / rows_ : 0.0; }
   /// Returns the number of rows of all updates.
   int rows() const { return rows_; }
-  double mean_square() const { return rows_ > 0 ? data_cost_ / rows_ : 0.0; }
   /// Returns the cost at the anchor: data cost plus `misfit_scale` times the prior's quadratic form.
   double cost() const { return cost_at(anchor_, data_cost_, rows_); }
   /// Returns the cost at w, where the data of that many rows have the cost `data_cost`.
