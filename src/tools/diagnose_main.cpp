@@ -1,7 +1,5 @@
-#include <fstream>
 #include <functional>
 #include <iostream>
-#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,17 +18,13 @@
 #include "tools/model_option.hpp"
 #include "tools/print_diagnosis.hpp"
 #include "tools/progress.hpp"
+#include "tools/read_text.hpp"
 #include "tools/recording_reader.hpp"
 #include "tools/run_tool.hpp"
 #include "tools/stop_on_signals.hpp"
 #include "tools/versions.hpp"
 
 namespace {
-
-std::string read_text(const std::string& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 using namespace tissue_stiffness;
 

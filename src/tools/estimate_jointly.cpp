@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <fstream>
-#include <iterator>
+#include <filesystem>
 #include <limits>
 #include <utility>
 
 #include "estimation/joint_estimate.hpp"
 #include "tissue_stiffness/settings/model_settings.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "tools/read_text.hpp"
 #include "tools/recording_reader.hpp"
 #include "tools/versions.hpp"
 
@@ -18,15 +18,8 @@ namespace tissue_stiffness {
 namespace {
 
 bool is_model(const std::string& file) {
-  const auto ends = [&](const std::string& end) {
-    return file.size() > end.size() && file.compare(file.size() - end.size(), end.size(), end) == 0;
-  };
-  return ends(".yaml") || ends(".yml");
-}
-
-std::string read_text(const std::string& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
+  const std::filesystem::path end = std::filesystem::path(file).extension();
+  return end == ".yaml" || end == ".yml";
 }
 
 BodyRecording read(const RecordingFile& file, std::size_t max_frames, const StopRequest& stop) {

@@ -109,13 +109,19 @@ int main(int argc, char** argv) {
     StepProgress steps(std::cerr, Progress::style_of_stderr(quiet || json || !several), "estimate");
     const auto show = [&](std::size_t done, std::size_t total) { progress.show(done, total); };
     try {
-      for (const RecordingFile& file : recordings) {
+      const auto load_checked = [&](const RecordingFile& file) {
+        ModelSettings settings = load_model(file.model);
         warn_of_setup(
-            "estimate", load_model(file.model), file.recording, [&] { stop.check(); }, std::cerr);
+            "estimate", settings, file.recording, [&] { stop.check(); }, std::cerr);
+        return settings;
+      };
+      if (several) {
+        for (const RecordingFile& file : recordings) load_checked(file);
+        run = estimate_jointly(recordings, own, frames, steps, stop);
+      } else {
+        const RecordingFile& file = recordings.front();
+        run = estimate_recording(load_checked(file), file.recording, frames, show, stop);
       }
-      run = several ? estimate_jointly(recordings, own, frames, steps, stop)
-                    : estimate_recording(load_model(recordings.front().model), recordings.front().recording, frames, show,
-                                         stop);
     } catch (const Interrupted&) {
     }
     progress.finish();

@@ -2,8 +2,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <optional>
 
 #include "estimation/map_stiffness.hpp"
@@ -13,6 +11,7 @@
 #include "report/map_vtk.hpp"
 #include "tissue_stiffness/estimation/estimator.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "tools/read_text.hpp"
 #include "tools/recording_reader.hpp"
 #include "tools/versions.hpp"
 
@@ -23,11 +22,6 @@ using Clock = std::chrono::steady_clock;
 
 double since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-std::string read_text(const std::string& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 FrameRecord record_of(const Instant& instant, const StepResult& step) {

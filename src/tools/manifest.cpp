@@ -5,11 +5,11 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <optional>
 
 #include "settings/extend_model.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "tools/read_text.hpp"
 #include "tools/versions.hpp"
 #include "types/read_file.hpp"
 
@@ -79,10 +79,8 @@ class Hash {
 
 void add_model(Hash& hash, const std::string& file) {
   hash.add_file(file);
-  std::ifstream stream(file);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
   try {
-    extend_model(text, {}, fs::absolute(file).parent_path().string(), [&](const std::string& named) {
+    extend_model(read_text(file), {}, fs::absolute(file).parent_path().string(), [&](const std::string& named) {
       hash.add_file(named);
       const fs::path path(named);
       if (path.extension() == ".node") hash.add_file(fs::path(path).replace_extension(".ele").string());

@@ -2,20 +2,16 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
+
+#include "tools/read_text.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
 namespace fs = std::filesystem;
-
-nlohmann::json read_json(const fs::path& file) {
-  std::ifstream stream(file);
-  return nlohmann::json::parse(stream, nullptr, false);
-}
 
 using Cells = std::vector<std::pair<std::string, std::string>>;  // column and content
 

@@ -10,7 +10,6 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <list>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -19,6 +18,7 @@
 
 #include "tissue_stiffness/types/error.hpp"
 #include "tools/exit_code.hpp"
+#include "tools/read_text.hpp"
 #include "types/pending_file.hpp"
 
 namespace tissue_stiffness {
@@ -95,11 +95,6 @@ std::string last_line(const fs::path& file) {
 bool is_answer(int code) {
   return code == static_cast<int>(ExitCode::answered) || code == static_cast<int>(ExitCode::wrong_input) ||
          code == static_cast<int>(ExitCode::not_to_be_used);
-}
-
-nlohmann::json read_json(const fs::path& file) {
-  std::ifstream stream(file);
-  return nlohmann::json::parse(stream, nullptr, false);
 }
 
 // A status is written last, so a folder that has one is whole.
