@@ -39,9 +39,11 @@ constexpr double kAddedSpread = 0.02;          // prior standard deviations, of 
 // observations that came twice.
 Recording usable_part(const ModelSettings& settings, const TetMesh& mesh, const Recording& recording,
                       std::string& left_out) {
+  Recording out = recording;
+  for (Frame& frame : out.frames) leave_out_repeats(frame);
+  if (recording.loads.empty()) return out;
   Model model(settings, mesh);
   model.loads().drive(recording.first_stamp, recording.loads);
-  Recording out = recording;
   std::string why;
   const auto silent = [&](const Frame& frame) {
     const std::string silence = model.loads().silence(frame.time);
@@ -49,7 +51,6 @@ Recording usable_part(const ModelSettings& settings, const TetMesh& mesh, const 
     return !silence.empty();
   };
   out.frames.erase(std::remove_if(out.frames.begin(), out.frames.end(), silent), out.frames.end());
-  for (Frame& frame : out.frames) leave_out_repeats(frame);
   if (why.empty()) return out;
   const std::size_t all = recording.frames.size();
   left_out = std::to_string(all - out.frames.size()) + " of " + std::to_string(all) + " frames (" + why + ")";
@@ -84,7 +85,8 @@ FittedModel extended(const FittedModel& base, const Refit& refit) {
 }
 
 // Returns null where the effect was not refitted.
-const Refit* refit_of(const Finding& finding, const std::string& effect) {
+template <typename F>
+auto refit_of(F& finding, const std::string& effect) -> decltype(finding.refits.data()) {
   const auto same = [&effect](const Refit& refit) { return refit.effect == effect; };
   const auto at = std::find_if(finding.refits.begin(), finding.refits.end(), same);
   return at == finding.refits.end() ? nullptr : &*at;
@@ -252,22 +254,22 @@ class ModelSearch {
   }
 
   // The leader of a pair was fitted while the other effect was missing, which may have led it astray. So the pair that fits
-  // best is fitted the other way round: all variants of its leader are tried beside the other effect.
+  // best is fitted the other way round: all variants of its leader are tried beside the other effect, unless that one led,
+  // too.
   void turn(std::vector<Leader>& leaders) {
     const auto cost = [](const Leader& l) { return l.deeper.refits.empty() ? no_rival : l.deeper.refits.front().cost; };
     const auto best = std::min_element(leaders.begin(), leaders.end(),
                                        [&](const Leader& a, const Leader& b) { return cost(a) < cost(b); });
     if (best == leaders.end() || best->deeper.refits.empty()) return;
     const Refit& second = best->deeper.refits.front();
-    for (Refit& refit : finding_.refits) {
-      if (refit.effect != second.effect) continue;
-      refit.proposed = second.proposed;
-      refit.entry = second.entry;
-      refit.parameters = second.parameters;
-      refit.model.reset();
-      examine_beside(refit, {best->effect}, leaders);
-      return;
-    }
+    const auto is_second = [&](const Leader& l) { return l.effect == second.effect; };
+    Refit* const refit = refit_of(finding_, second.effect);
+    if (refit == nullptr || std::any_of(leaders.begin(), leaders.end(), is_second)) return;
+    refit->proposed = second.proposed;
+    refit->entry = second.entry;
+    refit->parameters = second.parameters;
+    refit->model.reset();
+    examine_beside(*refit, {best->effect}, leaders);
   }
 
   // What is confusable with the best set's leader is tried in its place: by its tangent, or because each alone explains the
