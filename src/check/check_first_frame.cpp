@@ -7,6 +7,7 @@
 #include "check/starts_in_motion.hpp"
 #include "check/words.hpp"
 #include "meshing/surface.hpp"
+#include "types/body_size.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -128,7 +129,7 @@ bool is_scaled(const Cloud& cloud, double allowed, double rigid_rms) {
 
 SetupFindings check_place(const Cloud& cloud, const MeshSettings& mesh, double motion) {
   const ObservationSettings& settings = cloud.settings;
-  const double size = (cloud.mesh.nodes.rowwise().maxCoeff() - cloud.mesh.nodes.rowwise().minCoeff()).norm();
+  const double size = body_size(cloud.mesh.nodes);
   const double distance = cloud.distance();
   const double variance = 3.0 * settings.noise * settings.noise + 3.0 * settings.offset * settings.offset +
                           std::pow(settings.rotation * size, 2) + std::pow(mesh.scale_tolerance * size, 2);

@@ -4,6 +4,7 @@
 #include "effects/registry.hpp"
 #include "fem/facet_quadrature.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "types/body_size.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {
@@ -19,10 +20,6 @@ double mean_edge(const TetMesh& mesh) {
   return sum / mesh.facet_count();
 }
 
-double body_size(const TetMesh& mesh) {
-  return (mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff()).norm();
-}
-
 class ContactPlane : public Effect, public NonlinearForce {
  public:
   ContactPlane(const Value& arguments, const EffectContext& context)
@@ -32,7 +29,7 @@ class ContactPlane : public Effect, public NonlinearForce {
         point_(arguments.at("point").as_vector3("m")),
         normal_(arguments.at("normal").as_vector3("-")),
         default_stiffness_(kRelativePenalty * context.young_modulus / mean_edge(context.mesh)),
-        slow_(kSlow * body_size(context.mesh)) {
+        slow_(kSlow * body_size(context.mesh.nodes)) {
     if (!(normal_.norm() > 0.0)) {
       throw InputError(arguments.at("normal").path(), arguments.at("normal").shown(), "a vector that is not zero");
     }

@@ -5,6 +5,7 @@
 #include "effects/registry.hpp"
 #include "fem/facet_quadrature.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "types/body_size.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {
@@ -46,7 +47,7 @@ std::vector<int> facing(const TetMesh& mesh, const std::vector<int>& facets, con
 // where the clamp is not flat.
 std::vector<int> level_with(const TetMesh& mesh, const std::vector<int>& facets, const std::vector<int>& clamp) {
   const FacetQuadrature quadrature(mesh.quadratic() ? 6 : 3);
-  const double size = (mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff()).norm();
+  const double size = body_size(mesh.nodes);
   const auto normal = [&](int f) { return Eigen::Vector3d(quadrature.normal(facet_nodes(mesh, f), 0)); };
   Eigen::Vector3d whole = Eigen::Vector3d::Zero();
   for (const int f : clamp) whole += normal(f);

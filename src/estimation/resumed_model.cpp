@@ -6,6 +6,7 @@
 #include "effects/registry.hpp"
 #include "settings/effect_entry.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "types/body_size.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -25,7 +26,7 @@ void require_known_loads(const ModelSettings& model) {
 }
 
 EffectEntry wide_motion(const TetMesh& mesh) {
-  const double size = (mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff()).norm();
+  const double size = body_size(mesh.nodes);
   const auto prior = [](double std) { return Argument(normal_prior(Eigen::Vector3d(0.0, 0.0, 0.0), std)); };
   return {"initial_motion",
           {{"displacement", prior(kLength * size)},

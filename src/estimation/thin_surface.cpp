@@ -5,6 +5,7 @@
 
 #include "estimation/replay_recorder.hpp"
 #include "observation/closest_point.hpp"
+#include "types/body_size.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -36,7 +37,7 @@ std::vector<int> cluster(const TetMesh& mesh, const Eigen::Matrix3Xi& triangles,
 
 ThinSurface::ThinSurface(const TetMesh& mesh, std::size_t most_vertices) {
   const Eigen::Matrix3Xi all = split_facets(mesh).nodes;
-  const double extent = (mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff()).norm();
+  const double extent = body_size(mesh.nodes);
   std::size_t count = 0;
   std::vector<int> vertex = cluster(mesh, all, 0.0, count);
   for (double cells = 64.0; count > most_vertices; cells *= 0.8) vertex = cluster(mesh, all, extent / cells, count);

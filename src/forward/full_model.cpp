@@ -10,6 +10,7 @@
 #include "fem/strain.hpp"
 #include "forward/for_each_index.hpp"
 #include "forward/reduced_model.hpp"
+#include "types/body_size.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -21,9 +22,7 @@ constexpr double kExplicitSteps =
 
 // Returns the largest error of a displacement [m]. The springs of a moved region turn it into an error of its reaction.
 double tolerance_of(const Model& model, double share) {
-  const Eigen::Matrix3Xd& nodes = model.mesh().nodes;
-  const double size = (nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff()).norm();
-  return (model.reactions().empty() ? share : kForReactions * share) * size;
+  return (model.reactions().empty() ? share : kForReactions * share) * body_size(model.mesh().nodes);
 }
 
 DynamicState at_start(const Model& model, const Eigen::VectorXd& theta, double start, const ReducedModel* linear_form) {

@@ -6,6 +6,7 @@
 #include "forward/hyper_reduced_trajectory.hpp"
 #include "forward/project_matrix.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "types/body_size.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -34,10 +35,6 @@ class HyperReducedTrajectories : public SeparateTrajectories {
 
   const HyperReducedModel& reduced_;
 };
-
-double body_size(const TetMesh& mesh) {
-  return (mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff()).norm();
-}
 
 }  // namespace
 
@@ -70,7 +67,7 @@ void HyperReducedModel::project() {
   }
   unit_velocity_ = v.transpose() * (mass * free);
   const double whole = (unit.col(0).transpose() * (mass * unit.col(0))).value();
-  tolerance_ = kTolerance * body_size(model_.mesh()) * std::sqrt(whole);
+  tolerance_ = kTolerance * body_size(model_.mesh().nodes) * std::sqrt(whole);
 }
 
 std::unique_ptr<Trajectory> HyperReducedModel::start(const Eigen::VectorXd& theta, double start) const {

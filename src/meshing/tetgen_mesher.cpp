@@ -13,6 +13,7 @@
 #include "meshing/planar_facets.hpp"
 #include "meshing/run_apart.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "types/body_size.hpp"
 
 #ifdef TISSUE_STIFFNESS_TETGEN
 #define TETLIBRARY
@@ -139,7 +140,7 @@ TriangleSurface coarsened(const TriangleSurface& surface, double tolerance, doub
 }
 
 TetFile fill(const TriangleSurface& surface, double max_edge_length, bool keep_triangles, const std::string& where) {
-  const double size = (surface.vertices.rowwise().maxCoeff() - surface.vertices.rowwise().minCoeff()).norm();
+  const double size = body_size(surface.vertices);
   const bool keep = keep_triangles || max_edge_length <= 0.0;
   const TriangleSurface skin = keep ? surface : coarsened(surface, kPlaneShare * size, max_edge_length);
   refuse_needles(skin, where);

@@ -9,6 +9,7 @@
 #include "observation/observation_operator.hpp"
 #include "observation/outline.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "types/body_size.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -29,7 +30,7 @@ class ContourOperator : public ObservationOperator {
       triangles_ = split_facets(mesh_, region->second.facets);
     }
     edges_ = surface_edges(triangles_);
-    size_ = (mesh_.nodes.rowwise().maxCoeff() - mesh_.nodes.rowwise().minCoeff()).norm();
+    size_ = body_size(mesh_.nodes);
   }
 
   void check(const Observation& observation) const override {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "forward/for_each_index.hpp"
+#include "types/body_size.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -24,8 +25,7 @@ class SeenAlong {
   SeenAlong(const Model& model, const Operators& operators, const Frame& frame, const Eigen::VectorXd& theta,
             const Eigen::Ref<const Eigen::VectorXd>& output, const Eigen::MatrixXd& shapes)
       : model_(model), operators_(operators), frame_(frame), theta_(theta), output_(output), shapes_(shapes) {
-    const Eigen::Matrix3Xd& nodes = model.mesh().nodes;
-    size_ = (nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff()).norm();
+    size_ = body_size(model.mesh().nodes);
     if (model.sensors().any()) apparent_ = observe(output.head(model.fem().dof_count()));
   }
 
