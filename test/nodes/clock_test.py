@@ -4,15 +4,14 @@ import os
 import subprocess
 import sys
 import tempfile
-import threading
 import unittest
 
 import roslib.packages
 import rosbag
 import rospy
 import rostest
-from diagnostic_msgs.msg import DiagnosticArray
 
+from estimator_status import EstimatorStatus
 from fault_runs import TRUTH, excludes_truth, write_recording
 from tissue_stiffness.msg import StiffnessEstimate
 
@@ -30,38 +29,24 @@ def set_clock(source, target):
             out.write(topic, message, time)
 
 
-class ClockTest(unittest.TestCase):
+class ClockTest(EstimatorStatus, unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.changed = threading.Condition()
-        cls.estimates, cls.values, cls.heard = [], {}, 0
-        cls.subscribers = [rospy.Subscriber('stiffness', StiffnessEstimate, cls.keep, queue_size=10000),
-                           rospy.Subscriber('/diagnostics', DiagnosticArray, cls.on_diagnostics)]
+        cls.estimates = []
+        cls.subscribers = [cls.watch_status(), rospy.Subscriber('stiffness', StiffnessEstimate, cls.keep, queue_size=10000)]
         with tempfile.TemporaryDirectory() as folder:
             steady, jumping = (os.path.join(folder, name) for name in ('steady.bag', 'jumping.bag'))
             write_recording(DURATION, steady)
             set_clock(steady, jumping)
             player = roslib.packages.find_node('rosbag', 'play')[0]
             subprocess.run([player, '--wait-for-subscribers', '--quiet', jumping], check=True, stdout=subprocess.DEVNULL, timeout=120)
-        with cls.changed:
-            heard = cls.heard
-            if not cls.changed.wait_for(lambda: cls.heard >= heard + 3 and cls.values.get('frames waiting') == '0', 100):
-                raise AssertionError('frames still wait: %s' % cls.values)
+        cls.wait_for_waiting_frames(100)
 
     @classmethod
     def keep(cls, message):
         with cls.changed:
             if message.names and message.state != 'stale':
                 cls.estimates.append(message)
-            cls.changed.notify_all()
-
-    @classmethod
-    def on_diagnostics(cls, message):
-        with cls.changed:
-            for status in message.status:
-                if status.name.endswith('estimator'):
-                    cls.values = {entry.key: entry.value for entry in status.values}
-                    cls.heard += 1
             cls.changed.notify_all()
 
     def test_a_clock_that_is_set_keeps_the_modulus(self):

@@ -9,26 +9,26 @@ import unittest
 import rosbag
 import rospy
 import rostest
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from diagnostic_msgs.msg import DiagnosticStatus
 from sensor_msgs.msg import PointCloud2
 from std_srvs.srv import Trigger
 
+from estimator_status import EstimatorStatus
 from tissue_stiffness.msg import StiffnessEstimate, TetMesh
 
 TRUTH = 550e3  # Pa
 TOPIC = '/tissue/vertices'
 
 
-class DisturbedTest(unittest.TestCase):
+class DisturbedTest(EstimatorStatus, unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         with rosbag.Bag(rospy.get_param('~bag')) as bag:
             cls.frames = [message for _, message, _ in bag.read_messages(TOPIC, raw=False)]
         cls.frames = [cls.plain(frame) for frame in cls.frames]
-        cls.changed, cls.estimates, cls.values = threading.Condition(), [], {}
-        cls.level, cls.message, cls.heard = DiagnosticStatus.OK, '', 0
-        cls.subscribers = [rospy.Subscriber('stiffness', StiffnessEstimate, cls.on_estimate, queue_size=1000),
-                           rospy.Subscriber('/diagnostics', DiagnosticArray, cls.on_diagnostics)]
+        cls.estimates = []
+        cls.subscribers = [cls.watch_status(),
+                           rospy.Subscriber('stiffness', StiffnessEstimate, cls.on_estimate, queue_size=1000)]
         cls.publisher = rospy.Publisher(TOPIC, PointCloud2, queue_size=1000)
         while not cls.publisher.get_num_connections():
             threading.Event().wait(0.05)
@@ -43,16 +43,6 @@ class DisturbedTest(unittest.TestCase):
     def on_estimate(cls, message):
         with cls.changed:
             cls.estimates.append(message)
-            cls.changed.notify_all()
-
-    @classmethod
-    def on_diagnostics(cls, message):
-        with cls.changed:
-            for status in message.status:
-                if status.name.endswith('estimator'):
-                    cls.level, cls.message = status.level, status.message
-                    cls.values = {entry.key: entry.value for entry in status.values}
-                    cls.heard += 1
             cls.changed.notify_all()
 
     def play(self, frames):

@@ -39,6 +39,16 @@ class FrameQueueTest : public testing::Test {
     const auto work = queue.take();
     return (work->stamp - ros::Time(1e6)).toSec();
   }
+  // Adds a load and a frame, which go on from the ones before, and takes them.
+  FrameQueue::Work take_next(double& now) {
+    load(now);
+    frame(now);
+    auto work = queue.take();
+    EXPECT_NEAR((work->stamp - at(now)).toSec(), 0.0, 1e-9);
+    EXPECT_FALSE(work->new_epoch);
+    now += 0.1;
+    return std::move(*work);
+  }
 };
 
 class PatientFrameQueueTest : public FrameQueueTest {
@@ -178,15 +188,7 @@ TEST_F(PatientFrameQueueTest, ABrokenStampIsLeftOut) {
   start();
   std::size_t broken = 0;
   double now = 0.0;
-  const auto go_on = [&] {
-    load(now);
-    frame(now);
-    const auto work = queue.take();
-    EXPECT_NEAR((work->stamp - at(now)).toSec(), 0.0, 1e-9);
-    EXPECT_EQ(work->loads.size(), 1U);
-    EXPECT_FALSE(work->new_epoch);
-    now += 0.1;
-  };
+  const auto go_on = [&] { EXPECT_EQ(take_next(now).loads.size(), 1U); };
   for (int k = 0; k < 3; ++k) go_on();
   for (const double jump : {5.0, 4.2e9, 3600.0, -1.0, -900.0}) {
     frame(now + jump);
@@ -203,14 +205,7 @@ TEST_F(PatientFrameQueueTest, ABrokenStampIsLeftOut) {
 TEST_F(FrameQueueTest, ABrokenStampBeforeASilenceIsLeftOut) {
   start();
   double now = 0.0;
-  const auto go_on = [&] {
-    load(now);
-    frame(now);
-    const auto work = queue.take();
-    EXPECT_NEAR((work->stamp - at(now)).toSec(), 0.0, 1e-9);
-    EXPECT_FALSE(work->new_epoch);
-    now += 0.1;
-  };
+  const auto go_on = [&] { take_next(now); };
   for (int k = 0; k < 3; ++k) go_on();
   frame(now + 3600.0);
   load(now);

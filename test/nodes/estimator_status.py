@@ -1,0 +1,32 @@
+"""What /diagnostics says of a running estimator, for tests that wait for it."""
+import threading
+
+import rospy
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+
+
+class EstimatorStatus:
+    """A test derives from this one, and keeps the subscriber that `watch_status` returns. `changed` is notified of each message."""
+
+    @classmethod
+    def watch_status(cls):
+        cls.changed = threading.Condition()
+        cls.level, cls.message, cls.values, cls.heard = DiagnosticStatus.OK, '', {}, 0
+        return rospy.Subscriber('/diagnostics', DiagnosticArray, cls.on_diagnostics)
+
+    @classmethod
+    def on_diagnostics(cls, message):
+        with cls.changed:
+            for status in message.status:
+                if status.name.endswith('estimator'):
+                    cls.level, cls.message = status.level, status.message
+                    cls.values = {entry.key: entry.value for entry in status.values}
+                    cls.heard += 1
+            cls.changed.notify_all()
+
+    @classmethod
+    def wait_for_waiting_frames(cls, seconds):
+        with cls.changed:
+            heard = cls.heard
+            if not cls.changed.wait_for(lambda: cls.heard >= heard + 3 and cls.values.get('frames waiting') == '0', seconds):
+                raise AssertionError('frames still wait: %s' % cls.values)
