@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "../box_model.hpp"
+#include "../static_sag.hpp"
 #include "fem/generalized_alpha.hpp"
 #include "forward/full_model.hpp"
 #include "meshing/elevate.hpp"
@@ -149,21 +150,10 @@ TEST(Foundation, HoldsTheSideThatFacesADirection) {
   EXPECT_NE(refusal([] { held_area("facing: [0, 0, 0], "); }), "");
 }
 
-// Static displacement under the loads at time 0.
 Eigen::VectorXd sag(const std::vector<std::string>& clamps) {
   std::vector<std::string> effects{kInertia, kLinear, "gravity: {acceleration: [0, 0, -9.81]}"};
   effects.insert(effects.end(), clamps.begin(), clamps.end());
-  const Model model(box_settings(effects), bar_mesh(8));
-  const ModelSystem system(model, prior(model));
-  SparseMatrix k = model.stiffness(prior(model));
-  Eigen::VectorXd f = system.force(0.0, zero(model), zero(model));
-  for (Eigen::Index i = 0; i < f.size(); ++i) {
-    if (system.fixed()[static_cast<std::size_t>(i)] != 0) f[i] = 0.0;
-  }
-  fix_dofs(k, system.fixed(), k.diagonal().mean());
-  SparseSolver solver;
-  solver.factorize(k);
-  return solver.solve(f);
+  return static_sag(Model(box_settings(effects), bar_mesh(8)));
 }
 
 // A clamp that is drawn over half of the bar, and that holds only its end.

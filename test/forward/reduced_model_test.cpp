@@ -9,6 +9,7 @@
 #include <set>
 
 #include "../box_model.hpp"
+#include "../static_sag.hpp"
 #include "fem/sparse_solver.hpp"
 #include "forward/first_order_model.hpp"
 #include "forward/full_model.hpp"
@@ -194,23 +195,9 @@ TEST(ReducedModel, FollowsTheFullOneFromAnInitialVelocity) {
   EXPECT_LT(difference(model, prior(model), 1e-4), 5e-3);
 }
 
-// Static solution K u = f of the loads at time 0.
-Eigen::VectorXd sag(const Model& model) {
-  SparseMatrix k = model.stiffness(prior(model));
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(k.rows());
-  Eigen::VectorXd f = ModelSystem(model, prior(model)).force(0.0, zero, zero);
-  for (Eigen::Index i = 0; i < f.size(); ++i) {
-    if (model.fixed()[static_cast<std::size_t>(i)] != 0) f[i] = 0.0;
-  }
-  fix_dofs(k, model.fixed(), k.diagonal().mean());
-  SparseSolver solver;
-  solver.factorize(k);
-  return solver.solve(f);
-}
-
 // One vector, the static sag x: u(t) = x (1 - e^-st (cos wt + s/w sin wt)).
 void expect_one_mode(const Model& model) {
-  const Eigen::VectorXd x = sag(model);
+  const Eigen::VectorXd x = static_sag(model);
   const double square = x.dot(model.stiffness(prior(model)) * x) / x.dot(model.mass(prior(model)) * x);
   const double s = 0.5 * (model.mass_damping(prior(model)) + model.stiffness_damping(prior(model)) * square),
                w = std::sqrt(square - s * s);
