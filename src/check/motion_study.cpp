@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "check/starts_in_motion.hpp"
+#include "effects/registry.hpp"
 #include "fit/ensemble.hpp"
 #include "forward/reduced_model.hpp"
 
@@ -54,7 +55,7 @@ bool MotionStudy::applies(const ModelSettings& settings) {
          std::any_of(settings.observations.begin(), settings.observations.end(),
                      [](const ObservationSettings& sensor) { return !traits_of(sensor.kind).force; }) &&
          std::none_of(settings.effects.begin(), settings.effects.end(),
-                      [](const EffectSettings& effect) { return effect.name == "contact_plane"; });
+                      [](const EffectSettings& effect) { return effect_spec(effect).contact; });
 }
 
 MotionStudy::MotionStudy(const ModelSettings& settings, const TetMesh& mesh, const Recorded& recorded)

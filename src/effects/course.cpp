@@ -112,8 +112,20 @@ double Course::value(double time, int component) const {
   const std::shared_lock<std::shared_mutex> lock(mutex_);
   if (corrected_.empty()) return uncorrected(time, component);
   if (kind_ != LoadInput::Kind::pose) return interpolated(corrected_, time, component);
-  const double error = interpolated(values_, time, component) - interpolated(corrected_, time, component);
-  return path_.motion(time - offset_, component) - error;
+  return path_.motion(time - offset_, component) - correction(time, component);
+}
+
+// The caller must hold the lock.
+double Course::correction(double time, int component) const {
+  return interpolated(values_, time, component) - interpolated(corrected_, time, component);
+}
+
+std::optional<Eigen::Matrix<double, 3, 4>> Course::pose(double time) const {
+  const std::shared_lock<std::shared_mutex> lock(mutex_);
+  if (path_.empty()) return std::nullopt;
+  Eigen::Matrix<double, 3, 4> out = path_.pose(time - offset_);
+  for (int i = 0; i < 3 && !corrected_.empty(); ++i) out(i, 3) -= correction(time, i);
+  return out;
 }
 
 double Course::measured(double time, int component) const {

@@ -33,6 +33,8 @@ class Course {
   void add(double time, const Eigen::VectorXd& value);
   /// Returns the value, corrected if there is a correction.
   double value(double time, int component) const;
+  /// Returns the pose [R | c] of a course of poses, corrected like its value; empty before the first one.
+  std::optional<Eigen::Matrix<double, 3, 4>> pose(double time) const;
   /// Returns the value as it was measured.
   double measured(double time, int component) const;
   /// Subtracts the error that `basis` and its coefficients describe from every sample, including future ones. The estimated
@@ -64,6 +66,7 @@ class Course {
  private:
   double interpolated(const std::vector<Eigen::VectorXd>& values, double time, int component) const;
   double uncorrected(double time, int component) const;
+  double correction(double time, int component) const;
   void correct_sample(std::size_t index);
 
   LoadTolerance tolerance_;

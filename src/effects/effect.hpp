@@ -45,6 +45,7 @@ struct EffectSpec {
   Proposer proposals = nullptr;                           ///< null: its absence is not searched for
   bool of_simulation = false;                             ///< not physics, but a property of simulated recordings
   bool of_recording = false;                              ///< differs between recordings of one body
+  bool contact = false;                                   ///< keeps bodies apart; its stiffness is a penalty
 };
 
 /// What is available to an effect while it is built.
@@ -91,9 +92,32 @@ class NonlinearForce {
   /// discretisation's pattern.
   virtual bool has_velocity_tangent(const Parameters&) const { return false; }
   virtual void add_velocity_tangent(const Motion&, const Parameters&, SparseMatrix&) const {}
+  /// Returns the region at which a sensor may measure this force, its reaction; empty: none does.
+  virtual std::string reacting_region() const { return ""; }
 
  protected:
   ~NonlinearForce() = default;
+};
+
+/// Contact of the surface with something rigid. Its force acts at single points of boundary facets, and depends on the
+/// motion of these points alone.
+class Contact {
+ public:
+  /// A point that touches.
+  struct Touch {
+    Eigen::Matrix<int, Eigen::Dynamic, 1, 0, 6, 1> nodes;     ///< of its facet
+    Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> shape;  ///< their shape functions at the point
+    Eigen::Vector3d force;                                    ///< on the body [N]
+    Eigen::Matrix3d stiffness;                                ///< -d force / d displacement of the point [N/m]
+    Eigen::Matrix3d damping;                                  ///< -d force / d velocity of the point [N s/m]
+  };
+  /// Returns the nodes of all facets that may touch, ascending.
+  virtual const std::vector<int>& nodes() const = 0;
+  /// Appends the points that touch. Reads the motion of nodes() only.
+  virtual void find(const Motion&, const Parameters&, std::vector<Touch>&) const = 0;
+
+ protected:
+  ~Contact() = default;
 };
 
 /// A law whose stress follows from the deformation gradient F at the same place alone. Reduced models then need its stress
@@ -172,6 +196,7 @@ class Effect {
 
   virtual void linear_terms(LinearTerms&) const {}
   virtual const NonlinearForce* nonlinear_force() const { return nullptr; }
+  virtual const Contact* contact() const { return nullptr; }
   virtual const FiniteStrainForm* finite_strain() const { return nullptr; }
   virtual const Support* support() const { return nullptr; }
   virtual const SensorModel* sensor_model() const { return nullptr; }

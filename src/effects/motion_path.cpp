@@ -87,6 +87,13 @@ double MotionPath::at(double time, int component) const {
   return from + (to - from) * up + span * s * (1.0 - s) * ((1.0 - s) * a.slope[component] - s * b.slope[component]);
 }
 
+Eigen::Matrix<double, 3, 4> MotionPath::pose(double time) const {
+  Eigen::Matrix<double, 3, 4> out;
+  for (int i = 0; i < 9; ++i) out(i % 3, i / 3) = at(time, 3 + i);
+  for (int i = 0; i < 3; ++i) out(i, 3) = at(time, i);
+  return out;
+}
+
 void MotionPath::find_rest() {
   if (knots_.empty()) return;
   Eigen::Matrix3d rotation;

@@ -28,6 +28,9 @@ class MotionPath {
   /// Returns a component of the motion: d [m], then the columns of A. It is held before the first pose and after the last,
   /// and 0 without any.
   double motion(double time, int component) const;
+  /// Returns the pose itself: [R | c], 3 x 4 [-, m]. It is held like the motion. There must be one.
+  Eigen::Matrix<double, 3, 4> pose(double time) const;
+  bool empty() const { return knots_.empty(); }
 
  private:
   struct Knot {

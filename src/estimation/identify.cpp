@@ -32,7 +32,7 @@ std::vector<std::string> known_scales(const Model& model) {
       const std::string name = effect.label + "." + spec.name;
       bool free = false;
       for (const FreeParameter& parameter : model.parameters().free()) free = free || parameter.name == name;
-      if (is_scale(name) && !free && effect.name != "contact_plane") known.push_back(name);
+      if (is_scale(name) && !free && !effect_spec(effect).contact) known.push_back(name);
     }
   }
   return known;

@@ -80,7 +80,7 @@ InputModels::InputModels(const Model& model)
       operators(make_observation_operators(base)),
       constants(model.parameters().uncertain_constants()),
       rigid(rigid_motions(base.mesh())) {
-  runs = std::make_unique<ReducedModel>(uncertain, BasisOptions().linear_form());
+  runs = make_study_model(uncertain);
 }
 
 NormalEquations::NormalEquations(Eigen::Index size, Eigen::Index constant_count)
@@ -109,8 +109,9 @@ InputLinearisation::InputLinearisation(const MeshError::Question& question, Inpu
   const std::size_t stride = (question.frames.size() + kMostFrames - 1) / kMostFrames;
   for (std::size_t k = question.frames.size(); k > 0; k -= std::min(k, stride)) frames_.insert(frames_.begin(), k - 1);
   repeated_ = static_cast<double>(question.frames.size()) / static_cast<double>(frames_.size());
-  motions_.resize(models.rigid.rows(), models.runs->basis().cols() + models.rigid.cols());
-  motions_ << models.runs->basis(), models.rigid;
+  const Eigen::MatrixXd& basis = models.linear_form().basis();
+  motions_.resize(models.rigid.rows(), basis.cols() + models.rigid.cols());
+  motions_ << basis, models.rigid;
   if (models.base.settings().exact_inputs) return;
   for (const auto& [topic, course] : models.uncertain.loads().courses()) add_load(topic, course);
   for (std::size_t i = 0; i < models.base.settings().observations.size(); ++i) add_pose(i);
@@ -277,7 +278,7 @@ Eigen::MatrixXd InputLinearisation::modes_seen(const Frame& frame, const Eigen::
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(seen.rows(), own + forces);
   out.leftCols(own) = seen.leftCols(modes.shapes.rows()) * modes.shapes;
   if (forces == 0) return out;
-  const Eigen::MatrixXd elastic = models_.runs->reaction_rows(theta, modes).elastic;
+  const Eigen::MatrixXd elastic = models_.linear_form().reaction_rows(theta, modes).elastic;
   Eigen::Index first = 0;
   for (const Observation& observation : frame.observations) {
     for (std::size_t r = 0; r < models_.base.reactions().size() && traits_of(observation.kind).force; ++r) {
@@ -358,8 +359,9 @@ void InputLinearisation::each_row(const Eigen::VectorXd& z, const Visitor& visit
   const std::vector<Eigen::VectorXd> thetas = points(z.head(p_));
   const auto all = models_.runs->start_all(thetas, q_.start);
   std::vector<LoadErrorResponse> responses;
-  for (const Load& load : loads_) responses.emplace_back(*models_.runs, thetas[0], q_.start, load.course, load.basis);
-  const ReducedTrajectory at_rest(*models_.runs, thetas[0], q_.start);
+  for (const Load& load : loads_)
+    responses.emplace_back(models_.linear_form(), thetas[0], q_.start, load.course, load.basis);
+  const ReducedTrajectory at_rest(models_.linear_form(), thetas[0], q_.start);
   const ReducedModes& modes = *at_rest.modes();
   Eigen::MatrixXd u = Eigen::MatrixXd::Zero(models_.base.output_size(), static_cast<Eigen::Index>(thetas.size()));
   const Eigen::Index own = modes.shapes.cols(), forces = u.rows() - models_.base.fem().dof_count();

@@ -9,7 +9,7 @@
 
 #include "effects/load_error.hpp"
 #include "estimation/mesh_error.hpp"
-#include "forward/reduced_model.hpp"
+#include "forward/study_model.hpp"
 #include "observation/observation_operator.hpp"
 
 namespace tissue_stiffness {
@@ -18,12 +18,13 @@ namespace tissue_stiffness {
 struct InputModels {
   Model base;       ///< the estimator's, for its parameters
   Model uncertain;  ///< keeps constants that have a tolerance apart
-  std::unique_ptr<ReducedModel> runs;
+  std::unique_ptr<ForwardModel> runs;
   std::vector<std::unique_ptr<ObservationOperator>> operators;
   std::vector<UncertainConstant> constants;
   Eigen::MatrixXd rigid;  ///< translations and rotations of the body, 3n x 6
 
   explicit InputModels(const Model& model);
+  const ReducedModel& linear_form() const { return linear_form_of(*runs); }
 };
 
 /// These are the normal equations of the rows r = y - h(z), z = [w; eta]. z holds the p parameters, then the inputs' errors

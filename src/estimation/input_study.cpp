@@ -9,6 +9,7 @@
 #include "estimation/fit_alone.hpp"
 #include "estimation/joint_rows.hpp"
 #include "fit/ensemble.hpp"
+#include "forward/study_model.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -37,7 +38,7 @@ class InputFit {
     answer.asked = rows_.asked();
     answer.fitted = true;
     for (std::size_t r = 0; r < rows_.recordings(); ++r)
-      answer.fitted = answer.fitted && !rows_.part(r).models.base.nonlinear();
+      answer.fitted = answer.fitted && studied_in_full(rows_.part(r).models.base);
     answer.recordings.resize(rows_.recordings());
     const bool uncertain = answer.fitted && columns_.size() > p_;  // else the fit is at the question's parameters
     Fit best = uncertain ? best_mode() : posterior_.at(answer.asked);

@@ -176,14 +176,14 @@ class JointStudy {
     const Eigen::VectorXd mesh = mesh_shift(), basis = basis_shifts();
     runs_at_ = believed_ ? inputs_.w : fit_.filter().mean();
     Eigen::VectorXd mean = runs_at_;
-    if (!fit_.nonlinear()) mean -= mesh;
+    if (fit_.studied_in_full()) mean -= mesh;
     Eigen::MatrixXd noise = fit_.filter().robust_covariance() + basis * basis.transpose();
     Eigen::MatrixXd loads = inputs_.from_loads;
     if (inputs_.fitted && !believed_) {
       const Eigen::VectorXd apart = inputs_.w - runs_at_;
       loads += apart * apart.transpose();
     }
-    const Eigen::MatrixXd of_mesh = mesh_discrepancy(shared_.free(), fit_.nonlinear(), mesh) + inputs_.from_mesh;
+    const Eigen::MatrixXd of_mesh = mesh_discrepancy(shared_.free(), !fit_.studied_in_full(), mesh) + inputs_.from_mesh;
     Eigen::MatrixXd model = discrepancy() + (disagreement() - 1.0) * (noise + loads + of_mesh);
     model = within_prior(model, prior_);
     covariance_ = noise + loads + of_mesh + inputs_.from_constants + model;

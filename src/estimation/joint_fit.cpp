@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "fit/batch_fit.hpp"
+#include "forward/study_model.hpp"
 #include "tissue_stiffness/estimation/estimator.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
@@ -74,8 +75,9 @@ std::vector<const Model*> JointFit::models() const {
   return models_of(fits_);
 }
 
-bool JointFit::nonlinear() const {
-  return std::any_of(fits_.begin(), fits_.end(), [](const auto& fit) { return fit->model().nonlinear(); });
+bool JointFit::studied_in_full() const {
+  return std::all_of(fits_.begin(), fits_.end(),
+                     [](const auto& fit) { return tissue_stiffness::studied_in_full(fit->model()); });
 }
 
 std::vector<FitPart> JointFit::parts() const {

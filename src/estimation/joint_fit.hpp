@@ -47,7 +47,7 @@ class JointFit {
   const Sharing& sharing() const { return sharing_; }
   const SharedParameters& shared() const { return shared_; }
   std::vector<const Model*> models() const;
-  bool nonlinear() const;
+  bool studied_in_full() const;
 
   /// Returns the filter at the most probable parameters.
   const PosteriorLinearizationFilter& filter() const { return filter_; }

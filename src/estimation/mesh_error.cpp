@@ -11,7 +11,7 @@
 #include "fit/coordinate_scan.hpp"
 #include "fit/ensemble.hpp"
 #include "forward/extra_force.hpp"
-#include "forward/reduced_model.hpp"
+#include "forward/study_model.hpp"
 #include "meshing/bend_boundary.hpp"
 #include "meshing/refine.hpp"
 #include "tissue_stiffness/meshing/build_mesh.hpp"
@@ -96,11 +96,12 @@ BasisOptions basis_beside(const TetMesh& mesh, const TetMesh& finer) {
 }
 
 Eigen::MatrixXd mesh_discrepancy(const Model& model, const Eigen::VectorXd& shift) {
-  return mesh_discrepancy(model.parameters().free(), model.nonlinear(), shift);
+  return mesh_discrepancy(model.parameters().free(), !studied_in_full(model), shift);
 }
 
-Eigen::MatrixXd mesh_discrepancy(const std::vector<FreeParameter>& free, bool nonlinear, const Eigen::VectorXd& shift) {
-  const double left = nonlinear ? 1.0 : kLeftByCorrection;
+Eigen::MatrixXd mesh_discrepancy(const std::vector<FreeParameter>& free, bool of_linear_form,
+                                 const Eigen::VectorXd& shift) {
+  const double left = of_linear_form ? 1.0 : kLeftByCorrection;
   const Eigen::VectorXd modulus = young_moduli(free);
   const double mean_square = modulus.dot(shift.cwiseAbs2()) / std::max(1.0, modulus.sum());
   Eigen::MatrixXd discrepancy = shift * shift.transpose();
@@ -111,13 +112,13 @@ Eigen::MatrixXd mesh_discrepancy(const std::vector<FreeParameter>& free, bool no
 struct MeshError::Studies {
   Model coarse;
   std::unique_ptr<Model> fine;
-  std::unique_ptr<ReducedModel> coarse_runs, fine_runs;
+  std::unique_ptr<ForwardModel> coarse_runs, fine_runs;
   std::vector<std::unique_ptr<ObservationOperator>> operators;
 
   // The finer model has theta fixed, if one is given.
   Studies(const Model& model, const BasisOptions& basis, const Eigen::VectorXd* theta, const ReuseSources& known)
       : coarse(model.settings(), model), operators(make_observation_operators(coarse)) {
-    coarse_runs = std::make_unique<ReducedModel>(coarse, basis.linear_form(), known.own);
+    coarse_runs = make_study_model(coarse, basis, known.own);
     if (known.finer != nullptr) {
       fine = std::make_unique<Model>(coarse.settings(), known.finer->model());
     } else {
@@ -126,7 +127,7 @@ struct MeshError::Studies {
                                      refine_regions(coarse.body().regions, coarse.mesh(), refined));
     }
     if (theta != nullptr) fine->know(*theta);
-    fine_runs = std::make_unique<ReducedModel>(*fine, basis_beside(coarse.mesh(), fine->mesh()).linear_form(), known.finer);
+    fine_runs = make_study_model(*fine, basis_beside(coarse.mesh(), fine->mesh()), known.finer);
   }
 
   void prepare(const Question& q) {
@@ -138,7 +139,7 @@ struct MeshError::Studies {
   }
 
   // Nodes of the coarse mesh keep their numbers in the finer one, so its run is seen through them.
-  std::vector<Prediction> predictions(const ReducedModel& runs, const Question& q, const Eigen::VectorXd& w) const {
+  std::vector<Prediction> predictions(const ForwardModel& runs, const Question& q, const Eigen::VectorXd& w) const {
     const Eigen::VectorXd theta = coarse.parameters().theta(w);
     const auto run = runs.start(theta, q.start);
     std::vector<Prediction> out;
@@ -194,7 +195,7 @@ std::string MeshError::why_not(const TetMesh& mesh) {
 std::string MeshError::why_not(const Model& model) {
   if (!model.settings().mesh.discretisation_error) return "the model file asks not to";
   for (const Model::Part& part : model.parts()) {
-    if (!has_linear_form(part)) return part.label + " has no linear form";
+    if (!has_linear_form(part) && !studied_in_full(model)) return part.label + " has no linear form";
   }
   return why_not(model.mesh());
 }

@@ -24,16 +24,16 @@ TetMesh refined_mesh(const TetMesh& mesh, const MeshSettings& settings);
 /// Returns the basis options of a model on `finer`, which is refined_mesh(mesh): the stiffness there needs no factor.
 BasisOptions basis_beside(const TetMesh& mesh, const TetMesh& finer);
 
-/// Returns the covariance of what stays wrong (filter coordinates). A linear model is corrected by the shift, so half of it
-/// stays, 1 sigma. A modulus whose own shift happens to be small gets half of the moduli's rms shift. A nonlinear model
-/// keeps all of both.
+/// Returns the covariance of what stays wrong (filter coordinates). A model that is studied in full is corrected by the
+/// shift, so half of it stays, 1 sigma. A modulus whose own shift happens to be small gets half of the moduli's rms shift.
+/// A model that is studied in its linear form keeps all of both.
 Eigen::MatrixXd mesh_discrepancy(const Model& model, const Eigen::VectorXd& shift);
-Eigen::MatrixXd mesh_discrepancy(const std::vector<FreeParameter>& free, bool nonlinear, const Eigen::VectorXd& shift);
+Eigen::MatrixXd mesh_discrepancy(const std::vector<FreeParameter>& free, bool of_linear_form, const Eigen::VectorXd& shift);
 
 /// The study tells what the mesh does to the parameters. The model runs once more on a mesh with every tetrahedron cut into
 /// eight and flat facets bent to the smooth surface they stand for. Fitted to that run, the estimator's own mesh would be
-/// off by a shift. A nonlinear model runs only what is linear in it; its shift measures the discrepancy and corrects
-/// nothing. `why_not` says what stands against a study.
+/// off by a shift. A model that is not studied in full (see studied_in_full) runs only what is linear in it; its shift
+/// measures the discrepancy and corrects nothing. `why_not` says what stands against a study.
 class MeshError {
  public:
   /// Returns why no study can be made on such a mesh, or of a model, whose file may forbid it; empty: one can.

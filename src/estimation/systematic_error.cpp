@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "forward/study_model.hpp"
+
 namespace tissue_stiffness {
 
 Eigen::MatrixXd within_prior(const Eigen::MatrixXd& c, const Eigen::VectorXd& prior_std) {
@@ -17,8 +19,8 @@ SystematicError::SystematicError(const Model& model) : model_(model) {
 
 SystematicError::Corrected SystematicError::correct(const Filtered& filtered) const {
   Corrected out{filtered.mean, {}, {}};
-  // A nonlinear model has the mesh shift of its linear form, which corrects nothing.
-  if (!model_.nonlinear()) out.mean -= mesh_shift();
+  // The mesh shift of a linear form corrects nothing.
+  if (studied_in_full(model_)) out.mean -= mesh_shift();
   if (input_shift_.size() > 0 && inputs_believed()) out.mean += input_shift_;
   out.covariance = filtered.covariance + parts_.all;
   Eigen::MatrixXd of_model = Eigen::MatrixXd::Zero(out.mean.size(), out.mean.size());

@@ -14,6 +14,7 @@
 #include "estimation/studies.hpp"
 #include "estimation/systematic_error.hpp"
 #include "estimation/validity.hpp"
+#include "forward/study_model.hpp"
 #include "observation/frame_misfit.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
@@ -32,9 +33,9 @@ class UnscentedScheme : public Scheme {
   std::vector<std::string> description() const override {
     const std::string why = studies_.mesh_unknown();
     return {forward_->description(),
-            "mesh error: " + (!why.empty()          ? "not assessed, " + why
-                              : model_->nonlinear() ? "assessed on its linear form, from a mesh refined eightfold"
-                                                    : "from a mesh refined eightfold")};
+            "mesh error: " + (!why.empty()                ? "not assessed, " + why
+                              : !studied_in_full(*model_) ? "assessed on its linear form, from a mesh refined eightfold"
+                                                          : "from a mesh refined eightfold")};
   }
 
   std::vector<Misfit> free_run(const FreeFrameVisitor& visit) override {

@@ -102,6 +102,14 @@ Eigen::MatrixXd acting_loads(const Model& model, const PriorView& prior, const S
       if (term.coefficient(p) != 0.0) append(loads, term.shaped ? term.shaped(p) : term.pattern);
     }
   }
+  for (const auto& part : model.parts()) {
+    const Contact* contact = part.effect->contact();
+    if (contact == nullptr) continue;
+    for (int i = 0; i < 3; ++i) {
+      append(loads, Eigen::VectorXd::Zero(mass.rows()));
+      for (const int node : contact->nodes()) loads(3 * node + i, loads.cols() - 1) = 1.0;
+    }
+  }
   if (model.settings().initial.kind == InitialSettings::Kind::rest && !model.starts_in_motion()) return loads;
   for (int i = 0; i < 3; ++i) {
     Eigen::VectorXd push = along(model, i);

@@ -134,14 +134,15 @@ class FullTrajectories : public Trajectories {
       const DynamicState &from = before_[i], &to = states_[i];
       reactions_[i].col(1) = reactions_[i].col(0).eval();
       reactions_[i].col(0) = systems_[i]->reactions((1.0 - share) * to.time + share * from.time,
-                                                    (1.0 - share) * to.displacement + share * from.displacement);
+                                                    (1.0 - share) * to.displacement + share * from.displacement,
+                                                    (1.0 - share) * to.velocity + share * from.velocity);
     }
   }
 
   // Extrapolates them to the end of the last step.
   Eigen::VectorXd reactions(std::size_t i) const {
     const Eigen::MatrixXd& kept = reactions_[i];
-    if (noted_ < 2) return systems_[i]->reactions(states_[i].time, states_[i].displacement);
+    if (noted_ < 2) return systems_[i]->reactions(states_[i].time, states_[i].displacement, states_[i].velocity);
     return kept.col(0) + stepper_.force_share() * (kept.col(0) - kept.col(1));
   }
 
@@ -280,9 +281,9 @@ void ModelSystem::find_rotations(const Eigen::VectorXd& u, Eigen::Matrix3Xd& rot
   rotations_ ? rotations_->find(u, rotations) : DynamicSystem::find_rotations(u, rotations);
 }
 
-Eigen::VectorXd ModelSystem::reactions(double time, const Eigen::VectorXd& u) const {
+Eigen::VectorXd ModelSystem::reactions(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const {
   Eigen::VectorXd out(model_.output_size() - u.size());
-  model_.find_reactions(point_, time, u, out);
+  model_.find_reactions(point_, {time, u, v}, out);
   return out;
 }
 

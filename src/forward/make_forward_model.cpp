@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "forward/contact_model.hpp"
 #include "forward/extra_force.hpp"
 #include "forward/extrapolated_model.hpp"
 #include "forward/first_order_model.hpp"
@@ -21,6 +22,7 @@ std::unique_ptr<ForwardModel> make_forward_model(const Model& model, const Basis
   if (basis.nonlinear == BasisOptions::Nonlinear::first_order) {
     return std::make_unique<FirstOrderModel>(model, basis, reduced);
   }
+  if (ContactModel::suits(model)) return std::make_unique<ContactModel>(model, basis, reduced);
   FullModel::Options options;
   options.steps_per_frame = basis.steps_per_frame;
   options.step = model.settings().time.step;

@@ -60,15 +60,19 @@ Model::Model(const ModelSettings& settings, std::shared_ptr<const Body> body, co
   prior_theta_ = parameters_.known();
   sensors_ = Sensors(mesh(), parts_);
   loads_.set_rest(settings_.time.start);
-  find_guided_regions();
+  find_reacting_regions();
   rest_ = Eigen::VectorXd::Zero(fem().dof_count() + 3 * static_cast<Eigen::Index>(reactions_.size()));
 }
 
-void Model::find_guided_regions() {
+void Model::find_reacting_regions() {
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const LinearTerms& terms = parts_[i].terms;
-    if (terms.guided_region.empty()) continue;
     Eigen::MatrixX3d springs = Eigen::MatrixX3d::Zero(fem().dof_count(), 3);
+    const NonlinearForce* force = parts_[i].effect->nonlinear_force();
+    if (force != nullptr && !force->reacting_region().empty()) {
+      reactions_.push_back({i, force->reacting_region(), springs});
+    }
+    if (terms.guided_region.empty()) continue;
     for (const MatrixTerm& term : terms.stiffness) {
       for (int axis = 0; axis < 3; ++axis)
         springs.col(axis) += *term.matrix * along_axis(Eigen::VectorXd::Ones(fem().node_count()), axis);

@@ -34,11 +34,12 @@ class Model {
 
   const TetMesh& mesh() const { return body_->mesh; }
   const Discretisation& fem() const { return body_->fem; }
-  /// A region whose motion is prescribed. The force on it is a reaction of the body.
+  /// A region whose motion is prescribed, or that a tool touches. The force on it is a reaction of the body.
   struct Reaction {
-    std::size_t part;  ///< index of the effect that prescribes the motion
+    std::size_t part;  ///< index of the effect that prescribes the motion, or touches
     std::string region;
-    Eigen::MatrixX3d springs;  ///< force of its springs when the body moves by a unit along each axis, 3n x 3 [N/m]
+    /// Force of its springs when the body moves by a unit along each axis, 3n x 3 [N/m]; zero where a tool touches.
+    Eigen::MatrixX3d springs;
   };
   const std::vector<Reaction>& reactions() const { return reactions_; }
   /// Returns the number of rows that a run shows of an instant: the displacement of every node, 3n [m], and then each
@@ -120,8 +121,8 @@ class Model {
   void add_strain_force(const Point& at, const Eigen::VectorXd& u, const Eigen::Ref<const Eigen::VectorXd>& strains,
                         Eigen::VectorXd& force) const;
   void add_velocity_tangent(const Point& at, Motion motion, SparseMatrix& damping) const;
-  /// Computes the reactions [N] to prescribed motions, 3 rows each, at an instant of a run with displacement u (3n).
-  void find_reactions(const Point& at, double time, const Eigen::VectorXd& u, Eigen::Ref<Eigen::VectorXd> out) const;
+  /// Computes the reactions [N] to prescribed motions and tools, 3 rows each, at an instant of a run.
+  void find_reactions(const Point& at, const Motion& motion, Eigen::Ref<Eigen::VectorXd> out) const;
   /// Returns elastic and contact energy [J].
   double stored_energy(const Point& at, Motion motion) const;
 
@@ -142,7 +143,8 @@ class Model {
   void link_elasticities();
   void check_laws() const;
   void settle_terms(Part& part) const;
-  void find_guided_regions();
+  void find_reacting_regions();
+  Eigen::Vector3d spring_reaction(const Reaction& reaction, const Point::Part& own, const Motion& motion) const;
   /// Sums the parts' stiffness at rest, each times its share: all of it, or without what does not relax.
   SparseMatrix sum_stiffness(const Eigen::VectorXd& theta, bool all, const std::function<double(const Part&)>& share) const;
 

@@ -305,17 +305,30 @@ void Model::add_velocity_tangent(const Point& at, Motion motion, SparseMatrix& d
 }
 
 // The prescribed loads and the springs of a part share one coefficient.
-void Model::find_reactions(const Point& at, double time, const Eigen::VectorXd& u, Eigen::Ref<Eigen::VectorXd> out) const {
+Eigen::Vector3d Model::spring_reaction(const Reaction& reaction, const Point::Part& own, const Motion& motion) const {
+  const LinearTerms& terms = parts_[reaction.part].terms;
+  const double stiffness = terms.stiffness.front().coefficient(own.parameters);
+  Eigen::Vector3d force = -stiffness * (reaction.springs.transpose() * motion.displacement);
+  for (const LoadTerm& term : terms.loads) {
+    const double value = term.coefficient(own.parameters) * loads_.value(term, own.parameters, 1.0, motion.time);
+    force += value * resultant(term.pattern);
+  }
+  return force;
+}
+
+void Model::find_reactions(const Point& at, const Motion& motion, Eigen::Ref<Eigen::VectorXd> out) const {
   for (std::size_t r = 0; r < reactions_.size(); ++r) {
     const Reaction& reaction = reactions_[r];
     const Point::Part& own = at.parts[reaction.part];
-    const LinearTerms& terms = parts_[reaction.part].terms;
-    Eigen::Vector3d force = -terms.stiffness.front().coefficient(own.parameters) * (reaction.springs.transpose() * u);
-    for (const LoadTerm& term : terms.loads) {
-      const double value = term.coefficient(own.parameters) * loads_.value(term, own.parameters, 1.0, time);
-      force += value * resultant(term.pattern);
+    auto force = out.segment<3>(3 * static_cast<Eigen::Index>(r));
+    if (const NonlinearForce* contact = parts_[reaction.part].effect->nonlinear_force()) {
+      VectorPool::Loan nodal(scratch_, motion.displacement.size());
+      nodal->setZero();
+      contact->add_force(motion, own.parameters, *nodal);
+      force = resultant(*nodal);
+    } else {
+      force = spring_reaction(reaction, own, motion);
     }
-    out.segment<3>(3 * static_cast<Eigen::Index>(r)) = force;
   }
 }
 

@@ -105,6 +105,7 @@ ReactionRows ReducedModel::reaction_rows(const Eigen::VectorXd& theta, const Red
   out.lift = modes.shapes.transpose() * reaction_springs_;
   for (std::size_t r = 0; r < reactions.size(); ++r) {
     const Model::Part& part = model_.parts()[reactions[r].part];
+    if (part.terms.stiffness.empty()) continue;  // a tool's contact is left out, as is its reaction
     out.lift.middleCols<3>(3 * static_cast<Eigen::Index>(r)) *=
         part.terms.stiffness.front().coefficient(part.parameters(theta));
   }

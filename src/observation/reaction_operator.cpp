@@ -1,4 +1,4 @@
-// This sensor measures the force with which a region's prescribed motion acts on the body.
+// This sensor measures the force with which a region's prescribed motion, or a tool, acts on the body.
 #include <algorithm>
 
 #include "observation/observation_operator.hpp"
@@ -10,14 +10,21 @@ namespace {
 
 // Returns the first row of the region's reaction in a run's output.
 Eigen::Index first_row(const Model& model, const ObservationSettings& settings) {
+  const std::string key = model.settings().name + ": observations: reaction.region";
   std::vector<std::string> regions;
+  Eigen::Index row = -1;
   for (std::size_t r = 0; r < model.reactions().size(); ++r) {
-    if (model.reactions()[r].region == settings.region) return model.fem().dof_count() + 3 * static_cast<Eigen::Index>(r);
     regions.push_back(model.reactions()[r].region);
+    if (regions.back() != settings.region) continue;
+    if (row >= 0) {
+      throw InputError(key, settings.region + ", at which two effects act on the body",
+                       "a region that only one `moved` or `tool_contact` has; a second name for the same shape will do");
+    }
+    row = model.fem().dof_count() + 3 * static_cast<Eigen::Index>(r);
   }
+  if (row >= 0) return row;
   const std::string there = regions.empty() ? "none in this model" : join_words(regions);
-  throw InputError(model.settings().name + ": observations: reaction.region", settings.region,
-                   "the region of an effect `moved`: " + there);
+  throw InputError(key, settings.region, "the region of an effect `moved` or `tool_contact`: " + there);
 }
 
 class ReactionOperator : public ObservationOperator {

@@ -1,0 +1,146 @@
+"""A rigid ball touches a block, on truths of the independent simulator: is E right, and does its interval hold?
+usage: contact_study.py ROOT --output FOLDER [--seeds N] [--estimate PROGRAM]"""
+import argparse
+import json
+import os
+import subprocess
+import sys
+import time
+
+import genpy
+import numpy as np
+import rosbag
+import yaml
+from geometry_msgs.msg import PoseStamped, WrenchStamped
+
+import contact_truths as truths
+import meshes
+from foreign import START, simulate_header
+from study_arguments import study_arguments
+
+WANTED = 0.02
+FAR_PRIOR = (0.4, 0.6, 1.7, 2.5)  # prior median over truth
+EDGE = 1e-6                       # m
+
+
+def stamp(t):
+    return genpy.Time.from_sec(START + t)
+
+
+def write_bag(path, truth, forces, rng):
+    noise = truths.FORCE_NOISE * np.abs(forces).max()
+    with rosbag.Bag(path, 'w') as bag:
+        for k, t in enumerate(np.arange(0.0, truth.end + 0.05, 1 / truths.POSE_RATE)):
+            message = PoseStamped(header=simulate_header(k, stamp(t)))
+            p, q = message.pose.position, message.pose.orientation
+            p.x, p.y, p.z = np.array([*truth.center, truth.height(t)]) + truths.POSE_NOISE * rng.standard_normal(3)
+            q.w = 1.0
+            bag.write('/tool/pose', message, message.header.stamp)
+        for k, force in enumerate(forces):
+            message = WrenchStamped(header=simulate_header(k, stamp(k / truths.FPS)))
+            f = message.wrench.force
+            f.x, f.y, f.z = force + noise * rng.standard_normal(3)
+            bag.write('/tool/wrench', message, message.header.stamp)
+    return float(noise)
+
+
+def model_of(truth, prior, noise):
+    size = truths.SIZE
+    return {
+        'mesh': {'file': 'mesh.vtk', 'boundary': 'faceted'},
+        'regions': {'table': {'box': {'min': [-1, -1, -1], 'max': [1, 1, EDGE]}},
+                    'top': {'box': {'min': [-1, -1, size[2] - EDGE], 'max': [1, 1, 1]}}},
+        'effects': [
+            {'inertia': {'density': truths.DENSITY}},
+            {'elasticity': {'law': 'linear', 'young_modulus': {'prior': prior, 'factor': 3.0}, 'poisson_ratio': truths.POISSON}},
+            {'fixed': {'region': 'table'}},
+            {'viscous_damping': {'beta': truth.damping}},
+            {'tool_contact': {'region': 'top', 'topic': '/tool/pose', 'center': [0, 0, truth.radius], 'radius': truth.radius,
+                              'offset': {'value': 0.0, 'tolerance': 1e-5}}}],
+        'observations': [{'reaction': {'topic': '/tool/wrench', 'region': 'top', 'noise': noise, 'gain': 0.005, 'bias': noise,
+                                       'rotation_tolerance': 0.01}}]}
+
+
+def recorded(args, seed, folder):
+    """Makes the recording and the model; what is there is kept."""
+    if os.path.exists(os.path.join(folder, 'truth.json')):
+        return
+    os.makedirs(folder, exist_ok=True)
+    truth, nodes, tets, forces = truths.draw(args.simulator, seed)
+    meshes.write_vtk(os.path.join(folder, 'mesh.vtk'), nodes, tets)
+    noise = write_bag(os.path.join(folder, 'recording.bag'), truth, forces, truth.rng)
+    prior = truth.modulus * float(truth.rng.choice(FAR_PRIOR))
+    with open(os.path.join(folder, 'model.yaml'), 'w') as file:
+        yaml.safe_dump(model_of(truth, prior, noise), file, default_flow_style=None, sort_keys=False)
+    with open(os.path.join(folder, 'truth.json'), 'w') as file:
+        json.dump({'modulus': truth.modulus, 'radius': truth.radius, 'depth': 1.2 * truth.depth,
+                   'force': float(np.abs(forces).max())}, file)
+
+
+def estimated(args, folder):
+    out = os.path.join(folder, 'estimate')
+    begun = time.monotonic()
+    run = subprocess.run([args.estimate, os.path.join(folder, 'model.yaml'), os.path.join(folder, 'recording.bag'), '--output', out],
+                         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    if run.returncode not in (0, 3):
+        raise RuntimeError(run.stdout)
+    with open(os.path.join(out, 'results.json')) as file:
+        return json.load(file), time.monotonic() - begun
+
+
+def row_of(args, seed):
+    folder = os.path.join(args.output, str(seed))
+    recorded(args, seed, folder)
+    with open(os.path.join(folder, 'truth.json')) as file:
+        truth = json.load(file)
+    result, seconds = estimated(args, folder)
+    modulus = result['parameters']['elasticity.young_modulus']
+    low, high = modulus['interval95']
+    return dict(truth, seed=seed, error=modulus['mean'] / truth['modulus'] - 1.0, inside=bool(low <= truth['modulus'] <= high),
+                width=0.5 * (high - low) / modulus['mean'], state=result.get('state', ''), seconds=seconds)
+
+
+PAGE = """# A tool that touches: how far E is off
+
+`scripts/measure_contact` writes this page. The recordings come from an independent simulator (FEniCSx, other mesh, other integrator, other contact
+law). `benchmark/contact/contact_truths.py` says what is simulated. [The method](method/contact.md) says what is estimated.
+
+A rigid ball of 6 to 12 mm goes into a block of 50 x 50 x 25 mm that stands on a table, half out, and deeper in. A linear stage knows where the ball
+is ({stage:.0f} um of noise), and a sensor measures the force on it ({force_noise:.0f} % of noise). The mesh has edges of {own:.0f} mm. The prior is off by a
+factor of 0.4 to 2.5.
+
+{converged} of {count} draws end `converged`. The median error of E is {median:.1f} %, the largest {largest:.1f} % (wanted: {wanted:.0f} %). The interval holds the
+truth in {held} of {count}. A run takes {seconds:.0f} s in the median, on a machine that other programs used too.
+
+| draw | E [kPa] | ball [mm] | depth [mm] | error | E's interval holds the truth | its half width | state |
+|---|---|---|---|---|---|---|---|
+{rows}
+"""
+
+
+def page(rows):
+    errors = [100 * abs(r['error']) for r in rows]
+    lines = ['| %d | %.1f | %.1f | %.1f | %+.1f %% | %s | %.1f %% | %s |' % (
+        r['seed'], 1e-3 * r['modulus'], 1e3 * r['radius'], 1e3 * r['depth'], 100 * r['error'], 'yes' if r['inside'] else 'no', 100 * r['width'],
+        r['state']) for r in rows]
+    return PAGE.format(stage=1e6 * truths.POSE_NOISE, force_noise=100 * truths.FORCE_NOISE, own=1e3 * truths.OWN, count=len(rows),
+                       converged=sum(r['state'] == 'converged' for r in rows), median=np.median(errors), largest=max(errors), wanted=100 * WANTED,
+                       held=sum(r['inside'] for r in rows), seconds=np.median([r['seconds'] for r in rows]), rows='\n'.join(lines))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('--seeds', type=int, default=8)
+    args = study_arguments(parser, 'estimate', 'contact')
+    rows = []
+    for seed in range(args.seeds):
+        rows.append(row_of(args, seed))
+        r = rows[-1]
+        print('%d E %.1f kPa error %+.2f %% +- %.1f %% %s %s %.0f s' % (
+            seed, 1e-3 * r['modulus'], 100 * r['error'], 100 * r['width'], 'inside' if r['inside'] else 'OUTSIDE', r['state'], r['seconds']), flush=True)
+    with open(os.path.join(args.root, 'doc', 'contact.md'), 'w') as file:
+        file.write(page(rows))
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <utility>
+#include <vector>
+
+#include "forward/contact_model.hpp"
+#include "forward/reduced_trajectory.hpp"
+
+namespace tissue_stiffness {
+
+/// A run of a ContactModel. Over a step the contacts' forces change linearly, and they balance at its end.
+class ContactTrajectory : public Trajectory {
+ public:
+  ContactTrajectory(const ContactModel& owner, const Eigen::VectorXd& theta, double start);
+  /// Continues another run of the same model with other parameters.
+  ContactTrajectory(const ContactModel& owner, const Eigen::VectorXd& theta, const ContactTrajectory& from);
+
+  /// Throws NumericalError where a step's contact does not settle.
+  void advance(double time) override;
+  double time() const override { return linear_.time(); }
+  Eigen::VectorXd displacement() const override;
+  Eigen::VectorXd velocity() const override;
+  Eigen::VectorXd output() const override;
+
+ private:
+  struct Part {
+    const Contact* contact;
+    Eigen::VectorXd parameters;
+    Eigen::Index reaction;  ///< its first row among the reactions; -1: no sensor may measure it
+  };
+  /// What the body does over a step without the contacts' new forces, and how it responds to them.
+  struct Step {
+    double time, span;
+    Eigen::MatrixXd modes;   ///< state at the end
+    Eigen::VectorXd free;    ///< displacement of the nodes that may touch
+    Eigen::VectorXd modal;   ///< displacement of each mode by a unit force at the end
+    Eigen::VectorXd memory;  ///< force that the residual response remembers, b in a s = f + b
+    double resistance;       ///< a
+  };
+  /// The contacts' forces at a displacement u.
+  struct Forces {
+    Eigen::VectorXd u;          ///< at dofs() [m]
+    Eigen::VectorXd nodal;      ///< at dofs() [N]
+    std::vector<int> touched;   ///< indices into dofs(), ascending
+    Eigen::MatrixXd stiffness;  ///< -d force / d displacement between them [N/m]
+    Eigen::VectorXd reactions;  ///< [N]
+    Eigen::MatrixXd response;   ///< H: displacement at dofs() by unit forces at those that are touched [m/N]
+    Eigen::VectorXd off;        ///< u - free - H f [m]
+  };
+  ContactTrajectory(const ContactModel& owner, const Eigen::VectorXd& theta, ReducedTrajectory linear);
+  void step(double time);
+  Step begin_step(double time);
+  Forces forces_at(const Step& step, Eigen::VectorXd u);
+  void add_touches(const std::vector<Contact::Touch>& touches, double span, Forces& out) const;
+  /// Returns the displacements at dofs() by unit forces at some of them, at the step's end.
+  Eigen::MatrixXd response(const Step& step, const std::vector<int>& forced) const;
+  void end_step(const Step& step, const Forces& forces);
+  Eigen::VectorXd coordinates() const;
+
+  const ContactModel& owner_;
+  ReducedTrajectory linear_;  ///< the run without contact
+  ContactModel::Flexibility flexibility_;
+  std::vector<Part> parts_;
+  double stiffness_damping_;  ///< beta [s]
+  std::vector<Relaxation> branches_;
+  Eigen::MatrixXd shapes_;    ///< modes at dofs()
+  Eigen::VectorXd softness_;  ///< Omega^-2 of each mode
+  ModalStep modal_step_;
+  Eigen::MatrixXd state_;  ///< response of the modes to the contacts: columns q, q', z...
+  Eigen::VectorXd force_;  ///< of the contacts at dofs() [N]
+  Eigen::VectorXd modal_force_;
+  Eigen::VectorXd stretch_;                  ///< s at dofs() [N]
+  Eigen::MatrixXd relaxed_;                  ///< z of each branch at dofs() [N]
+  Eigen::VectorXd at_;                       ///< displacement at dofs() [m]
+  Eigen::VectorXd reactions_;                ///< of the last step [N]
+  Eigen::VectorXd displacement_, velocity_;  ///< of all nodes, for the contacts: zero at other nodes than theirs
+};
+
+}  // namespace tissue_stiffness
