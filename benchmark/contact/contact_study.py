@@ -55,7 +55,7 @@ def model_of(truth, prior, noise):
             {'elasticity': {'law': 'linear', 'young_modulus': {'prior': prior, 'factor': 3.0}, 'poisson_ratio': truths.POISSON}},
             {'fixed': {'region': 'table'}},
             {'viscous_damping': {'beta': truth.damping}},
-            {'tool_contact': {'region': 'top', 'topic': '/tool/pose', 'center': [0, 0, truth.radius], 'radius': truth.radius,
+            {'tool_contact': {'region': 'top', 'topic': '/tool/pose', 'center': [0, 0, truth.radius], 'radius': {'value': truth.radius, 'tolerance': 0.0},
                               'offset': {'value': 0.0, 'tolerance': 1e-5}}}],
         'observations': [{'reaction': {'topic': '/tool/wrench', 'region': 'top', 'noise': noise, 'gain': 0.005, 'bias': noise,
                                        'rotation_tolerance': 0.01}}]}

@@ -7,13 +7,38 @@ import sys
 import numpy as np
 
 DENSITY, POISSON = 1060.0, 0.45
-SIZE = (0.05, 0.05, 0.025)  # m; the block stands on a table, and its upper side is touched
-FPS, FRAMES, STEP = 25.0, 32, 0.01
-POSE_RATE, POSE_NOISE = 100.0, 2e-6  # Hz, m: of a linear stage
-FORCE_NOISE = 0.01                   # of the largest force
-COARSE, FINE, OWN = 0.008, 0.0022, 0.006  # m, edges: of the truth far from and near the ball, and of the mesh that is given
-FIRM = 3e5                           # stiffness of the contact over the modulus [1/m]: the ball enters by a micrometre
-MODULUS = (8e3, 60e3)                # Pa
+SIZE = (0.05, 0.05, 0.025)                # m; the block stands on a table, and its upper side is touched
+FPS, FRAMES, STEP = 25.0, 32, 0.01        # Hz, -, s
+POSE_RATE, POSE_NOISE = 100.0, 2e-6       # Hz, m: of a linear stage
+FORCE_NOISE = 0.01                        # of the largest force
+COARSE, FINE, OWN = 0.008, 0.003, 0.006   # m, edges: of the truth far from and near the ball, and of the mesh that is given
+FIRM = 1e5                                # stiffness of the truth's contact over the modulus [1/m]: the ball enters by micrometres
+MODULUS = (8e3, 60e3)                     # Pa
+DISSIPATION = 0.5                         # spectral radius of the truth's integrator: a stiff contact would ring
+
+
+def touched_sim(simulate):
+    """The simulator's class with the tool's force within each step, where the step balances it; stiff contacts ring at its
+    ends."""
+    class Touched(simulate.Sim):
+        def step(self, dt, depth=0):
+            before, begun = self.un.x.array.copy(), self.t
+            super().step(dt, depth)
+            if self.t - begun < 0.99 * dt:
+                return  # the step was halved, and the halves have told their forces
+            now = self.un.x.array.copy()
+            self.u.x.array[:] = (1 - self.af) * now + self.af * before
+            self.set_loads(self.t - self.af * dt)
+            self.told = [(self.t - self.af * dt, np.array([self.fem.assemble_scalar(f) for f in self.contact_force]))] + self.told[:1]
+            self.u.x.array[:] = now
+
+        def reaction(self):
+            """Extrapolated to the end of the last step."""
+            if len(self.told) < 2:
+                return np.zeros(3)
+            (last, force), (earlier, before) = self.told
+            return force + (self.t - last) / (last - earlier) * (force - before)
+    return Touched
 
 
 class Truth:
@@ -43,7 +68,7 @@ class Truth:
             'damping': {'kelvin_voigt': self.damping, 'mass': 0.0},
             'indenter': {'shape': 'sphere', 'radius': self.radius, 'center': self.center, 'z': 0.0, 'k': FIRM * self.modulus,
                          'smooth': 2e-6},
-            'time': {'fps': FPS, 'frames': FRAMES, 'substeps': int(round(1 / FPS / STEP))}})
+            'time': {'fps': FPS, 'frames': FRAMES, 'rho_inf': DISSIPATION, 'substeps': int(round(1 / FPS / STEP))}})
         return c
 
     def refine(self, simulate, fine):
@@ -78,7 +103,8 @@ class Truth:
         self.refine(simulate, fine)
         c = self.config(simulate)
         nodes, tets = simulate.linear_mesh(c, OWN)
-        body = simulate.Sim(c, verbose=False)
+        body = touched_sim(simulate)(c, verbose=False)
+        body.told = []
         body.cf['zi'] = self.height
         body.init_accel()
         forces = []
@@ -86,7 +112,7 @@ class Truth:
             for _ in range(c['time']['substeps'] if k else 0):
                 body.step(1.0 / FPS / c['time']['substeps'])
             body.t = k / FPS
-            forces.append(body.force())
+            forces.append(body.reaction())
         return nodes, tets, np.array(forces)
 
 

@@ -1,5 +1,6 @@
 // The surface is in contact with a rigid plane, by penalty at its quadrature points, with Coulomb's friction.
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "effects/registry.hpp"
@@ -32,7 +33,7 @@ std::vector<int> all_facets(const TetMesh& mesh) {
 class ContactPlane : public RigidContact {
  public:
   ContactPlane(const Value& arguments, const EffectContext& context)
-      : RigidContact(context, all_facets(context.mesh)),
+      : RigidContact(context, all_facets(context.mesh), std::numeric_limits<double>::infinity()),
         point_(arguments.at("point").as_vector3("m")),
         normal_(arguments.at("normal").as_vector3("-")),
         default_penalty_(kRelativePenalty * context.young_modulus / mean_edge()) {

@@ -38,7 +38,9 @@ std::size_t index_of(const EffectSettings& settings) {
 }
 
 Quantity default_value(const ParameterSpec& spec) {
-  return {Quantity::Kind::known, spec.value, 0.0};
+  Quantity out{Quantity::Kind::known, spec.value, 0.0};
+  out.tolerance = spec.tolerance;  // what nobody states is no better known
+  return out;
 }
 
 // Reads {mean: [x, y, z], std: s} or {value: [x, y, z], tolerance: s}, with one spread for all axes.

@@ -12,14 +12,20 @@ namespace {
 
 constexpr double kSlow = 0.01;   // body sizes a second
 constexpr double kReach = 1.25;  // of the nodes' distance from their middle: a curved facet bulges
+constexpr int kMostDivisions = 8;
+
+// A facet may be larger than where it is touched.
+int divisions(double edge, double fine) {
+  return static_cast<int>(std::min<double>(kMostDivisions, std::max(1.0, std::ceil(edge / fine))));
+}
 
 }  // namespace
 
-RigidContact::RigidContact(const EffectContext& context, std::vector<int> facets)
+RigidContact::RigidContact(const EffectContext& context, std::vector<int> facets, double fine)
     : mesh_(context.mesh),
       fem_(context.fem),
       facets_(std::move(facets)),
-      rule_(static_cast<int>(context.mesh.facets.rows())),
+      rule_(static_cast<int>(context.mesh.facets.rows()), divisions(mean_edge(), fine)),
       slow_(kSlow * body_size(context.mesh.nodes)) {
   std::set<int> nodes;
   for (const int f : facets_) {

@@ -45,7 +45,8 @@ class RigidContact : public Effect, public NonlinearForce, public Contact {
   void find(const Motion& motion, const Parameters& p, std::vector<Touch>& out) const override;
 
  protected:
-  RigidContact(const EffectContext& context, std::vector<int> facets);
+  /// `fine`: the size of what the obstacle's surface has to be resolved to, for the quadrature [m].
+  RigidContact(const EffectContext& context, std::vector<int> facets, double fine);
 
   /// Returns the obstacle; null where there is none yet.
   virtual std::unique_ptr<const Obstacle> obstacle(double time, const Parameters& p) const = 0;

@@ -10,8 +10,10 @@
 namespace tissue_stiffness::effects {
 namespace {
 
-constexpr double kRelativePenalty = 100.0;  // of E over the facets' size, when `stiffness` is absent
-constexpr double kVelocityStep = 5e-4;      // [s]
+constexpr double kRelativePenalty = 100.0;                   // of E over the facets' size, when `stiffness` is absent
+constexpr double kLeastRadius = 1e-5, kLargestRadius = 1.0;  // [m]
+constexpr double kResolution = 0.25;                         // of the radius, for the quadrature
+constexpr double kVelocityStep = 5e-4;                       // [s]
 constexpr LoadTolerance kExact{0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0};
 enum Index { kRadius, kOffset, kStiffness, kFriction, kOwn };
 
@@ -89,7 +91,8 @@ class MovingTool : public Shape {
 class ToolContact : public RigidContact {
  public:
   ToolContact(const Value& arguments, const EffectContext& context)
-      : RigidContact(context, find_surface(arguments.at("region"), context.regions).facets),
+      : RigidContact(context, find_surface(arguments.at("region"), context.regions).facets,
+                     kResolution * arguments.at("radius").as_quantity(kLeastRadius, kLargestRadius, "m").value),
         region_(arguments.at("region").as_text()),
         course_(load_course(arguments, LoadInput::Kind::pose, context)),
         from_(arguments.at("center").as_vector3("m")),
@@ -153,10 +156,11 @@ EffectSpec tool_contact_spec() {
       "the "
       "tool, v0 a hundredth of the body's size a second";
   spec.source = "penalty method, Wriggers 2006, sec. 5.3.2, Coulomb's law regularised, sec. 5.2; force per rest area";
-  spec.parameters = {{"radius", "R", "m", 1e-5, 1.0, ParameterSpec::Default::required, 0.0, NAN, 1, 0.0, 0.005},
-                     {"offset", "g0", "m", -0.1, 0.1, ParameterSpec::Default::optional, 0.0, NAN, 1, 1e-4, 0.0},
-                     {"stiffness", "k", "N/m^3", 0.0, 1e15, ParameterSpec::Default::optional, 0.0, NAN, 1},
-                     {"friction", "mu", "-", 0.0, 10.0, ParameterSpec::Default::optional, 0.0, NAN, 1}};
+  spec.parameters = {
+      {"radius", "R", "m", kLeastRadius, kLargestRadius, ParameterSpec::Default::required, 0.0, NAN, 1, 0.0, 0.005},
+      {"offset", "g0", "m", -0.1, 0.1, ParameterSpec::Default::optional, 0.0, NAN, 1, 1e-4, 0.0},
+      {"stiffness", "k", "N/m^3", 0.0, 1e15, ParameterSpec::Default::optional, 0.0, NAN, 1},
+      {"friction", "mu", "-", 0.0, 10.0, ParameterSpec::Default::optional, 0.0, NAN, 1}};
   spec.keys = {
       {"region", "facets that it may touch"},
       {"topic", "geometry_msgs/PoseStamped"},

@@ -66,8 +66,10 @@ Eigen::MatrixXd finite(const Eigen::MatrixXd& m) {
   return m.array().isFinite().select(m, 0.0);
 }
 
-// Returns the amplitudes of the modes that come closest to a change of the rows.
+// Returns the amplitudes of the modes that come closest to a change of the rows; zeros where no row sees a mode, as a force
+// at a tool does.
 Eigen::VectorXd along_modes(const Eigen::MatrixXd& modes, const Eigen::VectorXd& precision, const Eigen::VectorXd& change) {
+  if (modes.isZero(0.0)) return Eigen::VectorXd::Zero(modes.cols());
   const Eigen::VectorXd weight = finite(precision).cwiseSqrt();
   return (weight.asDiagonal() * finite(modes)).colPivHouseholderQr().solve(weight.cwiseProduct(finite(change).col(0)));
 }

@@ -10,6 +10,7 @@
 #include "fit/coordinate_scan.hpp"
 #include "forward/hyper_reduced_model.hpp"
 #include "forward/reduced_model.hpp"
+#include "forward/study_model.hpp"
 #include "meshing/surface.hpp"
 #include "observation/frame_misfit.hpp"
 #include "tissue_stiffness/types/error.hpp"
@@ -134,9 +135,9 @@ bool IteratedFilter::settle_is_due(std::size_t count) const {
   return count <= kEarly || static_cast<double>(count) >= kRelinearizationGrowth * static_cast<double>(notes_.settled);
 }
 
-// Only linear models are scanned, because their runs cost next to nothing.
+// Only models whose runs are quick are scanned.
 bool IteratedFilter::scan_is_due(std::size_t count) const {
-  return !model_.nonlinear() && count >= 2 * notes_.scanned && filter_.misfit_scale() >= kScanMisfit;
+  return studied_in_full(model_) && count >= 2 * notes_.scanned && filter_.misfit_scale() >= kScanMisfit;
 }
 
 bool IteratedFilter::basis_is_due(std::size_t count) const {

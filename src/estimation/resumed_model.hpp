@@ -10,7 +10,7 @@ namespace tissue_stiffness {
 /// beside the others. Its priors are as wide as the body allows: a tenth of its size, and its size a second (1 sigma).
 /// `time.start` is 0, because no rest is waited for.
 ///
-/// Throws InputError for what is only known since the rest: a load from a file, or the pose of a moved region.
+/// Throws InputError for what is only known since the rest: a load from a file, or the pose of a moved region or of a tool.
 ModelSettings in_motion(ModelSettings model, const TetMesh& mesh);
 
 /// Begins with the moduli that an earlier estimate of the same body found: each marginal distribution becomes the prior.

@@ -24,9 +24,27 @@ Eigen::MatrixX2d triangle_derivative(int nodes, double r, double s) {
   return d;
 }
 
+// Returns the points in each part of a divided triangle: n (n + 1) / 2 upright parts and n (n - 1) / 2 reversed ones.
+Eigen::Matrix2Xd divided(const Eigen::Matrix2Xd& points, int n) {
+  Eigen::Matrix2Xd out(2, points.cols() * n * n);
+  Eigen::Index next = 0;
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; i + j < n; ++j) {
+      const Eigen::Vector2d corner(i, j), opposite(i + 1, j + 1);
+      out.middleCols(next, points.cols()) = (points.colwise() + corner) / n;
+      next += points.cols();
+      if (i + j + 2 > n) continue;
+      out.middleCols(next, points.cols()) = (-points).colwise() + opposite;
+      out.middleCols(next, points.cols()) /= n;
+      next += points.cols();
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
-FacetQuadrature::FacetQuadrature(int nodes) {
+FacetQuadrature::FacetQuadrature(int nodes, int divisions) {
   Eigen::Matrix2Xd points;
   if (nodes == 3) {
     points.resize(2, 3);
@@ -40,6 +58,8 @@ FacetQuadrature::FacetQuadrature(int nodes) {
     weights_ << wa, wa, wa, wb, wb, wb;
     weights_ *= 0.5 / weights_.sum();
   }
+  points = divided(points, divisions);
+  weights_ = (weights_ / (divisions * divisions)).replicate(divisions * divisions, 1).eval();
   shape_.resize(nodes, points.cols());
   for (Eigen::Index q = 0; q < points.cols(); ++q) {
     shape_.col(q) = triangle_shape(nodes, points(0, q), points(1, q));

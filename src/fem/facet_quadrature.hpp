@@ -12,10 +12,11 @@ namespace tissue_stiffness {
 using FacetNodes = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 6>;
 
 /// Shape functions of 3- or 6-node facets at the points of a triangle rule, for surface loads. The rule has 3 points of
-/// degree 2 for 3 nodes, and 6 points of degree 4 for 6 nodes (Dunavant 1985).
+/// degree 2 for 3 nodes, and 6 points of degree 4 for 6 nodes (Dunavant 1985). A composite rule divides each edge of the
+/// triangle into `divisions` parts and has these points in each part.
 class FacetQuadrature {
  public:
-  explicit FacetQuadrature(int nodes_per_facet);
+  explicit FacetQuadrature(int nodes_per_facet, int divisions = 1);
 
   int points() const { return static_cast<int>(weights_.size()); }
   double weight(int q) const { return weights_[q]; }  ///< weights of the unit triangle; they sum to 1/2

@@ -6,6 +6,7 @@
 
 #include "fit/coordinate_scan.hpp"
 #include "forward/extra_force.hpp"
+#include "forward/study_model.hpp"
 #include "observation/frame_misfit.hpp"
 #include "tissue_stiffness/meshing/build_mesh.hpp"
 
@@ -63,7 +64,7 @@ void RecordingFit::prepare(const BasisOptions& basis, const ForwardModel* relati
   forward_ = make_forward_model(model_, whole, relative);
   const std::vector<int> nodes = observed_nodes(operators_, recording_.frames);
   forward_->restrict_output_to(nodes);
-  if (!model_.nonlinear() || basis.nonlinear != BasisOptions::Nonlinear::in_full) return;
+  if (studied_in_full(model_) || basis.nonlinear != BasisOptions::Nonlinear::in_full) return;
   BasisOptions quick = basis;
   const auto& parts = model_.parts();
   const bool steered = std::any_of(parts.begin(), parts.end(), [&](const Model::Part& part) {

@@ -106,18 +106,26 @@ ContactTrajectory::Step ContactTrajectory::begin_step(double time) {
     if (out.memory[i] != 0.0) remembered.push_back(static_cast<int>(i));
   }
   if (remembered.empty()) return out;
-  const Eigen::MatrixXd memory = rows_of(out.memory, remembered), shapes = rows_of(shapes_, remembered);
-  const Eigen::VectorXd residual = flexibility_.unit->columns(remembered) * memory / flexibility_.ratio -
+  const Eigen::VectorXd memory = rows_of(out.memory, remembered);
+  const Eigen::MatrixXd shapes = rows_of(shapes_, remembered);
+  const Eigen::VectorXd residual = flexibility_.unit->under(remembered, memory) / flexibility_.ratio -
                                    shapes_ * softness_.cwiseProduct(shapes.transpose() * memory);
   out.free += residual / out.resistance;
   return out;
 }
 
-Eigen::MatrixXd ContactTrajectory::response(const Step& step, const std::vector<int>& forced) const {
+Eigen::MatrixXd ContactTrajectory::response_between(const Step& step, const std::vector<int>& forced) const {
   const Eigen::MatrixXd shapes = rows_of(shapes_, forced);
   const Eigen::VectorXd modal = step.modal - softness_ / step.resistance;
-  return flexibility_.unit->columns(forced) / (flexibility_.ratio * step.resistance) +
-         shapes_ * (modal.asDiagonal() * shapes.transpose());
+  return flexibility_.unit->between(forced) / (flexibility_.ratio * step.resistance) +
+         shapes * (modal.asDiagonal() * shapes.transpose());
+}
+
+Eigen::VectorXd ContactTrajectory::response(const Step& step, const std::vector<int>& forced,
+                                            const Eigen::VectorXd& forces) const {
+  const Eigen::VectorXd modal =
+      (step.modal - softness_ / step.resistance).cwiseProduct(rows_of(shapes_, forced).transpose() * forces);
+  return flexibility_.unit->under(forced, forces) / (flexibility_.ratio * step.resistance) + shapes_ * modal;
 }
 
 ContactTrajectory::Forces ContactTrajectory::forces_at(const Step& step, Eigen::VectorXd u) {
@@ -140,8 +148,7 @@ ContactTrajectory::Forces ContactTrajectory::forces_at(const Step& step, Eigen::
     }
   }
   add_touches(touches, step.span, out);
-  out.response = response(step, out.touched);
-  out.off = out.u - step.free - out.response * rows_of(out.nodal, out.touched);
+  out.off = out.u - step.free - response(step, out.touched, rows_of(out.nodal, out.touched));
   return out;
 }
 
@@ -182,9 +189,10 @@ void ContactTrajectory::step(double time) {
     if (now.off.cwiseAbs().maxCoeff() < tolerance) return end_step(step, now);
     Eigen::VectorXd next = step.free;
     if (!now.touched.empty()) {
-      const Eigen::MatrixXd own = rows_of(now.response, now.touched), &k = now.stiffness;
+      const Eigen::MatrixXd &k = now.stiffness,
+                            left = Eigen::MatrixXd::Identity(k.rows(), k.cols()) + k * response_between(step, now.touched);
       const Eigen::VectorXd right = rows_of(now.nodal, now.touched) - k * rows_of(step.free - now.u, now.touched);
-      next += now.response * (Eigen::MatrixXd::Identity(k.rows(), k.cols()) + k * own).partialPivLu().solve(right);
+      next += response(step, now.touched, left.partialPivLu().solve(right));
     }
     if (!next.allFinite()) break;
     const Eigen::VectorXd change = next - now.u;

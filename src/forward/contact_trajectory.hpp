@@ -45,7 +45,6 @@ class ContactTrajectory : public Trajectory {
     std::vector<int> touched;   ///< indices into dofs(), ascending
     Eigen::MatrixXd stiffness;  ///< -d force / d displacement between them [N/m]
     Eigen::VectorXd reactions;  ///< [N]
-    Eigen::MatrixXd response;   ///< H: displacement at dofs() by unit forces at those that are touched [m/N]
     Eigen::VectorXd off;        ///< u - free - H f [m]
   };
   ContactTrajectory(const ContactModel& owner, const Eigen::VectorXd& theta, ReducedTrajectory linear);
@@ -53,8 +52,10 @@ class ContactTrajectory : public Trajectory {
   Step begin_step(double time);
   Forces forces_at(const Step& step, Eigen::VectorXd u);
   void add_touches(const std::vector<Contact::Touch>& touches, double span, Forces& out) const;
-  /// Returns the displacements at dofs() by unit forces at some of them, at the step's end.
-  Eigen::MatrixXd response(const Step& step, const std::vector<int>& forced) const;
+  /// H is the response to the contacts' forces at the step's end. These return H between some of dofs() [m/N], and the
+  /// displacement H f at all of them under forces at some [m].
+  Eigen::MatrixXd response_between(const Step& step, const std::vector<int>& forced) const;
+  Eigen::VectorXd response(const Step& step, const std::vector<int>& forced, const Eigen::VectorXd& forces) const;
   void end_step(const Step& step, const Forces& forces);
   Eigen::VectorXd coordinates() const;
 

@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kForReactions = 1e-5;     // of the tolerance
 constexpr double kMostForReactions = 0.9;  // spectral radius
+constexpr double kMostForTools = 0.3;      // likewise
 constexpr double kExplicitSteps =
     250;  // explicit steps that one call of advance() may take before implicit ones are cheaper
 
@@ -42,9 +43,13 @@ DynamicState at_start(const Model& model, const Eigen::VectorXd& theta, double s
   return state;
 }
 
-// What rings in the springs of a moved region has to decay.
+// What rings in the springs of a moved region has to decay, and sooner what a tool's contact makes ring.
 double radius_of(const Model& model, double wanted) {
-  return model.reactions().empty() ? wanted : std::min(wanted, kMostForReactions);
+  for (const Model::Reaction& reaction : model.reactions()) {
+    const bool tool = model.parts()[reaction.part].effect->contact() != nullptr;
+    wanted = std::min(wanted, tool ? kMostForTools : kMostForReactions);
+  }
+  return wanted;
 }
 
 class FullTrajectories : public Trajectories {

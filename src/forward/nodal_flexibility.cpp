@@ -17,29 +17,45 @@ NodalFlexibility::NodalFlexibility(SparseMatrix stiffness, const std::vector<cha
   solver_.factorize(held);
 }
 
-Eigen::MatrixXd NodalFlexibility::columns(const std::vector<int>& forced) const {
+NodalFlexibility::Columns NodalFlexibility::columns(const std::vector<int>& forced) const {
   const std::lock_guard<std::mutex> lock(mutex_);
   std::vector<int> missing;
   for (const int i : forced) {
     if (known_.count(i) == 0) missing.push_back(i);
   }
-  if (!missing.empty()) {
-    Eigen::MatrixXd loads = Eigen::MatrixXd::Zero(stiffness_.rows(), static_cast<Eigen::Index>(missing.size()));
-    for (std::size_t k = 0; k < missing.size(); ++k) {
-      const int dof = seen_[static_cast<std::size_t>(missing[k])];
-      if (fixed_[static_cast<std::size_t>(dof)] == 0) loads(dof, static_cast<Eigen::Index>(k)) = 1.0;
-    }
-    const Eigen::MatrixXd solved = solver_.solve(loads);
-    for (std::size_t k = 0; k < missing.size(); ++k) {
-      Eigen::VectorXd column(static_cast<Eigen::Index>(seen_.size()));
-      for (std::size_t i = 0; i < seen_.size(); ++i) {
-        column[static_cast<Eigen::Index>(i)] = solved(seen_[i], static_cast<Eigen::Index>(k));
-      }
-      known_.emplace(missing[k], std::move(column));
-    }
+  Eigen::MatrixXd loads = Eigen::MatrixXd::Zero(stiffness_.rows(), static_cast<Eigen::Index>(missing.size()));
+  for (std::size_t k = 0; k < missing.size(); ++k) {
+    const int dof = seen_[static_cast<std::size_t>(missing[k])];
+    if (fixed_[static_cast<std::size_t>(dof)] == 0) loads(dof, static_cast<Eigen::Index>(k)) = 1.0;
   }
-  Eigen::MatrixXd out(static_cast<Eigen::Index>(seen_.size()), static_cast<Eigen::Index>(forced.size()));
-  for (std::size_t k = 0; k < forced.size(); ++k) out.col(static_cast<Eigen::Index>(k)) = known_.at(forced[k]);
+  if (!missing.empty()) loads = solver_.solve(loads);
+  for (std::size_t k = 0; k < missing.size(); ++k) {
+    Eigen::VectorXd column(static_cast<Eigen::Index>(seen_.size()));
+    for (Eigen::Index i = 0; i < column.size(); ++i) {
+      column[i] = loads(seen_[static_cast<std::size_t>(i)], static_cast<Eigen::Index>(k));
+    }
+    known_.emplace(missing[k], std::move(column));
+  }
+  Columns out;
+  for (const int i : forced) out.push_back(&known_.at(i));
+  return out;
+}
+
+Eigen::MatrixXd NodalFlexibility::between(const std::vector<int>& forced) const {
+  const Columns columns = this->columns(forced);
+  const auto count = static_cast<Eigen::Index>(forced.size());
+  Eigen::MatrixXd out(count, count);
+  for (Eigen::Index j = 0; j < count; ++j) {
+    const Eigen::VectorXd& column = *columns[static_cast<std::size_t>(j)];
+    for (Eigen::Index i = 0; i < count; ++i) out(i, j) = column[forced[static_cast<std::size_t>(i)]];
+  }
+  return out;
+}
+
+Eigen::VectorXd NodalFlexibility::under(const std::vector<int>& forced, const Eigen::VectorXd& forces) const {
+  const Columns columns = this->columns(forced);
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(seen_.size()));
+  for (std::size_t j = 0; j < columns.size(); ++j) out += forces[static_cast<Eigen::Index>(j)] * *columns[j];
   return out;
 }
 

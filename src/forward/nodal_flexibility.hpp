@@ -17,8 +17,10 @@ class NodalFlexibility {
   /// NumericalError when K is not positive definite, because nothing holds the body.
   NodalFlexibility(SparseMatrix stiffness, const std::vector<char>& fixed, std::vector<int> seen);
 
-  /// Returns K^-1 between `seen` (rows) and some of them (columns, indices into `seen`) [m/N].
-  Eigen::MatrixXd columns(const std::vector<int>& forced) const;
+  /// Returns K^-1 between some of `seen`, given by their indices [m/N].
+  Eigen::MatrixXd between(const std::vector<int>& forced) const;
+  /// Returns the displacement at `seen` under forces at some of them [m].
+  Eigen::VectorXd under(const std::vector<int>& forced, const Eigen::VectorXd& forces) const;
   /// Returns the displacement of all nodes under forces at `seen`, 3n [m].
   Eigen::VectorXd response(const Eigen::VectorXd& forces) const;
   /// Returns the factor c for which the stiffness is c times this one's; 0: there is none.
@@ -29,8 +31,10 @@ class NodalFlexibility {
   std::vector<char> fixed_;
   std::vector<int> seen_;
   SparseSolver solver_;
+  using Columns = std::vector<const Eigen::VectorXd*>;
+  Columns columns(const std::vector<int>& forced) const;
   mutable std::mutex mutex_;
-  mutable std::map<int, Eigen::VectorXd> known_;  ///< columns, by index into seen_
+  mutable std::map<int, Eigen::VectorXd> known_;  ///< columns of K^-1 at seen_, by index; none ever changes
 };
 
 }  // namespace tissue_stiffness

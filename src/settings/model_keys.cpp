@@ -132,7 +132,7 @@ std::vector<KeySpec> observation_keys() {
        plain_key(contour + ".region", Kind::text, "", "part of the surface that the outline belongs to; all when absent")});
   const std::string reaction = "observations[].reaction";
   keys.insert(keys.end(),
-              {plain_key(reaction, Kind::map, "", "force on a region that an effect `moved` moves"),
+              {plain_key(reaction, Kind::map, "", "force on a region that an effect `moved` moves or a `tool_contact` touches"),
                required_key(reaction + ".topic", Kind::text, "",
                             "geometry_msgs/WrenchStamped; the force on the body, its torque is not used"),
                required_key(reaction + ".region", Kind::text, "", "region of that effect"),

@@ -170,6 +170,28 @@ TEST(Course, GivesTheMotionOfAPoseSinceRest) {
   EXPECT_LT((place(11.5, at) - 0.5 * (at + moved)).norm(), 1e-15);
 }
 
+// The pose itself, which a tool's shape needs, and not its motion since rest. An estimated error of its place is taken off.
+TEST(Course, GivesThePoseItself) {
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix();
+  const Eigen::Vector3d at(0.5, -0.2, 0.3);
+  Course course(LoadInput::Kind::pose);
+  course.set_smoothing(0.0);
+  course.start(0.0, 0.0);
+  EXPECT_FALSE(course.pose(0.0));
+  for (int k = 0; k <= 4; ++k) {
+    const Eigen::Vector3d shift(0.01 * k, 0.0, 0.0);
+    course.add(0.1 * k, pose_values(Eigen::Translation3d(at + shift) * Eigen::Quaterniond(turn)));
+  }
+  const auto pose = course.pose(0.25);
+  ASSERT_TRUE(pose);
+  EXPECT_LT((pose->leftCols<3>() - turn).norm(), 1e-12);
+  EXPECT_LT((pose->col(3) - at - Eigen::Vector3d(0.025, 0.0, 0.0)).norm(), 1e-12);
+  LoadTolerance tolerance{0.0, 1e-3, 0.0, 0.5, 0.0, 0.0, 0.0};
+  const auto measured = [&](double t) { return Eigen::VectorXd(Eigen::Vector3d(course.measured(t, 0), 0.0, 0.0)); };
+  course.correct(LoadErrorBasis(tolerance, measured, 3, 0.0, 0.4), Eigen::Vector3d(2.0, 0.0, -1.0));
+  EXPECT_LT((course.pose(0.25)->col(3) - pose->col(3) - Eigen::Vector3d(-2e-3, 0.0, 1e-3)).norm(), 1e-12);
+}
+
 // An arm at 200 Hz whose encoders are noisy: the path is near its true one, and its accelerations are.
 TEST(Course, SmoothesThePosesOfAnArm) {
   const auto truth = [](double t) { return 0.003 * (1.0 - std::cos(2.0 * M_PI * t)); };
