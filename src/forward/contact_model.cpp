@@ -43,7 +43,7 @@ ContactModel::ContactModel(const Model& model, const BasisOptions& options, cons
 }
 
 ContactModel::Flexibility ContactModel::flexibility(const Eigen::VectorXd& theta) const {
-  SparseMatrix stiffness = model().rest_stiffness(theta);
+  const SparseMatrix stiffness = model().rest_stiffness(theta);
   const std::vector<char> fixed = model().fixed(theta);
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -51,7 +51,7 @@ ContactModel::Flexibility ContactModel::flexibility(const Eigen::VectorXd& theta
       if (const double ratio = known->ratio(stiffness, fixed); ratio > 0.0) return {known, ratio};
     }
   }
-  auto made = std::make_shared<const NodalFlexibility>(std::move(stiffness), fixed, dofs_);
+  auto made = std::make_shared<const NodalFlexibility>(stiffness, fixed, dofs_);
   const std::lock_guard<std::mutex> lock(mutex_);
   if (known_.size() == kKept) known_.erase(known_.begin());
   known_.push_back(made);

@@ -10,8 +10,8 @@ constexpr double kSame = 1e-10;  // of the stiffness: rounding of its sum
 
 }  // namespace
 
-NodalFlexibility::NodalFlexibility(SparseMatrix stiffness, const std::vector<char>& fixed, std::vector<int> seen)
-    : stiffness_(std::move(stiffness)), fixed_(fixed), seen_(std::move(seen)) {
+NodalFlexibility::NodalFlexibility(const SparseMatrix& stiffness, const std::vector<char>& fixed, std::vector<int> seen)
+    : stiffness_(stiffness), fixed_(fixed), seen_(std::move(seen)) {
   SparseMatrix held = stiffness_;
   fix_dofs(held, fixed_, held.diagonal().mean());
   solver_.factorize(held);

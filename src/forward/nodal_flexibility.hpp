@@ -15,7 +15,7 @@ class NodalFlexibility {
  public:
   /// `fixed`: a flag for each degree of freedom. `seen`: the degrees of freedom whose response is kept. Throws
   /// NumericalError when K is not positive definite, because nothing holds the body.
-  NodalFlexibility(SparseMatrix stiffness, const std::vector<char>& fixed, std::vector<int> seen);
+  NodalFlexibility(const SparseMatrix& stiffness, const std::vector<char>& fixed, std::vector<int> seen);
 
   /// Returns K^-1 between some of `seen`, given by their indices [m/N].
   Eigen::MatrixXd between(const std::vector<int>& forced) const;
