@@ -2,13 +2,14 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "diagnosis/scores.hpp"
 #include "forward/reduced_trajectory.hpp"
+#include "tissue_stiffness/types/prediction.hpp"
+#include "types/least_squares.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -38,7 +39,7 @@ Eigen::MatrixXd parted(const Eigen::VectorXd& change, const Eigen::MatrixXd& alo
     const Eigen::Index from = offsets[k], size = offsets[k + 1] - from;
     if (size == 0) continue;
     const Eigen::MatrixXd lowest = along.block(from, 0, size, modes);
-    const Eigen::VectorXd own = change.segment(from, size), share = lowest.colPivHouseholderQr().solve(own);
+    const Eigen::VectorXd own = change.segment(from, size), share = least_squares(lowest, own);
     out.block(from, 0, size, modes) = lowest * share.asDiagonal();
     out.block(from, modes, size, 1) = own - lowest * share;
   }
@@ -64,7 +65,10 @@ std::vector<double> scales_of(const Linearisation& model) {
 }  // namespace
 
 ModelComparison::ModelComparison(const FittedModel& base, const Eigen::VectorXd& mesh_change)
-    : used_((base.rows.used.array() > 0.0).cast<double>()), offsets_(base.rows.offsets), along_(lowest_modes(base)) {
+    : used_((base.rows.used.array() > 0.0).cast<double>()),
+      nodes_(base.rows.nodes),
+      offsets_(base.rows.offsets),
+      along_(lowest_modes(base)) {
   allow_for_mesh(mesh_change);
   note(base.rows.error);
 }
@@ -183,13 +187,15 @@ MisfitTest ModelComparison::test_where(const Eigen::VectorXd& error, Eigen::Inde
     const Eigen::Index modes = std::min<Eigen::Index>(along_.cols(), std::max<Eigen::Index>(1, size / 4));
     Eigen::VectorXd residual(size), used(size);
     Eigen::MatrixXd shapes(size, modes);
+    std::vector<Eigen::Index> forces;
     for (Eigen::Index i = 0; i < size; ++i) {
       const Eigen::Index r = rows[static_cast<std::size_t>(i)];
       residual[i] = error[r];
       used[i] = used_[r];
       shapes.row(i) = along_.row(r).head(modes);
+      if (nodes_[r] == kForceRow) forces.push_back(i);
     }
-    out.add(residual, used, shapes);
+    out.add(residual, used, with_unit_columns(shapes, forces));
   }
   return out;
 }

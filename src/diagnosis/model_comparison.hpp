@@ -54,7 +54,8 @@ class ModelComparison {
                         const std::function<bool(Eigen::Index)>& inside) const;
 
  private:
-  Eigen::VectorXd used_;  ///< 1 where a row says something, else 0
+  Eigen::VectorXd used_;   ///< 1 where a row says something, else 0
+  Eigen::VectorXi nodes_;  ///< of each row, or kForceRow
   std::vector<Eigen::Index> offsets_;
   Eigen::MatrixXd along_;      ///< rows / amplitude of each mode
   Eigen::MatrixXd mesh_;       ///< D

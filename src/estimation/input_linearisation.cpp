@@ -10,6 +10,7 @@
 #include "forward/load_error_response.hpp"
 #include "forward/reduced_trajectory.hpp"
 #include "observation/frame_misfit.hpp"
+#include "types/least_squares.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -66,12 +67,10 @@ Eigen::MatrixXd finite(const Eigen::MatrixXd& m) {
   return m.array().isFinite().select(m, 0.0);
 }
 
-// Returns the amplitudes of the modes that come closest to a change of the rows; zeros where no row sees a mode, as a force
-// at a tool does.
+// Returns the amplitudes of the modes that come closest to a change of the rows. A force at a tool sees none of them.
 Eigen::VectorXd along_modes(const Eigen::MatrixXd& modes, const Eigen::VectorXd& precision, const Eigen::VectorXd& change) {
-  if (modes.isZero(0.0)) return Eigen::VectorXd::Zero(modes.cols());
   const Eigen::VectorXd weight = finite(precision).cwiseSqrt();
-  return (weight.asDiagonal() * finite(modes)).colPivHouseholderQr().solve(weight.cwiseProduct(finite(change).col(0)));
+  return least_squares(weight.asDiagonal() * finite(modes), weight.cwiseProduct(finite(change).col(0)));
 }
 
 }  // namespace

@@ -12,6 +12,13 @@ constexpr double kMostAutocorrelation = 0.95;
 
 }  // namespace
 
+Eigen::MatrixXd with_unit_columns(const Eigen::MatrixXd& shapes, const std::vector<Eigen::Index>& rows) {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(shapes.rows(), shapes.cols() + static_cast<Eigen::Index>(rows.size()));
+  out.leftCols(shapes.cols()) = shapes;
+  for (std::size_t k = 0; k < rows.size(); ++k) out(rows[k], shapes.cols() + static_cast<Eigen::Index>(k)) = 1.0;
+  return out;
+}
+
 void MisfitTest::add(const Eigen::VectorXd& residual, const Eigen::VectorXd& precision, const Eigen::MatrixXd& shapes) {
   const Eigen::VectorXd root = precision.cwiseSqrt();
   const Eigen::VectorXd r = root.cwiseProduct(residual);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <vector>
 
 namespace tissue_stiffness {
 
@@ -63,5 +64,9 @@ class MisfitTest {
   int frames_ = 0;
   Eigen::VectorXd last_;
 };
+
+/// Returns the shapes with one more column for each of these rows: 1 there, else 0. All of such a row's misfit counts. The
+/// force of a sensor has no rest that would tell its noise.
+Eigen::MatrixXd with_unit_columns(const Eigen::MatrixXd& shapes, const std::vector<Eigen::Index>& rows);
 
 }  // namespace tissue_stiffness

@@ -18,7 +18,8 @@ constexpr double kLeastFactor = 1.001;  // least factor of a log-normal prior
 
 void require_known_loads(const ModelSettings& model) {
   for (EffectSettings effect : model.effects) {  // a copy: asking marks keys as known
-    const char* const why = effect.arguments.has("course") ? "a load from a file" : "the pose of a moved region or of a tool";
+    const char* const why =
+        effect.arguments.has("course") ? "a load from a file" : "the pose of a moved region or of a tool";
     if (effect.arguments.has("course") || effect_spec(effect).load == LoadInput::Kind::pose) {
       throw InputError(effect.label, why, "loads on topics, where the body is not known to be at rest");
     }

@@ -63,5 +63,25 @@ TEST(MisfitTest, KnowsTheNoiseFromAnotherModel) {
   EXPECT_NEAR(louder.noise_level(), 1.0, 0.1) << "its own is less";
 }
 
+// A force has no rows across the modes, which would make noise of whatever it misses.
+TEST(MisfitTest, CountsAllThatAForceMisses) {
+  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(3, 2);
+  const std::vector<Eigen::Index> rows{0, 1, 2};
+  MisfitTest blind, seeing, right;
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  for (int k = 0; k < 40; ++k) {
+    const Eigen::Vector3d noise(normal(random), normal(random), normal(random)),
+        ones = Eigen::Vector3d::Ones(), missed = noise + 3.0 * std::sin(0.2 * k) * ones;
+    blind.add(missed, ones, none);
+    seeing.add(missed, ones, with_unit_columns(none, rows));
+    right.add(noise, ones, with_unit_columns(none, rows));
+  }
+  EXPECT_TRUE(blind.passes());
+  EXPECT_FALSE(seeing.passes());
+  EXPECT_GT(seeing.discrepancy(), 1.0);
+  EXPECT_TRUE(right.passes());
+}
+
 }  // namespace
 }  // namespace tissue_stiffness
