@@ -62,7 +62,8 @@ const std::vector<KeySpec>& common_node_keys() {
       text_key("model", "", "the model file; without it the private parameters are the model's keys themselves"),
       text_key("directory", "",
                "where relative files are looked up when there is no `model`; the working directory when absent"),
-      plain_key("allow_outside", KeySpec::Kind::boolean, "", "let the model file name files outside its own folder")};
+      plain_key("allow_outside", KeySpec::Kind::boolean, "",
+                "let the model name files outside its own folder, or outside `directory`")};
   return keys;
 }
 

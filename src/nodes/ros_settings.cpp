@@ -86,12 +86,17 @@ NodeSettings read_node_settings(const ros::NodeHandle& private_node, const std::
     }
   }
   Value own_map = Value::map(std::move(own), where);
-  if (file.empty()) return {Value::map(std::move(model), where), directory, std::move(own_map)};
+  const std::string or_else = ", or the parameter allow_outside";
+  if (file.empty()) {
+    const Value given = Value::map(std::move(model), where);
+    if (!allow_outside) require_files_inside(given, directory, or_else);
+    return {given, directory, std::move(own_map)};
+  }
   if (!model.empty()) {
     throw InputError(model.front().second.path(), model.front().second.shown(),
                      "either `model` (here " + file + ") or the model's keys, not both");
   }
-  if (!allow_outside) require_files_inside(file, ", or the parameter allow_outside");
+  if (!allow_outside) require_files_inside(file, or_else);
   return {load_yaml(file), std::filesystem::absolute(file).parent_path().string(), std::move(own_map)};
 }
 

@@ -26,8 +26,8 @@ struct NodeSettings {
 
 /// Reads the node's private parameters. The model is the file that `~model` names. Without `~model` it is the private
 /// parameters themselves, and relative paths count from `~directory` (default: the working directory). `own_keys` are the
-/// node's other parameters. Throws InputError when both `~model` and keys of a model are there, and when a model file names
-/// a file outside its folder without `~allow_outside`.
+/// node's other parameters. Throws InputError when both `~model` and keys of a model are there, and when the model names a
+/// file outside its folder without `~allow_outside`.
 NodeSettings read_node_settings(const ros::NodeHandle& private_node, const std::vector<std::string>& own_keys);
 
 }  // namespace tissue_stiffness

@@ -36,14 +36,16 @@ void bind_model(py::module& module) {
       .def_readonly("topic", &ObservationSettings::topic)
       .def_readonly("noise", &ObservationSettings::noise, "1 sigma [m]; of a reaction [N]");
   py::class_<ModelFile>(module, "Model",
-                        "A model file. Raises InputError for a key that is unknown, missing or out of range.")
-      .def(py::init([](const py::object& file) { return read_model_file(path(file)); }), py::arg("file"))
+                        "A model file. Raises InputError for a key that is unknown, missing or out of range, and for a "
+                        "file outside the model's folder unless `allow_outside` is true.")
+      .def(py::init([](const py::object& file, bool allow_outside) { return read_model_file(path(file), allow_outside); }),
+           py::arg("file"), py::arg("allow_outside") = false)
       .def_static(
           "from_text",
-          [](const std::string& text, const py::object& directory, const std::string& name) {
-            return parse_model(text, path(directory), name);
+          [](const std::string& text, const py::object& directory, const std::string& name, bool allow_outside) {
+            return parse_model(text, path(directory), name, allow_outside);
           },
-          py::arg("text"), py::arg("directory") = ".", py::arg("name") = "model",
+          py::arg("text"), py::arg("directory") = ".", py::arg("name") = "model", py::arg("allow_outside") = false,
           "A model from YAML. Relative paths count from `directory`, and messages call the text `name`.")
       .def("with_effects", &with_effects, py::arg("entries"),
            "The model with further entries of its list `effects`, each given as YAML: 'viscous_damping: {beta: 0.01}'.")

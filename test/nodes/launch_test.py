@@ -12,7 +12,9 @@ import roslaunch.config
 import roslaunch.xmlloader
 import roslib.packages
 import rospkg
+import rosparam
 import rostest
+import yaml
 
 PACKAGE = rospkg.RosPack().get_path('tissue_stiffness')
 DATA = os.path.join(PACKAGE, 'test', 'data', 'case_01')
@@ -82,6 +84,21 @@ class LaunchTest(unittest.TestCase):
         code, output = run('estimator_node', '_model:=%s/model.yaml' % DATA, '_estimator:=paper', '__name:=mixed')
         self.assertEqual(code, 2, output)
         self.assertIn('estimator', output)
+
+    def test_a_model_of_parameters_reads_no_file_outside_its_directory(self):
+        model = yaml.safe_load(MODEL)
+        model['mesh']['file'] = '../case_01/../meshing/cube.stl'
+        for node in ('mesh_node', 'segmentation_node', 'estimator_node'):
+            rosparam.upload_params('/outside_' + node, dict(model, directory=DATA))
+            code, output = run(node, '__name:=outside_' + node)
+            self.assertEqual(code, 2, output)
+            for part in ('mesh.file: found ../case_01/../meshing/cube.stl', DATA + ', or the parameter allow_outside'):
+                self.assertIn(part, output)
+        # With the parameter the next thing that is wrong is named.
+        rosparam.upload_params('/allowed', dict(model, directory=DATA, allow_outside=True, queue_size=0))
+        code, output = run('estimator_node', '__name:=allowed')
+        self.assertEqual(code, 2, output)
+        self.assertIn('queue_size', output)
 
     def test_an_own_parameter_out_of_range(self):
         code, output = run('estimator_node', '_model:=%s/model.yaml' % DATA, '_queue_size:=0', '__name:=empty_queue')

@@ -7,7 +7,7 @@ import time
 import unittest
 
 import tissue_stiffness as ts
-from bench import BAR, DAMPING, FALLEN, GRAVITY, INERTIA, Bench, arrays, elasticity, unknown
+from bench import DAMPING, FALLEN, GRAVITY, INERTIA, Bench, arrays, elasticity, unknown
 
 
 class DiagnosisTest(Bench):
@@ -33,13 +33,13 @@ class DiagnosisTest(Bench):
         for key in set(found.content) - {'seconds'}:
             self.assertEqual(found.content[key], tools.content[key], key)
         self.assertEqual((found.set, found.probabilities, found.z), (tools.set, tools.probabilities, tools.z))
-        self.assertEqual(found.model_next.replace(BAR, 'model_files/bar.vtk'), tools.model_next)
+        self.assertEqual(found.model_next.replace(self.path('bar.vtk'), 'bar.vtk'), tools.model_next)
 
     def test_the_next_model_has_the_effect(self):
         model, _, frames = self.hidden_damping()
         found = ts.diagnose(model, frames, add=['viscous_damping'])
         self.assertEqual(found.final_effects, ['viscous_damping'])
-        extended = ts.Model.from_text(found.model_next)
+        extended = ts.Model.from_text(found.model_next, self.folder)
         self.assertEqual(extended.effects, ts.Model(model).effects + ['viscous_damping'])
         self.assertLess(abs(found.parameters['elasticity.young_modulus'].mean / 4e5 - 1), 0.05)
         before, after = ts.estimate(model, frames), ts.estimate(extended, frames)

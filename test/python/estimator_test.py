@@ -1,5 +1,6 @@
 """The estimator in Python: it gives what the tool gives, and names what is wrong with its input."""
 import json
+import os
 import subprocess
 import sys
 import threading
@@ -93,6 +94,20 @@ class EstimatorTest(Bench):
         self.refuses(lambda: ts.Model.from_text('mesh: [', name='here'), 'here:1')
         self.refuses(lambda: ts.Estimator(self.write_model(INERTIA + elasticity(4e5))), 'effects', 'only known numbers')
 
+    def test_a_model_reads_no_file_outside_its_folder_unless_allowed(self):
+        os.mkdir(self.path('deep'))
+        text = MODEL.replace('bar.vtk', '../bar.vtk') + INERTIA + elasticity(unknown(4e5)) + SEEN
+        file = self.write(os.path.join('deep', 'model.yaml'), text)
+        words = ('mesh.file: found ../bar.vtk', 'a file in the folder ', 'deep, or allow_outside=True')
+        self.refuses(lambda: ts.Model(file), 'model.yaml', *words)
+        self.refuses(lambda: ts.Estimator(file), *words)
+        self.refuses(lambda: ts.Model.from_text(text, self.path('deep')), *words)
+        course = ['traction: {region: end, course: {file: /etc/hostname, columns: [time, x, y, z]}}']
+        inside = ts.Model(self.write_model(INERTIA + elasticity(unknown(4e5))))
+        self.refuses(lambda: inside.with_effects(course), 'course.file: found /etc/hostname')
+        for model in (ts.Model(file, allow_outside=True), ts.Model.from_text(text, self.path('deep'), allow_outside=True)):
+            self.assertEqual(ts.build_mesh(model.with_effects([GRAVITY[2:]])).corner_count, 99)
+
     def test_arrays_that_do_not_fit_are_named(self):
         estimator = ts.Estimator(self.write_model(INERTIA + PULL + elasticity(unknown(2.4e4))))
         points = estimator.mesh.nodes[:5]
@@ -125,7 +140,7 @@ class EstimatorTest(Bench):
                                                         '- moved: {region: end, topic: /pose}\n')
         sensors = ('observations:\n- markers: {topic: /markers, noise: 1e-4, rest: [[0.05, 0, 0], [0.05, 0.02, 0]]}\n'
                    '- points: {topic: /points, noise: 1e-4}\n- reaction: {topic: /reaction, region: end, noise: 0.01}\n')
-        estimator = ts.Estimator(ts.Model.from_text(MODEL + effects + sensors))
+        estimator = ts.Estimator(ts.Model.from_text(MODEL + effects + sensors, self.folder))
         self.assertEqual({load.topic: load.kind for load in estimator.load_inputs}, {'/pressure': 'pressure', '/pose': 'pose'})
         self.assertEqual([sensor.kind for sensor in estimator.model.observations], ['markers', 'points', 'reaction'])
         markers = np.array([[0.05, 0, 0.001], [0.05, 0.02, 0.001]])
