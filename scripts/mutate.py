@@ -1,23 +1,29 @@
 """Mutants of the core layers: see scripts/mutate.
 
 A mutant is a source file with one change, drawn with a seed: another comparison, sign, factor, bound or logic, a negated
-condition, a statement left out, a number doubled. The tests of its layer are built and run until one fails. A mutant is killed
-when a test fails or takes ten times as long as usual. What does not compile is not counted. Prints the survivors.
+condition, a statement left out, a number doubled. The tests of its layer are built and run until one fails, the quick ones
+first. A mutant is killed when a test fails or the tests take several times as long as usual. What does not compile is not
+counted. With --page it writes what it found, with the reasons of test/mutants.json why survivors survive.
 """
 import argparse
+import collections
 import json
 import os
 import random
 import re
 import subprocess
 import sys
-import time
+import tempfile
 
 # The tests that ought to notice a change in a layer; the first one that does ends the search.
 TESTS = {'filter': ['filter'], 'fem': ['fem'], 'effects': ['effects', 'forward'], 'estimation': ['estimation'], 'fit': ['fit', 'estimation'],
          'diagnosis': ['diagnosis']}
-SLOWER = 10.0  # times the usual duration
-LEAST = 60.0   # s
+QUICK, LONGEST = 0.5, 8.0  # s, of one test: quick ones are run first, and those beyond the second bound are not run
+SLOWER = 5.0               # times the usual duration
+LEAST = 20.0               # s
+REASONS = os.path.join('test', 'mutants.json')
+
+Stage = collections.namedtuple('Stage', 'test names limit')
 
 # (name, pattern, what stands there instead)
 OPERATORS = [('bound', r' <= ', ' < '), ('bound', r' < (?=[^<>]*[;)&|])', ' <= '), ('bound', r' >= ', ' > '), ('bound', r' > (?=[^<>]*[;)&|])', ' >= '),
@@ -72,17 +78,22 @@ def build(root, tests):
     return done.returncode == 0
 
 
-def passes(root, test, limit):
+def run(root, test, *options, limit=None):
+    """Whether all tests of a program pass in time."""
     program = os.path.join(root, 'build', 'devel', 'lib', 'tissue_stiffness', 'test_' + test)
     try:
-        done = subprocess.run([program, '--gtest_break_on_failure'], cwd=os.path.join(root, 'test'), stdout=subprocess.DEVNULL,
+        done = subprocess.run([program, *options], cwd=os.path.join(root, 'test'), stdout=subprocess.DEVNULL,
                               stderr=subprocess.DEVNULL, timeout=limit)
     except subprocess.TimeoutExpired:
         return False
     return done.returncode == 0
 
 
-def verdict(root, mutant, tests, limits):
+def passes(root, stage):
+    return run(root, stage.test, '--gtest_break_on_failure', '--gtest_filter=' + ':'.join(stage.names), limit=stage.limit)
+
+
+def verdict(root, mutant, tests, stages):
     path = os.path.join(root, mutant['file'])
     with open(path) as file:
         text = file.read()
@@ -93,22 +104,67 @@ def verdict(root, mutant, tests, limits):
             file.write('\n'.join(lines))
         if not build(root, tests):
             return 'not compiled'
-        return 'survived' if all(passes(root, test, limits[test]) for test in tests) else 'killed'
+        return 'survived' if all(passes(root, stage) for stage in stages) else 'killed'
     finally:
         with open(path, 'w') as file:
             file.write(text)
 
 
-def usual_durations(root, tests):
+def durations(root, test):
+    """The usual seconds of each test of a program."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = os.path.join(folder, 'times.json')
+        if not run(root, test, '--gtest_output=json:' + file):
+            sys.exit('mutate: test_%s fails without a change' % test)
+        with open(file) as content:
+            suites = json.load(content)['testsuites']
+    return {'%s.%s' % (suite['name'], case['name']): float(case['time'].rstrip('s')) for suite in suites for case in suite['testsuite']}
+
+
+def stages_of(root, tests):
+    """All quick tests of all programs, then the slower ones."""
     if not build(root, tests):
         sys.exit('mutate: the tests do not build')
-    limits = {}
+    quick, slow = [], []
     for test in tests:
-        begun = time.time()
-        if not passes(root, test, None):
-            sys.exit('mutate: test_%s fails without a change' % test)
-        limits[test] = max(LEAST, SLOWER * (time.time() - begun))
-    return limits
+        times = durations(root, test)
+        for stages, least, most in ((quick, 0.0, QUICK), (slow, QUICK, LONGEST)):
+            names = [name for name, seconds in times.items() if least <= seconds < most]
+            if names:
+                stages.append(Stage(test, names, max(LEAST, SLOWER * sum(times[name] for name in names))))
+    return quick + slow
+
+
+def key_of(mutant):
+    return '%(file)s:%(line)d: %(before)s -> %(after)s' % dict(mutant, after=mutant['after'].strip() or '(left out)')
+
+
+def place_of(key):
+    """The key without the number of the line, which other changes move."""
+    return re.sub(r':\d+: ', ': ', key, count=1)
+
+
+def write_page(root, layers, path):
+    """layers: {layer: (number of all mutants, the drawn ones with their verdicts)}"""
+    with open(os.path.join(root, REASONS)) as file:
+        reasons = {place_of(key): reason for key, reason in json.load(file).items()}
+    lines = ['# Mutants', '',
+             '`scripts/mutate` changes one place of the code at a time and runs the tests of the layer. A mutant is killed when a test '
+             'fails. This page is written by `scripts/mutate --page`. Tests that take longer than %g s are left out, so the scores are '
+             'lower bounds.' % LONGEST, '', '| layer | mutants in all | drawn | not compiled | killed | survived | score |', '|---|---|---|---|---|---|---|']
+    for layer, (total, drawn) in layers.items():
+        found = collections.Counter(mutant['verdict'] for mutant in drawn)
+        counted = found['killed'] + found['survived']
+        lines.append('| %s | %d | %d | %d | %d | %d | %.0f %% |' % (
+            layer, total, len(drawn), found['not compiled'], found['killed'], found['survived'], 100.0 * found['killed'] / max(1, counted)))
+    lines += ['', '## Survivors', '', '| change | why it survives |', '|---|---|']
+    for _, drawn in layers.values():
+        for mutant in drawn:
+            if mutant['verdict'] == 'survived':
+                key = key_of(mutant)
+                lines.append('| `%s` | %s |' % (key.replace('|', '\\|'), reasons.get(place_of(key), 'Nobody has looked yet.')))
+    with open(path, 'w') as file:
+        file.write('\n'.join(lines) + '\n')
 
 
 def main():
@@ -117,10 +173,12 @@ def main():
     parser.add_argument('--layers', default=','.join(TESTS))
     parser.add_argument('--each', type=int, default=10, help='mutants of each layer')
     parser.add_argument('--seed', type=int, default=1)
+    parser.add_argument('--again', action='store_true', help='try those again that survived, as after a change of the tests')
+    parser.add_argument('--page', help='file for the scores and the survivors')
     parser.add_argument('--output', help='what is known so far; default: mutants.json in .mutate')
     arguments = parser.parse_args()
     output = arguments.output or os.path.join(arguments.root, '..', 'mutants.json')
-    known = {}
+    known, layers = {}, {}
     if os.path.exists(output):
         with open(output) as file:
             known = json.load(file)
@@ -128,20 +186,23 @@ def main():
         if layer not in TESTS:
             parser.error('--layers: found %s; allowed: %s' % (layer, ', '.join(TESTS)))
         total, drawn = sample(arguments.root, layer, arguments.each, arguments.seed)
-        limits = None
+        stages = None
         for mutant in drawn:
-            key = '%(file)s:%(line)d: %(before)s -> %(after)s' % dict(mutant, after=mutant['after'].strip())
-            if key not in known:
-                limits = limits or usual_durations(arguments.root, TESTS[layer])
-                known[key] = verdict(arguments.root, mutant, TESTS[layer], limits)
+            key = key_of(mutant)
+            if known.get(key, 'survived') == 'survived' and (arguments.again or key not in known):
+                stages = stages or stages_of(arguments.root, TESTS[layer])
+                known[key] = verdict(arguments.root, mutant, TESTS[layer], stages)
                 with open(output + '.part', 'w') as file:
                     json.dump(known, file, indent=1)
                 os.replace(output + '.part', output)
             print('%-12s %s' % (known[key], key), flush=True)
             mutant['verdict'] = known[key]
-        found = [mutant['verdict'] for mutant in drawn]
+        layers[layer] = (total, drawn)
+        found = collections.Counter(mutant['verdict'] for mutant in drawn)
         print('%s: %d of %d mutants drawn: %d killed, %d survived, %d not compiled' % (
-            layer, len(drawn), total, found.count('killed'), found.count('survived'), found.count('not compiled')), flush=True)
+            layer, len(drawn), total, found['killed'], found['survived'], found['not compiled']), flush=True)
+    if arguments.page:
+        write_page(arguments.root, layers, arguments.page)
 
 
 if __name__ == '__main__':
