@@ -30,6 +30,9 @@ COLOURS = ('#2c7fb8', '#a6bddb', '#c8664f', '#e6a15c', '#999999', '#333333', '#d
 INJECTOR = '/fault_injector'
 TOPICS = ('/tissue/vertices', '/tool/wrench')
 LONGEST = 10.0             # s, of a latency; what is apart for longer belongs to two replays
+SAMPLING = 0.5             # s, between samples of the memory
+SPAN = 10                  # minutes, within which a model check has ended and the next one has not begun
+GROWTH = 0.02              # of the memory between model checks, from the first third to the last
 MOST_SHOWN = 20            # wrong estimates that the raw data keep in full
 
 
@@ -150,6 +153,29 @@ def start_nodes(bag, rate, log):
                              'load_timeout:=0.2'], stdout=log, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL)
 
 
+class MemoryWatch:
+    """Samples a process's resident memory, which goes up and down with each model check."""
+
+    def __init__(self, number):
+        self.number, self.lock, self.samples, self.ended = number, threading.Lock(), [], threading.Event()
+        threading.Thread(target=self.watch, daemon=True).start()
+
+    def watch(self):
+        while not self.ended.wait(SAMPLING):
+            try:
+                sample = resident(self.number)
+            except OSError:  # the process has ended
+                return
+            with self.lock:
+                self.samples.append(sample)
+
+    def take_row(self):
+        with self.lock:
+            samples, self.samples = self.samples, []
+        samples = samples or [float('nan')]
+        return {'rss_mb': statistics.median(samples), 'least_rss_mb': min(samples), 'most_rss_mb': max(samples)}
+
+
 def run(arguments, rate, bag, log):
     injector, settings = start_injector(arguments, rate)
     recorder = Recorder()
@@ -161,7 +187,7 @@ def run(arguments, rate, bag, log):
             if time.time() > deadline or launch.poll() is not None:
                 sys.exit('soak: no estimate came')
             time.sleep(0.5)
-        estimator = processes(launch.pid)['estimator_node']
+        memory = MemoryWatch(processes(launch.pid)['estimator_node'])
         recorder.take_row()
         begun = time.time()
         while len(rows) < arguments.minutes and not died:
@@ -169,8 +195,9 @@ def run(arguments, rate, bag, log):
             ended = [name for name, process in (('the nodes', launch), ('fault_injector', injector)) if process.poll() is not None]
             died = ', '.join(ended)
             if not died:
-                rows.append(dict(recorder.take_row(), minute=len(rows) + 1, rss_mb=resident(estimator)))
+                rows.append(dict(recorder.take_row(), minute=len(rows) + 1, **memory.take_row()))
                 print(rows[-1], flush=True)
+        memory.ended.set()
     finally:
         for process in (launch, injector):
             if process.poll() is None:
@@ -186,7 +213,9 @@ def draw(data, path):
     rows = data['rows']
     minutes = [row['minute'] for row in rows]
     figure, (memory, latency, states) = plt.subplots(1, 3, figsize=(11, 3.1))
-    memory.plot(minutes, [row['rss_mb'] for row in rows], color=COLOURS[0])
+    for key, name, colour in (('rss_mb', 'median', COLOURS[1]), ('least_rss_mb', 'least', COLOURS[0])):
+        memory.plot(minutes, [row[key] for row in rows], color=colour, label=name)
+    memory.legend(fontsize=8, frameon=False)
     memory.set_title('resident memory [MB]', fontsize=10)
     memory.set_ylim(bottom=0)
     for key, name, colour in (('p50_ms', 'median', COLOURS[0]), ('p99_ms', '99th percentile', COLOURS[2])):
@@ -204,10 +233,21 @@ def draw(data, path):
     save(figure, path, 90, (memory, latency, states))
 
 
+def held_memory(rows):
+    """What the estimator holds between model checks [MB] in the first and in the last third of the run."""
+    spans = [min(row['least_rss_mb'] for row in rows[begin:begin + SPAN]) for begin in range(0, len(rows), SPAN)]
+    third = max(1, len(spans) // 3)
+    return statistics.median(spans[:third]), statistics.median(spans[-third:])
+
+
+def grows(data):
+    first, last = held_memory(data['rows'])
+    return last > (1.0 + GROWTH) * first
+
+
 def page(data):
     rows, faults = data['rows'], data['faults']
-    third = max(1, len(rows) // 3)
-    first, last = (statistics.median(row['rss_mb'] for row in part) for part in (rows[:third], rows[-third:]))
+    first, last = held_memory(rows)
     states = {state: sum(row['states'].get(state, 0) for row in rows) for state in STATES}
     total = max(1, sum(states.values()))
     seconds = [entry['seconds'] for entry in data['recoveries']]
@@ -231,7 +271,9 @@ def page(data):
         '| spells after which every estimate was `converged` within %g s of the recording | %d |' % (
             RECOVERY, sum(value <= RECOVERY for value in seconds)),
         '| time until then, median and longest [s] | %.1f, %.1f |' % (statistics.median(seconds or [0.0]), max(seconds or [0.0])),
-        '| memory of estimator_node, median of the first and the last third [MB] | %.1f, %.1f |' % (first, last),
+        '| memory of estimator_node between model checks, in the first and the last third [MB] | %.1f, %.1f |' % (first, last),
+        '| growth of it | %+.1f %% |' % (100.0 * (last / first - 1.0)),
+        '| most of its memory, during a model check [MB] | %.1f |' % max(row['most_rss_mb'] for row in rows),
         '| latency from cloud to estimate, median of the minutes\' medians [ms] | %.0f |' % statistics.median(middle or [0.0]),
         '| median and largest of the minutes\' 99th percentiles [ms] | %.0f, %.0f |' % (
             statistics.median(worst or [0.0]), max(worst or [0.0])),
@@ -242,7 +284,8 @@ def page(data):
         '| `%s` | %.1f %% |' % (state, 100.0 * states[state] / total) for state in STATES if states[state]] + [
         '', '![Memory, latency and states in each minute](reliability.png)', '',
         'Each replay starts from the prior, so its first estimates are `converging`. A mute counts as one fault, however many messages '
-        'it swallows.']
+        'it swallows. A model check takes hundreds of megabytes for a while. So the least memory in each %d minutes tells what the '
+        'node holds, and the table gives the median of these.' % SPAN]
     return '\n'.join(lines) + '\n'
 
 
@@ -270,7 +313,7 @@ def main():
     with open(os.path.join(output, 'reliability.md'), 'w') as file:
         file.write(page(data))
     print(page(data))
-    sys.exit(1 if data['died'] or data['wrong'] or data['broken'] else 0)
+    sys.exit(1 if data['died'] or data['wrong'] or data['broken'] or grows(data) else 0)
 
 
 if __name__ == '__main__':
