@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <cmath>
 #include <random>
 
@@ -66,6 +67,27 @@ TEST(ScoreBatches, WidenOnlyWhereErrorsAgree) {
   const Eigen::MatrixXd wide = batches.widened(covariance, batches.variance(Eigen::Vector2d::Zero()));
   EXPECT_GT(wide(0, 0), 10.0 * covariance(0, 0));
   EXPECT_NEAR(wide(1, 1) / covariance(1, 1), 1.0, 0.3);
+}
+
+// Of scores 1, 2, 3, ... of one parameter, pairs of frames become one batch when 32 are full.
+TEST(ScoreBatches, JoinNeighboursWhenThereAreMany) {
+  ScoreBatches batches;
+  double sum = 0.0;
+  for (int k = 0; k < 40; ++k) batches.add(Eigen::MatrixXd::Ones(1, 1), Eigen::VectorXd::Constant(1, k + 1.0));
+  for (int k = 0; k < 20; ++k) sum += std::pow(4.0 * k + 3.0 - 2.0 * 0.5, 2);
+  EXPECT_EQ(batches.count(), 20);
+  EXPECT_NEAR(batches.variance(Eigen::VectorXd::Constant(1, 0.5))(0, 0), 20.0 / 19.0 * sum, 1e-9 * sum);
+}
+
+// Directions are widened each by its own share, in units of the covariance, which need not be a multiple of one.
+TEST(ScoreBatches, WidenInUnitsOfTheCovariance) {
+  ScoreBatches batches;
+  for (int k = 0; k < 20; ++k) batches.add(Eigen::Matrix2d::Identity(), Eigen::Vector2d::Zero());
+  const Eigen::Matrix2d covariance = (Eigen::Matrix2d() << 4.0, 1.0, 1.0, 2.0).finished();
+  const Eigen::Matrix2d inverse = covariance.inverse();
+  EXPECT_TRUE(batches.widened(covariance, inverse).isApprox(covariance, 1e-12)) << "as large as noise makes it";
+  EXPECT_TRUE(batches.widened(covariance, 9.0 * inverse).isApprox(9.0 * covariance, 1e-12));
+  EXPECT_TRUE(batches.widened(covariance, 0.1 * inverse).isApprox(covariance, 1e-12)) << "never narrower";
 }
 
 TEST(ScoreBatches, FewFramesSayNothing) {
