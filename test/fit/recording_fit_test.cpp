@@ -1,0 +1,161 @@
+// A model's free run against a recording, and what is told of its rows.
+#include "fit/recording_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "../estimation/bar.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr int kFrames = 36;
+constexpr double kTruth = 30e3;
+
+// Five frames of two rows each, of which the last has three; two rows say nothing, one is of a force.
+RecordingFit::Rows some_rows() {
+  RecordingFit::Rows rows;
+  rows.offsets = {0, 2, 4, 6, 8, 11};
+  rows.error = (Eigen::VectorXd(11) << 1, 2, 3, 4, 0, 6, 7, 8, 9, 10, 11).finished();
+  rows.predicted = (Eigen::VectorXd(11) << 1, 1, 2, 3, 5, 8, 13, 21, 34, 55, 89).finished();
+  rows.used = (Eigen::VectorXd(11) << 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 0).finished();
+  rows.sigma = (Eigen::VectorXd(11) << 2, 2, 2, 2, 0, 1, 1, 1, 1, 1, 0).finished();
+  rows.nodes = (Eigen::VectorXi(11) << 0, 1, 2, 3, 0, kForceRow, 4, 5, 6, 7, 0).finished();
+  return rows;
+}
+
+TEST(RecordingRows, AreCountedWhereTheySaySomething) {
+  EXPECT_EQ(some_rows().count(), 9.0);
+}
+
+TEST(RecordingRows, MoveFromTheFirstFrame) {
+  const Eigen::VectorXd expected = (Eigen::VectorXd(11) << 0, 0, 1, 2, 4, 7, 12, 20, 0, 0, 0).finished();
+  EXPECT_EQ(motion_of(some_rows()), expected);
+}
+
+TEST(RecordingRows, LeaveBeyondTheNoiseWhatTheirErrorsAreBeyondOne) {
+  RecordingFit::Rows rows = some_rows();
+  EXPECT_NEAR(structured_squares(rows), rows.error.squaredNorm() - 9.0, 1e-12);
+  rows.error *= 0.01;
+  EXPECT_EQ(structured_squares(rows), 0.0);
+}
+
+TEST(RecordingRows, HaveErrorsInMetresThatLeaveOutForces) {
+  const RecordingFit::Rows rows = some_rows();
+  const double first = 4.0 * (1.0 + 4.0 + 9.0 + 16.0), last = 49.0 + 64.0 + 81.0 + 100.0;
+  EXPECT_NEAR(rms_error(rows), std::sqrt((first + last) / 8.0), 1e-12);
+  EXPECT_NEAR(noise_floor(rows), std::sqrt((4.0 * 4.0 + 4.0) / 8.0), 1e-12);
+  Recording recording;
+  recording.frames.resize(5);  // of which 9 * 2 / 5 is the third ninth's, and 9 * 3 / 5 the sixth's
+  EXPECT_NEAR(rms_error(rows, recording, true), std::sqrt((49.0 + 64.0) / 2.0), 1e-12);
+  EXPECT_NEAR(rms_error(rows, recording, false), std::sqrt((first + 81.0 + 100.0) / 6.0), 1e-12);
+}
+
+TEST(RecordingRows, OfNoLengthHaveNoError) {
+  RecordingFit::Rows rows = some_rows();
+  rows.used.setZero();
+  EXPECT_EQ(rms_error(rows), 0.0);
+  EXPECT_EQ(noise_floor(rows), 0.0);
+}
+
+class RecordingFitTest : public ::testing::Test {
+ protected:
+  static Recording film(const std::vector<std::string>& more, double noise) {
+    std::vector<std::string> effects = bar_under_gravity(prior(kTruth, 2.0));
+    effects.insert(effects.end(), more.begin(), more.end());
+    const Experiment truth(box_settings(effects), bar_mesh(), {kTruth});
+    Recording recording;
+    recording.frames = see_all(truth, truth.film(0.0, kFilmed, kFrames), noise, 5);
+    return recording;
+  }
+  static ModelSettings model(const std::vector<std::string>& more = {}) {
+    std::vector<std::string> effects = bar_under_gravity(prior(40e3, 3.0));
+    effects.insert(effects.end(), more.begin(), more.end());
+    return box_settings(effects);
+  }
+  static Eigen::VectorXd at(double young_modulus) { return Eigen::VectorXd::Constant(1, std::log(young_modulus)); }
+};
+
+TEST_F(RecordingFitTest, HasRowsOfTheNoiseAtTheTruth) {
+  const Recording recording = film({}, kNoise);
+  const RecordingFit fit(model(), bar_mesh(), recording);
+  const RecordingFit::Rows rows = fit.rows(at(kTruth));
+  EXPECT_EQ(rows.offsets.size(), static_cast<std::size_t>(kFrames + 1));
+  EXPECT_EQ(rows.offsets.back(), rows.error.size());
+  EXPECT_EQ(rows.count(), static_cast<double>(rows.error.size()));
+  EXPECT_NEAR(rms_error(rows) / kNoise, 1.0, 0.05);
+  EXPECT_NEAR(noise_floor(rows) / kNoise, 1.0, 1e-12);
+  EXPECT_TRUE(fit.predicted(at(kTruth)).isApprox(rows.predicted, 1e-12));
+  EXPECT_GT(rms_error(fit.rows(at(2.0 * kTruth))), 5.0 * kNoise);
+}
+
+// The rows along a displacement are what the rows change by when the body moves by it.
+TEST_F(RecordingFitTest, HasRowsAlongADisplacement) {
+  const Recording recording = film({}, kNoise);
+  const RecordingFit fit(model(), bar_mesh(), recording);
+  const RecordingFit::Rows rows = fit.rows(at(kTruth));
+  Eigen::MatrixXd shapes = Eigen::MatrixXd::Zero(3 * bar_mesh().node_count(), 2);
+  for (Eigen::Index i = 0; i < shapes.rows(); i += 3) shapes(i, 0) = 1.0;
+  shapes.col(1).setConstant(-2.0);
+  const Eigen::MatrixXd along = fit.rows_along(at(kTruth), shapes, rows);
+  for (Eigen::Index r = 0; r < along.rows(); ++r) {
+    ASSERT_NEAR(std::abs(along(r, 0)) * kNoise, r % 3 == 0 ? rows.used[r] : 0.0, 1e-9) << r;
+    ASSERT_NEAR(std::abs(along(r, 1)) * kNoise, 2.0 * rows.used[r], 1e-9) << r;
+  }
+}
+
+TEST_F(RecordingFitTest, FindsTheModulusByFitAndByScan) {
+  const Recording recording = film({}, kNoise);
+  RecordingFit fit(model(), bar_mesh(), recording);
+  const Eigen::VectorXd start = fit.scan(fit.model().parameters().prior_mean());
+  EXPECT_NEAR(start[0], std::log(kTruth), 0.3);
+  EXPECT_NEAR(fit.scan_prior(at(60e3), {0}, 1.0).w[0], std::log(kTruth), 0.3);
+  const RecordingFit::Place near = fit.scan_near(at(1.05 * kTruth), {0});
+  EXPECT_NEAR(near.w[0], std::log(kTruth), 0.03);
+  const double rows = 3.0 * static_cast<double>(recording.training().size() * corners(bar_mesh()).size());
+  EXPECT_NEAR(near.cost / rows, 1.0, 0.2);
+  EXPECT_NEAR(fit.scan_near(at(1.05 * kTruth), {0}, 0.5).cost / rows, 0.5, 0.1);
+  const Eigen::VectorXd spread = 0.1 * fit.model().parameters().prior_std();
+  EXPECT_NEAR(fit.fit(start, spread).w[0], std::log(kTruth), 0.01);
+  const BatchFit whole = fit.quick_fit(start, spread), part = fit.quick_fit(start, spread, 0.25);
+  EXPECT_GT(part.covariance(0, 0), 1.5 * whole.covariance(0, 0)) << "a part of the frames knows less";
+}
+
+TEST_F(RecordingFitTest, KeepsWhatTwoModelsShare) {
+  const Recording recording = film({}, kNoise);
+  const RecordingFit base(model(), bar_mesh(), recording);
+  const RecordingFit more(model({"viscous_damping: {beta: {prior: 1.0e-3, factor: 2}}"}), base);
+  EXPECT_EQ(more.index("elasticity.young_modulus"), 0);
+  EXPECT_EQ(base.index("viscous_damping.beta"), -1);
+  EXPECT_EQ(more.shared_with(base), std::vector<Eigen::Index>{0});
+  EXPECT_EQ(more.tuning_shared_with(base), std::vector<Eigen::Index>{0});
+  const Eigen::VectorXd w = more.extend(base, at(22e3)), prior = more.model().parameters().prior_mean();
+  EXPECT_EQ(w[0], std::log(22e3));
+  EXPECT_EQ(w[1], prior[1]);
+  const Eigen::VectorXd ratio = more.spread_beyond(base).cwiseQuotient(more.model().parameters().prior_std());
+  EXPECT_NEAR(ratio[0], 0.05, 1e-12);
+  EXPECT_NEAR(ratio[1], 0.25, 1e-12);
+}
+
+// Under finite strain few runs in full lead to the modulus: quick runs are corrected from one to the next.
+TEST_F(RecordingFitTest, FindsTheModulusUnderFiniteStrain) {
+  const std::vector<std::string> large{"geometric_nonlinearity: {share: 1}", "mass_damping: {alpha: 2}"};
+  const Recording recording = film(large, 1e-6);
+  RecordingFit fit(model(large), bar_mesh(), recording);
+  const double linear = RecordingFit(model({"mass_damping: {alpha: 2}"}), bar_mesh(), recording)
+                            .fit(at(40e3), Eigen::VectorXd::Constant(1, 0.05))
+                            .w[0];
+  ASSERT_GT(std::abs(linear - std::log(kTruth)), 1e-3) << "a linear model is off";
+  const BatchFit found = fit.fit(at(40e3), Eigen::VectorXd::Constant(1, 0.05));
+  std::printf("off by %.2e, the linear model by %.2e\n", found.w[0] - std::log(kTruth), linear - std::log(kTruth));
+  EXPECT_NEAR(found.w[0], std::log(kTruth), 1e-5);
+  EXPECT_LT(rms_error(fit.rows(found.w)), 2e-6) << "quick runs agree with the last one in full";
+  RecordingFit wider(model({large[0], large[1], "viscous_damping: {beta: {prior: 1.0e-4, factor: 2}}"}), fit);
+  wider.borrow(fit);
+  Eigen::VectorXd w = wider.extend(fit, found.w);
+  EXPECT_TRUE(wider.rows(w).predicted.allFinite());
+}
+
+}  // namespace
+}  // namespace tissue_stiffness
