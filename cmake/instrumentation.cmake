@@ -1,9 +1,15 @@
 # Builds that watch themselves, each in a folder of its own: scripts/test --sanitize and --coverage, and scripts/fuzz.
 option(TISSUE_STIFFNESS_SANITIZE "Stop at wrong memory accesses, leaks and undefined behaviour" OFF)
+option(TISSUE_STIFFNESS_SANITIZE_THREAD "Report data races" OFF)
 option(TISSUE_STIFFNESS_COVERAGE "Count which lines run" OFF)
 option(TISSUE_STIFFNESS_FUZZ "Build the fuzzers of test/fuzz, which clang links" OFF)
 
-if(TISSUE_STIFFNESS_SANITIZE OR TISSUE_STIFFNESS_COVERAGE)
+# What both need: no program that is not ours loads a sanitizer, and a sanitizer has a malloc of its own.
+if(TISSUE_STIFFNESS_SANITIZE OR TISSUE_STIFFNESS_SANITIZE_THREAD)
+  set(tissue_stiffness_sanitized TRUE)
+endif()
+
+if(tissue_stiffness_sanitized OR TISSUE_STIFFNESS_COVERAGE)
   # Without NDEBUG: Eigen's assertions see a wrong index that still hits memory of the same matrix.
   set(CMAKE_CXX_FLAGS_RELEASE "-O1 -g")
 endif()
@@ -20,7 +26,16 @@ if(TISSUE_STIFFNESS_SANITIZE)
   endif()
   add_compile_definitions(_GLIBCXX_ASSERTIONS)
   add_link_options(${sanitizers})
-  # Plugins of programs that are not ours: AddressSanitizer must be loaded first, and these programs do not load it.
+endif()
+
+if(TISSUE_STIFFNESS_SANITIZE_THREAD)
+  add_compile_options(-fsanitize=thread -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=thread)
+  include_directories(BEFORE ${PROJECT_SOURCE_DIR}/cmake/thread_sanitizer)  # what TBB orders
+endif()
+
+if(tissue_stiffness_sanitized)
+  # Plugins of programs that are not ours: a sanitizer must be loaded first, and these programs do not load it.
   set(CMAKE_DISABLE_FIND_PACKAGE_nodelet TRUE)
   set(CMAKE_DISABLE_FIND_PACKAGE_rviz TRUE)
 endif()

@@ -62,7 +62,7 @@ macro(tissue_stiffness_start_with_signals_held)
     set_target_properties(start_${tool} PROPERTIES OUTPUT_NAME ${tool})
     target_compile_options(start_${tool} PRIVATE ${tissue_stiffness_warnings})
     target_link_options(start_${tool} PRIVATE -Wl,--as-needed)
-    if(TISSUE_STIFFNESS_SANITIZE)  # a sanitizer's library would take time to load too
+    if(tissue_stiffness_sanitized)  # a sanitizer's library would take time to load too
       target_compile_options(start_${tool} PRIVATE -fno-sanitize=all)
       target_link_options(start_${tool} PRIVATE -fno-sanitize=all)
     endif()

@@ -2,7 +2,7 @@
 option(TISSUE_STIFFNESS_PYTHON "Build `import tissue_stiffness` for Python" ON)
 
 set(tissue_stiffness_python FALSE)
-if(TISSUE_STIFFNESS_PYTHON AND NOT TISSUE_STIFFNESS_SANITIZE AND NOT TISSUE_STIFFNESS_FUZZ)  # Python loads no sanitizer
+if(TISSUE_STIFFNESS_PYTHON AND NOT tissue_stiffness_sanitized AND NOT TISSUE_STIFFNESS_FUZZ)  # Python loads no sanitizer
   # catkin's Python, by both of the ways in which a pybind11 looks for it
   set(Python3_EXECUTABLE ${PYTHON_EXECUTABLE})
   set(PYBIND11_PYTHON_VERSION "${PYTHON_VERSION_MAJOR}.${PYTHON_VERSION_MINOR}")
