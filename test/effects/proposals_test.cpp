@@ -231,6 +231,56 @@ TEST(Proposals, DoubtTheExtentOfAClamp) {
   EXPECT_EQ(beside(Model(box_settings(kBase, kObservations), mesh)), 0) << "the whole end is held";
 }
 
+TEST(Proposals, AreMadeByEveryEffectThatFitsTheModel) {
+  const TetMesh mesh = bar_mesh(2);
+  const Model base(box_settings(kBase, kObservations), mesh);
+  std::vector<std::string> effects;
+  for (const EffectSpec& spec : effect_specs()) {
+    if (!proposals_of(spec, base).empty()) effects.push_back(spec.name);
+  }
+  std::sort(effects.begin(), effects.end());
+  const std::vector<std::string> expected{"active_contraction",
+                                          "added_mass",
+                                          "compressibility",
+                                          "contour_bias",
+                                          "density_error",
+                                          "elastic_support",
+                                          "fibre_reinforcement",
+                                          "force_scale",
+                                          "foundation",
+                                          "geometric_nonlinearity",
+                                          "gravity",
+                                          "image_scale",
+                                          "load_offset",
+                                          "load_rotation",
+                                          "mass_damping",
+                                          "period_elongation",
+                                          "rigid_drift",
+                                          "sensor_rotation",
+                                          "stiff_inclusion",
+                                          "strain_stiffening",
+                                          "time_offset",
+                                          "viscoelasticity",
+                                          "viscous_damping"};
+  EXPECT_EQ(effects, expected);
+}
+
+// The tangents are judged by their prior: a sensor drifts by a hundredth of the body, and comes late by one frame.
+TEST(Proposals, OfSensorsAreAsLargeAsErrorsOfSensorsAre) {
+  constexpr double kDuration = 2.0, kInterval = 0.02;  // of proposals_of
+  const TetMesh mesh = bar_mesh(2);
+  const Model base(box_settings(kBase, kObservations), mesh);
+  const auto spread = [&](const std::string& effect, std::size_t number) {
+    const Model model(box_settings(with(proposals_of(effect, base).at(number).entry), kObservations), mesh);
+    return model.parameters().free().at(1).prior.spread;
+  };
+  const double size = std::sqrt(0.1 * 0.1 + 2 * 0.02 * 0.02);
+  EXPECT_NEAR(spread("rigid_drift", 0) * kDuration, 0.01 * size, 1e-6 * size);
+  EXPECT_NEAR(spread("rigid_drift", 1) * kDuration, 0.01, 1e-6);
+  EXPECT_NEAR(spread("time_offset", 0), kInterval, 1e-6);
+  EXPECT_NEAR(spread("image_scale", 0), 0.05, 1e-6);
+}
+
 TEST(Proposals, NeedWhatTheyActOn) {
   const TetMesh mesh = bar_mesh(2);
   const Model loose(box_settings({kBase[0], kBase[1], "gravity: {acceleration: [0, 0, -9.81]}"}), mesh);
