@@ -39,6 +39,21 @@ TEST(SingleFactor, SolvesToSixDigits) {
   }
 }
 
+// CHOLMOD would choose a factor of another layout for so few unknowns.
+TEST(SingleFactor, SolvesAFewUnknowns) {
+  for (const int size : {1, 3, 12}) {
+    SparseMatrix k(size, size);
+    for (int i = 0; i < size; ++i) k.insert(i, i) = 2.0 + i;
+    for (int i = 0; i + 1 < size; ++i) k.insert(i + 1, i) = k.insert(i, i + 1) = -1.0;
+    k.makeCompressed();
+    SparseSolver solver;
+    solver.factorize(k);
+    const Eigen::VectorXd x = random_vector(size, 1.0, 3), b = k * x;
+    EXPECT_LT((solver.solve(b) - x).norm(), 1e-12);
+    EXPECT_LT((solver.solve_roughly(b) - x).norm(), 1e-5);
+  }
+}
+
 TEST(SingleFactor, LeavesZeroAlone) {
   const SparseMatrix k = held_stiffness(2);
   SparseSolver solver;
