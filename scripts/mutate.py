@@ -170,8 +170,8 @@ def write_page(root, layers, path):
 def main():
     parser = argparse.ArgumentParser(prog='mutate', description=__doc__.split('\n')[0])
     parser.add_argument('root')
-    parser.add_argument('--layers', default=','.join(TESTS))
-    parser.add_argument('--each', type=int, default=10, help='mutants of each layer')
+    parser.add_argument('--layers', default=','.join(TESTS), help='as in filter:20,fem')
+    parser.add_argument('--each', type=int, default=10, help='mutants of each layer that has no number')
     parser.add_argument('--seed', type=int, default=1)
     parser.add_argument('--again', action='store_true', help='try those again that survived, as after a change of the tests')
     parser.add_argument('--page', help='file for the scores and the survivors')
@@ -182,10 +182,11 @@ def main():
     if os.path.exists(output):
         with open(output) as file:
             known = json.load(file)
-    for layer in arguments.layers.split(','):
-        if layer not in TESTS:
-            parser.error('--layers: found %s; allowed: %s' % (layer, ', '.join(TESTS)))
-        total, drawn = sample(arguments.root, layer, arguments.each, arguments.seed)
+    for wanted in arguments.layers.split(','):
+        layer, _, count = wanted.partition(':')
+        if layer not in TESTS or not (count or '1').isdigit():
+            parser.error('--layers: found %s; allowed: %s, each with a number behind a colon or without' % (wanted, ', '.join(TESTS)))
+        total, drawn = sample(arguments.root, layer, int(count or arguments.each), arguments.seed)
         stages = None
         for mutant in drawn:
             key = key_of(mutant)
