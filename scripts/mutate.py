@@ -151,7 +151,7 @@ def write_page(root, layers, path):
     lines = ['# Mutants', '',
              '`scripts/mutate` changes one place of the code at a time and runs the tests of the layer. A mutant is killed when a test '
              'fails. This page is written by `scripts/mutate --page`. Tests that take longer than %g s are left out, so the scores are '
-             'lower bounds.' % LONGEST, '', '| layer | mutants in all | drawn | not compiled | killed | survived | score |', '|---|---|---|---|---|---|---|']
+             'lower bounds. But tests were written for survivors of these very samples, so another seed tells more.' % LONGEST, '', '| layer | mutants in all | drawn | not compiled | killed | survived | score |', '|---|---|---|---|---|---|---|']
     for layer, (total, drawn) in layers.items():
         found = collections.Counter(mutant['verdict'] for mutant in drawn)
         counted = found['killed'] + found['survived']
