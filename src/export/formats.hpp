@@ -28,4 +28,10 @@ ExportFile febio_file(const ExportedModel& model);
 /// the nodes on edges are dropped and their forces go to the corners.
 ExportFile sofa_file(const ExportedModel& model);
 
+/// Returns a layer of OpenUSD as text (`.usda`): a deformable body of the Omni Physics schemas on a `TetMesh`, attached
+/// where it is fixed. What these schemas lack are attributes `tissueStiffness:...`: `load` [N] of every point, and
+/// `youngsModulus` [Pa], `poissonsRatio` and `density` [kg/m^3] of every tetrahedron. Nodes on edges are dropped, as in
+/// `sofa_file`.
+ExportFile usd_file(const ExportedModel& model);
+
 }  // namespace tissue_stiffness

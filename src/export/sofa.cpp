@@ -4,11 +4,11 @@
 #include <limits>
 #include <sstream>
 
+#include "export/corner_forces.hpp"
 #include "export/formats.hpp"
 #include "export/material_groups.hpp"
 #include "export/xml.hpp"
 #include "meshing/elevate.hpp"
-#include "meshing/surface.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -26,22 +26,6 @@ std::vector<std::string> remarks_of(const ExportedModel& model) {
   const double ratio = model.poisson_ratio[0];
   if ((model.poisson_ratio.array() != ratio).any())
     out.emplace_back("a SOFA that takes one Poisson's ratio refuses or ignores those of the other tetrahedra");
-  return out;
-}
-
-// Gives half of the force on each edge's node to both corners. That is the load of the 4-node tetrahedra, as their
-// displacement is linear along an edge.
-Eigen::Matrix3Xd at_corners(const TetMesh& mesh, const Eigen::Matrix3Xd& force) {
-  Eigen::Matrix3Xd out = force.leftCols(mesh.corner_count);
-  std::vector<char> done(static_cast<std::size_t>(mesh.node_count()), 0);
-  for (int e = 0; mesh.quadratic() && e < mesh.tet_count(); ++e) {
-    for (std::size_t k = 0; k < kTetEdges.size(); ++k) {
-      const int middle = mesh.tets(4 + static_cast<Eigen::Index>(k), e);
-      if (done[static_cast<std::size_t>(middle)] != 0) continue;
-      done[static_cast<std::size_t>(middle)] = 1;
-      for (const int end : kTetEdges[k]) out.col(mesh.tets(end, e)) += 0.5 * force.col(middle);
-    }
-  }
   return out;
 }
 
@@ -85,7 +69,7 @@ void write_fixed(const ExportedModel& model, std::ostream& out) {
 }
 
 void write_load(const ExportedLoad& load, const TetMesh& mesh, std::ostream& out) {
-  const Eigen::Matrix3Xd all = at_corners(mesh, load.force);
+  const Eigen::Matrix3Xd all = corner_forces(mesh, load.force);
   std::ostringstream indices, forces;
   forces.precision(out.precision());
   for (Eigen::Index i = 0; i < all.cols(); ++i) {

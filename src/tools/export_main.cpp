@@ -26,7 +26,8 @@ const std::map<std::string, Format>& formats() {
   static const std::map<std::string, Format> all = {{"vtu", {".vtu", vtu_file}},
                                                     {"calculix", {".inp", calculix_file}},
                                                     {"febio", {".feb", febio_file}},
-                                                    {"sofa", {".scn", sofa_file}}};
+                                                    {"sofa", {".scn", sofa_file}},
+                                                    {"usd", {".usda", usd_file}}};
   return all;
 }
 

@@ -44,7 +44,8 @@ TEST_F(Export, WritesEveryFormatFromAFolderOrAFile) {
   const std::vector<std::pair<std::string, std::string>> formats = {{"vtu", "<UnstructuredGrid>"},
                                                                     {"calculix", "*ELASTIC"},
                                                                     {"febio", "<febio_spec"},
-                                                                    {"sofa", "TetrahedronFEMForceField"}};
+                                                                    {"sofa", "TetrahedronFEMForceField"},
+                                                                    {"usd", "def TetMesh"}};
   for (const auto& [format, content] : formats) {
     const Outcome outcome = call("export " + path("out/results.json") + " --to " + format + " -o " + path("bar." + format));
     EXPECT_EQ(outcome.code, 0) << outcome.text;
