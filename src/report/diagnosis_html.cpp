@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "report/course.hpp"
 #include "report/effect_words.hpp"
@@ -82,9 +83,9 @@ std::string answer(const Diagnosis& d) {
   const DiagnosisStep &first = d.steps.front(), &last = d.steps.back();
   if (d.steps.size() > 1) {
     text += modulus_answer("Young's modulus, with " + effect_list(d.final_effects), d) +
-            paragraph("The given model says " + moduli(first.parameters) + ". With " + effect_list(d.final_effects) +
-                      " the held-out error falls from " + millimetres(first.held_out_rms) + " to " +
-                      millimetres(last.held_out_rms) + "; the noise is " + millimetres(last.noise_floor) +
+            paragraph("The best fit of the given model says " + moduli(first.parameters) + ". With " +
+                      effect_list(d.final_effects) + " the held-out error falls from " + millimetres(first.held_out_rms) +
+                      " to " + millimetres(last.held_out_rms) + "; the noise is " + millimetres(last.noise_floor) +
                       ". Then: " + to_string(d.final_verdict) + ".");
   } else {
     text += modulus_answer("Young's modulus of the given model", d);
@@ -116,7 +117,7 @@ std::string belief_rows(const BeliefMap& b) {
     for (Eigen::Index third = 0; third < 3; ++third) {
       const double valid = b.probability(p, third);
       rows += "<td class=\"n\" style=\"background:rgba(213,94,0," + short_number(0.6 * (1.0 - valid), 2) + ")\">" +
-              short_number(100.0 * valid, 2) + " %</td>";
+              (valid < 1e-3 ? "&lt; 0.1" : short_number(100.0 * valid, 2)) + " %</td>";
     }
     rows += "</tr>";
   }
@@ -180,10 +181,13 @@ std::string story(const MissingEffect& c) {
   return text;
 }
 
-std::string parameter_words(const MissingEffect& c) {
+std::string parameter_words(const MissingEffect& c, const std::map<std::string, std::string>& units) {
   std::string text;
   for (const auto& [name, value] : c.parameters) {
-    text += (text.empty() ? "" : ", ") + effect_title(name) + " = " + short_number(value, 3);
+    const auto known = units.find(name);
+    const ShownUnit unit = known == units.end() ? ShownUnit{1.0, ""} : shown_unit(value, known->second);
+    text += (text.empty() ? "" : ", ") + parameter_title(name) + " = " + short_number(unit.scale * value, 3) +
+            (unit.name.empty() ? "" : " " + unit.name);
   }
   return text;
 }
@@ -196,13 +200,13 @@ std::string confusable_words(const MissingEffect& c) {
   return text;
 }
 
-std::string effect_card(const MissingEffect& c, bool in_set) {
+std::string effect_card(const MissingEffect& c, bool in_set, const std::map<std::string, std::string>& units) {
   const std::string width = short_number(std::clamp(100.0 * c.explained, 0.0, 100.0), 3);
   return "<li" + std::string(in_set ? " class=\"chosen\"" : "") + "><h3>" + escape_html(capital(effect_title(c.effect))) +
          "<span>" + (c.explained > 5e-4 ? percent(c.explained) : "0 %") +
          "</span></h3><div class=\"bar\"><i style=\"width:" + width + "%\"></i></div>" + paragraph(story(c)) +
          "<p class=\"soft\">" + belief(c) + " · size " + short_number(c.size, 2) + " sigma · " +
-         escape_html(parameter_words(c)) + "</p></li>";
+         escape_html(parameter_words(c, units)) + "</p></li>";
 }
 
 std::string effect_row(const MissingEffect& c) {
@@ -212,12 +216,12 @@ std::string effect_row(const MissingEffect& c) {
          cell(short_number(c.z, 2)) + "<td>" + escape_html(confusable_words(c)) + "</td></tr>";
 }
 
-std::string ranking(const Diagnosis& d) {
+std::string ranking(const Diagnosis& d, const std::map<std::string, std::string>& units) {
   std::string cards, rows;
   for (std::size_t i = 0; i < d.candidates.size(); ++i) {
     const MissingEffect& c = d.candidates[i];
     const bool in_set = std::find(d.set.begin(), d.set.end(), c.effect) != d.set.end();
-    if (i < kShownEffects) cards += effect_card(c, in_set);
+    if (i < kShownEffects) cards += effect_card(c, in_set, units);
     rows += effect_row(c);
   }
   if (cards.empty()) return "";
@@ -231,6 +235,14 @@ std::string ranking(const Diagnosis& d) {
           "class=\"n\">explains</th><th class=\"n\">held-out error after</th><th class=\"n\">probability</th><th "
           "class=\"n\">z</th><th>confusable with (cosine)</th></tr>" +
           rows + "</table></div></details>");
+}
+
+/// Says why the table's modulus is not the answer's.
+std::string fit_remark(const Diagnosis& d) {
+  if (d.estimate.parameters.empty()) return "";
+  return "<p class=\"soft\">The moduli of this table are best fits to the whole recording, which compare the models. "
+         "Young's "
+         "modulus at the top is the estimate from frame to frame, with the errors of mesh and inputs: use that one.</p>";
 }
 
 std::string staircase(const Diagnosis& d) {
@@ -249,9 +261,16 @@ std::string staircase(const Diagnosis& d) {
   return section("staircase", "The error, step by step",
                  "<div id=\"steps\"></div><div class=\"scroll\"><table><thead><tr><th>model</th><th class=\"n\">held-out "
                  "error</th><th class=\"n\">fitted frames</th><th class=\"n\">noise</th><th class=\"n\">Young's "
-                 "modulus</th><th class=\"n\" title=\"log evidence that the last effect gains\">log Bayes "
+                 "modulus of the fit</th><th class=\"n\" title=\"log evidence that the last effect gains\">log Bayes "
                  "factor</th></tr></thead>" +
-                     rows + "</table></div>");
+                     rows + "</table></div>" + fit_remark(d));
+}
+
+/// Says what the proposed model has beyond the given one.
+std::string change_list(const Diagnosis& d) {
+  std::string items;
+  for (const std::string& entry : d.entries) items += "<li><code>" + escape_html(entry) + "</code></li>";
+  return items.empty() ? "" : "<p><b>The proposed model has in addition:</b></p><ul>" + items + "</ul>";
 }
 
 }  // namespace
@@ -263,10 +282,10 @@ std::string diagnosis_html(const Diagnosis& d, const DiagnosisTexts& texts, cons
   page.heading = "What does the model miss?";
   page.subheading = short_path(texts.model) + " · " + short_path(texts.recording);
   page.body =
-      answer(d) + player(showing, !d.force.time.empty()) + fails(d) + valid(d) + ranking(d) + staircase(d) +
+      answer(d) + player(showing, !d.force.time.empty()) + fails(d) + valid(d) + ranking(d, texts.units) + staircase(d) +
       section(
           "model", "",
-          file_details("The given model", texts.model_text, "", !proposed) +
+          change_list(d) + file_details("The given model", texts.model_text, "", !proposed) +
               (proposed ? file_details("The proposed model: model_next.yaml", texts.next_model_text, texts.model_text, true)
                         : "")) +
       section("timings", "", "<p>The diagnosis took " + escape_html(short_number(d.seconds, 3)) + " s.</p>") +

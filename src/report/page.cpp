@@ -57,9 +57,16 @@ std::string model_choice(const std::vector<Replay>& replays) {
   return models.size() > 1 ? choice("model", "Model", models) : "";
 }
 
+/// Returns the clock with its scrubber. It stands below the picture that it moves, and never covers it.
+std::string player_bar() {
+  return "<div class=\"player\"><button type=\"button\" id=\"play\" aria-label=\"Play\">▶</button>"
+         "<input type=\"range\" id=\"scrub\" min=\"0\" value=\"0\" step=\"any\" aria-label=\"Time\">"
+         "<output id=\"clock\"></output><select id=\"speed\" aria-label=\"Speed\"></select></div>";
+}
+
 /// Returns the place of the surface in three dimensions, with its controls.
 std::string surface_place(bool arrows) {
-  return "<div id=\"surface\"></div><div id=\"colour-bar\"></div><div class=\"controls\">" +
+  return "<div id=\"surface\"></div>" + player_bar() + "<div id=\"colour-bar\"></div><div class=\"controls\">" +
          choice("colour", "Misfit in", {{"error", "mm"}, {"sigmas", "sigma"}}) +
          choice("span", "of", {{"frame", "this frame"}, {"all", "all frames"}}) +
          "<label class=\"slider\" title=\"Displacement, magnified\">motion ×<output id=\"magnify-value\">1</output>"
@@ -69,8 +76,11 @@ std::string surface_place(bool arrows) {
          std::string(arrows ? "<label class=\"tick\"><input type=\"checkbox\" id=\"arrows\" checked> missing force "
                               "<output id=\"arrow-scale\"></output></label>"
                             : "") +
+         "<label class=\"tick\"><input type=\"checkbox\" id=\"surroundings\" checked> axes, loads and supports</label>"
          "<label class=\"tick\"><input type=\"checkbox\" id=\"turn\"> turn</label>"
-         "<button type=\"button\" id=\"view\">Reset view</button></div>";
+         "<button type=\"button\" id=\"view\">Reset view</button>"
+         "<button type=\"button\" id=\"surface-png\">PNG</button></div>"
+         "<p class=\"soft\" id=\"picked\"></p>";
 }
 
 }  // namespace
@@ -121,16 +131,11 @@ std::string player(const Showing& showing, bool arrows) {
       "<i class=\"predicted\"></i>predicted outline</p>";
   const std::string motion =
       "<div class=\"controls\"><label>Show <select id=\"track\"></select></label> <label>along <select id=\"component\">"
-      "</select></label></div>" +
-      chart_place("motion");
-  const std::string bar =
-      "<div class=\"player\"><button type=\"button\" id=\"play\" aria-label=\"Play\">▶</button>"
-      "<input type=\"range\" id=\"scrub\" min=\"0\" value=\"0\" step=\"any\" aria-label=\"Time\">"
-      "<output id=\"clock\"></output><select id=\"speed\" aria-label=\"Speed\"></select></div>";
-  return section("replay", "Model against measurement",
-                 model_choice(showing.replays) + "<div class=\"stages\"><div class=\"stage\">" + surface_place(arrows) +
-                     "</div><div class=\"stage\">" + (showing.pictures.empty() ? "" : picture) + motion + "</div></div>" +
-                     bar);
+      "</select></label></div><div class=\"grid\">" +
+      chart_place("motion") + chart_place("force") + "</div>";
+  return section(
+      "replay", "Model against measurement",
+      model_choice(showing.replays) + surface_place(arrows) + (showing.pictures.empty() ? "" : picture) + motion);
 }
 
 std::string file_details(const std::string& summary, const std::string& text, const std::string& before, bool open) {

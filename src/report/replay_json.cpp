@@ -128,13 +128,21 @@ std::vector<double> clock(const std::vector<double>& times) {
   return out;
 }
 
+json load_json(const ReplayLoad& load) {
+  return {{"name", load.name},
+          {"unit", load.unit},
+          {"place", {load.place.x(), load.place.y(), load.place.z()}},
+          {"value", shorts(flat(load.value))}};
+}
+
 json replay_json(const Replay& replay) {
-  json tracks = json::array(), outlines = json::array(), rms = json::array();
+  json tracks = json::array(), outlines = json::array(), rms = json::array(), loads = json::array();
+  for (const ReplayLoad& load : replay.loads) loads.push_back(load_json(load));
   for (const ReplayTrack& track : replay.tracks) tracks.push_back(track_json(track));
   for (const ReplayOutline& outline : replay.outlines) outlines.push_back(outline_json(outline));
   for (const double value : replay.rms) rms.push_back(std::isfinite(value) ? json(value) : json(nullptr));
-  return {{"name", replay.name}, {"time", clock(replay.time)}, {"rms", rms}, {"surface", surface_json(replay.surface)},
-          {"tracks", tracks},    {"outlines", outlines}};
+  return {{"name", replay.name}, {"time", clock(replay.time)}, {"rms", rms},     {"surface", surface_json(replay.surface)},
+          {"tracks", tracks},    {"outlines", outlines},       {"loads", loads}, {"held", shorts(flat(replay.held))}};
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@ struct DiagnosisTexts {
   std::string model, recording, command_line;  ///< names as given
   std::string model_text, next_model_text;     ///< content of the model files
   std::vector<std::pair<std::string, std::string>> versions;
+  std::map<std::string, std::string> units;  ///< of the parameters of effects, by EFFECT.PARAMETER
 };
 
 /// Returns `diagnosis.json`: complete, interrupted_during (if it is not complete), verdict, set, probability_adequate,

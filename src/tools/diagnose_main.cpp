@@ -1,11 +1,13 @@
 #include <functional>
 #include <iostream>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "diagnosis/estimate_at_last.hpp"
 #include "diagnosis/replay_model.hpp"
+#include "effects/registry.hpp"
 #include "forward/for_each_index.hpp"
 #include "report/effect_words.hpp"
 #include "report/write_diagnosis.hpp"
@@ -35,6 +37,16 @@ void try_run(const std::string& what, const std::function<void()>& run) {
   } catch (const NumericalError& error) {
     std::cerr << "diagnose: " << what << " could not be run for the report: " << error.what() << "\n";
   }
+}
+
+std::map<std::string, std::string> parameter_units() {
+  std::map<std::string, std::string> out;
+  for (const EffectSpec& spec : effect_specs()) {
+    for (const ParameterSpec& p : spec.parameters) {
+      for (const std::string component : {"", "_x", "_y", "_z"}) out[spec.name + "." + p.name + component] = p.unit;
+    }
+  }
+  return out;
 }
 
 /// Computes what the report shows beyond the diagnosis: the estimate, and the free runs of the given model and of the last
@@ -111,6 +123,7 @@ int main(int argc, char** argv) {
     texts.model_text = read_text(texts.model);
     texts.next_model_text = extend_model(texts.model_text, diagnosis.entries, settings.directory, GatheredFiles(output));
     texts.versions = versions();
+    texts.units = parameter_units();
     write_diagnosis(diagnosis, texts, showing, output);
     progress.finish();
     if (json) {

@@ -2,10 +2,12 @@
 
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "estimation/map_stiffness.hpp"
 #include "estimation/patch_model.hpp"
+#include "estimation/replay_loads.hpp"
 #include "estimation/replay_recorder.hpp"
 #include "filter/consistency.hpp"
 #include "report/map_vtk.hpp"
@@ -19,6 +21,8 @@ namespace tissue_stiffness {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kMostShownLoads = 200000;  // some 30 MB
 
 double since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -69,7 +73,8 @@ class Run {
   /// Returns whether the frame was used; otherwise `reason` says why not.
   bool step(const Instant& instant, std::string& reason) {
     for (const LoadSample& sample : instant.loads) estimator_.add_load(sample);
-    if (settings_.map) loads_.insert(loads_.end(), instant.loads.begin(), instant.loads.end());
+    if (settings_.map || loads_.size() < kMostShownLoads)
+      loads_.insert(loads_.end(), instant.loads.begin(), instant.loads.end());
     const auto start = Clock::now();
     StepResult result;
     if (instant.frame.observations.empty()) {
@@ -156,7 +161,17 @@ class Run {
     Replay replay = recorder.finish();
     if (replay.time.empty()) return;  // of a very long recording the estimator keeps no frames
     replay.name = "the estimate";
+    if (settings_.map || loads_.size() < kMostShownLoads) show_loads(replay);
     run_.showing.replays.push_back(std::move(replay));
+  }
+
+  void show_loads(Replay& replay) const {
+    Model model(settings_, estimator_.mesh());
+    model.loads().drive(recording_.reader().first_stamp(), loads_);
+    std::map<std::string, double> means;
+    for (const ParameterEstimate& p : run_.results.parameters) means[p.name] = p.mean;
+    const ParameterSpace& space = model.parameters();
+    add_loads(model, space.theta(space.coordinates(means, space.prior_mean())), replay);
   }
 
   const ModelSettings& settings_;
@@ -166,8 +181,8 @@ class Run {
   EstimationRun run_;
   ConsistencySum nis_;
   NoiseSum noise_;
-  std::vector<Frame> frames_;  ///< those used, and the loads so far: for a map
-  std::vector<LoadSample> loads_;
+  std::vector<Frame> frames_;      ///< those used: for a map
+  std::vector<LoadSample> loads_;  ///< for a map, and for the report of a recording that has not too many
 };
 
 }  // namespace

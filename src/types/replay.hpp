@@ -34,6 +34,14 @@ struct ReplayOutline {
   Eigen::Matrix4Xd predicted;  ///< separate pieces (u0, v0, u1, v1) [pixel]
 };
 
+/// What acts on the body at a place, over the kept frames: the force of a load, or a prescribed motion.
+struct ReplayLoad {
+  std::string name;       ///< the effect and its region
+  std::string unit;       ///< N, or m of a prescribed motion
+  Eigen::Vector3d place;  ///< at rest [m]
+  Eigen::Matrix3Xd value;
+};
+
 /// The free run of a model compared with its recording, with few enough frames to be shown.
 struct Replay {
   std::string name;          ///< name of the model
@@ -42,6 +50,8 @@ struct Replay {
   std::vector<ReplayTrack> tracks;
   ReplaySurface surface;
   std::vector<ReplayOutline> outlines;  ///< outlines at the times of the camera images
+  std::vector<ReplayLoad> loads;
+  Eigen::Matrix3Xd held;  ///< places at rest that a support holds, few enough to be shown [m]
 };
 
 /// A camera image at reduced size.

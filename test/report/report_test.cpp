@@ -295,14 +295,16 @@ TEST(DiagnosisHtml, TellsTheStoryInOrder) {
                              "diagnose model.yaml x.bag",
                              "effects:\n  - a\n",
                              "effects:\n  - a\n  - <b>\n",
-                             {{"tissue_stiffness", "0.1.0"}}};
+                             {{"tissue_stiffness", "0.1.0"}},
+                             {{"viscous_damping.beta", "s"}}};
   const std::string page = diagnosis_html(example_diagnosis(), texts, example_showing());
   std::size_t at = 0;
   for (const std::string fragment :
-       {"an effect is missing", "12.00 kPa", "95 %: 11.85 to 12.15 kPa", "The given model says 19.00 kPa", "id=\"replay\"",
-        "id=\"fails\"", "quick vibrations", "would remove 91.0 % of the squared error", "0.300 mm to 0.110 mm",
-        "it is confusable with mass damping", "probability 94 %, leaves z = 1.2", "would remove nothing",
-        "excite two modes", "id=\"staircase\"", "<ins>  - &lt;b&gt;</ins>", "diagnose model.yaml x.bag"}) {
+       {"an effect is missing", "12.00 kPa", "95 %: 11.85 to 12.15 kPa", "The best fit of the given model says 19.00 kPa",
+        "id=\"replay\"", "id=\"fails\"", "quick vibrations", "would remove 91.0 % of the squared error",
+        "0.300 mm to 0.110 mm", "it is confusable with mass damping", "probability 94 %, leaves z = 1.2",
+        "would remove nothing", "excite two modes", "id=\"staircase\"", "modulus of the fit",
+        "best fits to the whole recording", "<ins>  - &lt;b&gt;</ins>", "diagnose model.yaml x.bag"}) {
     const std::size_t found = page.find(fragment, at);
     EXPECT_NE(found, std::string::npos) << fragment;
     if (found != std::string::npos) at = found;
@@ -310,6 +312,8 @@ TEST(DiagnosisHtml, TellsTheStoryInOrder) {
   EXPECT_EQ(data_of(page).at("diagnosis"), json::parse(diagnosis_json(example_diagnosis())));
   EXPECT_EQ(page.find("<own>"), std::string::npos);
   EXPECT_EQ(page.find("of the fit itself"), std::string::npos);
+  EXPECT_NE(page.find("beta (viscous_damping) = 2.00 ms"), std::string::npos);
+  EXPECT_NE(page.find("<li><code>viscous_damping: {beta: 1}</code></li>"), std::string::npos);
   Diagnosis fitted = example_diagnosis();
   fitted.estimate.state = EstimateState::no_data;
   EXPECT_NE(diagnosis_html(fitted, texts, {}).find("95 %: 11.85 to 12.15 kPa, of the fit itself"), std::string::npos);

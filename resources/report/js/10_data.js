@@ -69,6 +69,8 @@ const replays = showing.replays.map((coded) => ({
   time: coded.time,
   rms: coded.rms,
   outlines: coded.outlines,
+  held: shorts(coded.held),
+  loads: coded.loads.map((load) => ({ ...load, value: shorts(load.value) })),
   tracks: coded.tracks.map((t) => ({
     name: t.name,
     unit: t.unit,

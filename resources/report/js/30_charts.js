@@ -40,13 +40,14 @@ function addChart(host, make) {
   chart.draw = () => {
     if (chart.plot) chart.plot.destroy();
     host.replaceChildren();
-    const { title, note, controls, data, clock, height, ...options } = chart.make();
-    if (title) host.append(element("h3", {}, title));
+    const { title, note, controls, data, clock, height, table, ...options } = chart.make();
+    if (title) host.append(element("h3", {}, title, saveButtons(chart, title)));
     if (note) host.append(element("p", { className: "soft note" }, note));
     if (controls) host.append(controls);
     const size = { width: Math.max(200, host.clientWidth), height: height || (host.clientWidth < 480 ? 210 : 260) };
     const hooks = Object.assign({}, options.hooks);
     hooks.draw = [...(hooks.draw || []), (u) => { if (u.moveClock) u.moveClock(player.time); }];
+    chart.table = table || tableOf(options, data);
     chart.plot = new uPlot(Object.assign(size, {
       cursor: { y: false, points: { size: 7 }, drag: { x: true, y: false } },
     }, options, { hooks }), data, host);
@@ -71,6 +72,47 @@ function line(label, name, extra) {
   return Object.assign({
     label, stroke: colour(name), width: 2, points: { show: false }, value: (u, v) => shortNumber(v, 4), spanGaps: false,
   }, extra);
+}
+
+// The chart's numbers as columns with a heading.
+function tableOf(options, data) {
+  const label = (options.axes && options.axes[0].label) || "x";
+  return data.map((values, i) => ({ name: i === 0 ? label : options.series[i].label, values }));
+}
+
+function csvOf(table) {
+  const cell = (x) => (x === null || x === undefined || Number.isNaN(x) ? "" : typeof x === "string" ? '"' + x.replaceAll('"', '""') + '"' : String(x));
+  const rows = [table.map((c) => cell(c.name))];
+  for (let k = 0; k < Math.max(...table.map((c) => c.values.length)); ++k) rows.push(table.map((c) => cell(c.values[k])));
+  return rows.map((row) => row.join(",")).join("\r\n") + "\r\n";
+}
+
+function save(name, blob) {
+  const link = element("a", { href: URL.createObjectURL(blob), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+}
+
+const fileName = (title) => title.replace(/[^A-Za-z0-9]+/g, "_").replace(/^_|_$/g, "").toLowerCase() || "chart";
+
+// A canvas on the page's ground, below its title.
+function savePicture(name, canvas, title) {
+  const scale = devicePixelRatio, head = title ? 28 * scale : 0;
+  const sheet = element("canvas", { width: canvas.width, height: canvas.height + head }), context = sheet.getContext("2d");
+  context.fillStyle = colour("card");
+  context.fillRect(0, 0, sheet.width, sheet.height);
+  context.fillStyle = colour("text");
+  context.font = "600 " + 14 * scale + "px system-ui, sans-serif";
+  if (title) context.fillText(title, 8 * scale, 19 * scale);
+  context.drawImage(canvas, 0, head);
+  sheet.toBlob((blob) => save(fileName(name) + ".png", blob));
+}
+
+function saveButtons(chart, title) {
+  const button = (kind, act) => element("button", { type: "button", name: "save-" + kind, className: "save", title: "Save this plot as " + kind.toUpperCase(), onclick: act }, kind.toUpperCase());
+  return element("span", { className: "saves" },
+    button("csv", () => save(fileName(title) + ".csv", new Blob([csvOf(chart.table)], { type: "text/csv" }))),
+    button("png", () => savePicture(title, chart.plot.ctx.canvas, title)));
 }
 
 const timeSeries = { label: "time [s]", value: (u, v) => (finite(v) ? v.toFixed(clockDigits()) : "–") };

@@ -34,7 +34,7 @@ function startMotion() {
     const values = (list) => Array.from(list, (v) => (Number.isFinite(v) ? scale * v : null));
     return {
       title: track.name + ", " + c.name + " [" + unit + "]",
-      clock: true, height: innerWidth > 900 && !showing.pictures.length ? 340 : 0,
+      clock: true,
       data: [player.replay.time, values(c.measured), values(c.predicted)],
       scales: { x: { time: false } },
       axes: [axis("time since the first stamp [s]"), axis(null, { size: 62 })],
@@ -42,8 +42,21 @@ function startMotion() {
         line("predicted, " + player.replay.name, "predicted")],
     };
   });
-  tracks.addEventListener("change", () => { listComponents(); chart.draw(); });
-  components.addEventListener("change", chart.draw);
+  const force = startForce(() => player.replay.tracks[Number(tracks.value)], () => Number(components.value));
+  const draw = () => { chart.draw(); if (force) force.draw(); tellPoint(Number(tracks.value)); };
+  tracks.addEventListener("change", () => { listComponents(); draw(); });
+  components.addEventListener("change", draw);
+  if (surfaceView) {
+    surfaceView.onPick = (track) => { tracks.value = track; listComponents(); draw(); };
+    tellPoint(Number(tracks.value));
+  }
   let drawn = player.model;
-  player.listen(() => { if (drawn !== player.model) { drawn = player.model; chart.draw(); } });
+  player.listen(() => { if (drawn !== player.model) { drawn = player.model; draw(); } });
+}
+
+// What is plotted is marked on the surface.
+function tellPoint(track) {
+  if (!surfaceView) return;
+  surfaceView.choose(track);
+  if (surfaceView.tracked.length) $("picked").textContent = "Plotted: " + player.replay.tracks[track].name + ". A click on the surface chooses another point.";
 }

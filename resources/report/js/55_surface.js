@@ -45,66 +45,6 @@ function neighbours(rest, triangles, everMeasured) {
   });
 }
 
-// The missing force: from where it acts, a shaft and a head.
-class Arrows {
-  constructor(scene, rest, size) {
-    const { time, places, field } = page.arrows;
-    this.time = time;
-    this.places = shorts(places);
-    this.field = shorts(field);
-    this.count = this.places.length / 3;
-    this.longest = 0.22 * size;
-    const strengths = Float64Array.from({ length: this.field.length / 3 }, (x, i) => Math.hypot(...this.field.slice(3 * i, 3 * i + 3)));
-    this.most = quantile(strengths, 0.98) || 1;
-    // Each moves with the surface's nearest vertex.
-    this.vertex = Array.from({ length: this.count }, (x, i) => {
-      let best = 0, least = Infinity;
-      for (let v = 0; v < rest.length / 3; ++v) {
-        const far = [0, 1, 2].reduce((sum, a) => sum + (rest[3 * v + a] - this.places[3 * i + a]) ** 2, 0);
-        if (far < least) { least = far; best = v; }
-      }
-      return best;
-    });
-    const corners = 7, faces = [0, 1, 2, 0, 2, 1, 0, 1, 5, 1, 2, 5, 2, 0, 5, 3, 4, 5, 4, 3, 6, 3, 5, 6, 5, 4, 6];
-    const index = [];
-    for (let i = 0; i < this.count; ++i) for (const f of faces) index.push(corners * i + f);
-    this.geometry = new THREE.BufferGeometry();
-    this.geometry.setIndex(index);
-    this.geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(3 * corners * this.count), 3));
-    this.mesh = new THREE.Mesh(this.geometry, new THREE.MeshLambertMaterial({ side: THREE.DoubleSide }));
-    this.mesh.frustumCulled = false;
-    scene.add(this.mesh);
-    $("arrow-scale").textContent = "(longest: " + shortNumber(this.most, 2) + " N/kg)";
-  }
-
-  show(time, surface) {
-    this.mesh.visible = $("arrows").checked && player.replay === replays[0];
-    if (!this.mesh.visible) return;
-    const k = nearest(this.time, time), out = this.geometry.attributes.position.array;
-    for (let i = 0; i < this.count; ++i) {
-      const f = [0, 1, 2].map((a) => this.field[3 * (k * this.count + i) + a]);
-      const strength = Math.hypot(...f) || 1e-30, v = this.vertex[i];
-      const length = this.longest * Math.min(1.5, strength / this.most), width = 0.09 * this.longest * Math.min(1, Math.sqrt(strength / this.most));
-      const along = f.map((x) => x / strength), from = [0, 1, 2].map((a) => surface[3 * v + a]);
-      const other = Math.abs(along[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0];
-      const side = new THREE.Vector3(...along).cross(new THREE.Vector3(...other)).normalize();
-      const up = new THREE.Vector3(...along).cross(side);
-      const corner = (c, far, wide, turn) => {
-        const s = wide * Math.cos(turn), u = wide * Math.sin(turn);
-        for (let a = 0; a < 3; ++a) out[21 * i + 3 * c + a] = from[a] + far * along[a] + s * side.getComponent(a) + u * up.getComponent(a);
-      };
-      const third = (2 * Math.PI) / 3;
-      for (let c = 0; c < 3; ++c) {
-        corner(c, 0, 0.35 * width, c * third);
-        corner(3 + c, 0.62 * length, width, c * third);
-      }
-      corner(6, length, 0, 0);
-    }
-    this.geometry.attributes.position.needsUpdate = true;
-    this.geometry.computeVertexNormals();
-  }
-}
-
 class SurfaceView {
   constructor(host, renderer) {
     this.host = host;
@@ -122,8 +62,8 @@ class SurfaceView {
     canvas.addEventListener("pointerdown", () => { this.controls.enableZoom = true; }, { capture: true });
     canvas.addEventListener("wheel", (event) => { this.controls.enableZoom = event.ctrlKey || event.metaKey; }, { capture: true, passive: true });
     canvas.setAttribute("role", "img");
-    canvas.setAttribute("aria-label", "Surface of the model, coloured by misfit; drag to turn, Ctrl and wheel to zoom");
-    canvas.title = "Drag to turn, Ctrl and wheel to zoom";
+    canvas.setAttribute("aria-label", "Surface of the model, coloured by misfit; drag to turn, Ctrl and wheel to zoom, click to choose a point");
+    canvas.title = "Drag to turn, Ctrl and wheel to zoom, click to choose the point that is plotted";
     this.scene.add(new THREE.HemisphereLight(0xffffff, 0x99a2b0, 2.2));
     this.sun = new THREE.DirectionalLight(0xffffff, 1.6);
     this.scene.add(this.sun);
@@ -167,7 +107,15 @@ class SurfaceView {
     this.dots.frustumCulled = false;
     this.scene.add(this.dots);
     const [low, high] = this.restBox;
-    if (page.arrows) this.arrows = new Arrows(this.scene, rest, Math.hypot(...low.map((l, a) => high[a] - l)));
+    if (page.arrows) this.arrows = new MissingForce(this.scene, rest, Math.hypot(...low.map((l, a) => high[a] - l)));
+    this.surroundings = new Surroundings(this, rest, low, high);
+    this.mark = new THREE.BufferGeometry();
+    this.mark.setAttribute("position", new THREE.BufferAttribute(new Float32Array(3), 3));
+    this.marked = new THREE.Points(this.mark, new THREE.PointsMaterial({ size: 13 * Math.min(2, devicePixelRatio) / 2 + 3, sizeAttenuation: false, depthTest: false }));
+    this.marked.frustumCulled = false;
+    this.scene.add(this.marked);
+    this.chosen = -1;
+    this.listenForClicks();
   }
 
   addBox(rest) {
@@ -195,11 +143,75 @@ class SurfaceView {
       "at rest " + [0, 1, 2].map((i) => shortNumber(1e3 * (b[i] - a[i]), 3)).join(" × ") + " mm (x, y, z)"));
   }
 
+  // Where a place is on the canvas [pixel], and how far away.
+  project(at) {
+    const p = new THREE.Vector3(...at).project(this.camera);
+    return { x: 0.5 * (1 + p.x) * this.host.clientWidth, y: 0.5 * (1 - p.y) * this.host.clientHeight, depth: p.z };
+  }
+
+  placeLabel(label, at, shown) {
+    label.hidden = !shown;
+    if (!shown) return;
+    const { x, y } = this.project(at);
+    const clamp = (v, most) => Math.min(Math.max(v, 2), Math.max(2, most - 2));
+    label.style.left = clamp(x, this.host.clientWidth - label.offsetWidth) + "px";
+    label.style.top = clamp(y - label.offsetHeight, this.host.clientHeight - label.offsetHeight) + "px";
+  }
+
+  // Each tracked point belongs to the surface's vertex that is next to it at first.
+  followTracks() {
+    const { rest, displacement } = replays[0].surface;
+    const first = Float64Array.from(rest, (x, i) => x + displacement[i]);
+    this.trackVertex = this.tracked.map((t) => {
+      const c = replays[0].tracks[t].components, k = c[0].predicted.findIndex(Number.isFinite);
+      return nearestVertex(first, c.map((axis) => axis.predicted[Math.max(0, k)]));
+    });
+  }
+
+  // A click without a drag chooses the tracked point that is nearest to it on the screen, and of near ones the foremost.
+  listenForClicks() {
+    this.followTracks();
+    const canvas = this.renderer.domElement;
+    let down = null;
+    canvas.addEventListener("pointerdown", (event) => { down = { x: event.clientX, y: event.clientY }; });
+    canvas.addEventListener("pointerup", (event) => {
+      if (!down || Math.hypot(event.clientX - down.x, event.clientY - down.y) > 4) return;
+      const box = canvas.getBoundingClientRect();
+      this.pick(event.clientX - box.left, event.clientY - box.top);
+    });
+  }
+
+  pick(x, y) {
+    const position = this.geometry.attributes.position.array;
+    const seen = this.trackVertex.map((v, i) => {
+      const p = this.project(position.subarray(3 * v, 3 * v + 3));
+      return { i, far: Math.hypot(p.x - x, p.y - y), depth: p.depth };
+    });
+    const least = Math.min(...seen.map((p) => p.far));
+    if (!(least < 40)) return;
+    const best = seen.filter((p) => p.far < least + 12).sort((a, b) => a.depth - b.depth)[0];
+    if (best && this.onPick) this.onPick(this.tracked[best.i]);
+  }
+
+  choose(track) {
+    this.chosen = this.tracked.indexOf(track);
+    this.placeMark();
+    this.render();
+  }
+
+  placeMark() {
+    this.marked.visible = this.chosen >= 0;
+    if (!this.marked.visible) return;
+    const v = this.trackVertex[this.chosen];
+    this.mark.attributes.position.array.set(this.geometry.attributes.position.array.subarray(3 * v, 3 * v + 3));
+    this.mark.attributes.position.needsUpdate = true;
+  }
+
   resetView() {
     const centre = new THREE.Vector3(...this.low.map((l, i) => 0.5 * (l + this.high[i])));
     const radius = 0.5 * Math.hypot(...this.low.map((l, i) => this.high[i] - l));
     const narrow = Math.min(1, this.host.clientWidth / Math.max(1, this.host.clientHeight));
-    const distance = (1.02 * radius) / Math.sin((Math.PI / 180) * 16) / narrow;
+    const distance = (0.9 * radius) / Math.sin((Math.PI / 180) * 16) / narrow;
     this.controls.target.copy(centre);
     this.camera.position.copy(centre).add(new THREE.Vector3(0.72, -1, 0.55).normalize().multiplyScalar(distance));
     this.camera.near = distance / 100;
@@ -222,6 +234,8 @@ class SurfaceView {
     this.box.material.color.set(colour("edge"));
     this.dots.material.color.set(colour("text"));
     if (this.arrows) this.arrows.mesh.material.color.set(colour("force"));
+    this.marked.material.color.set(colour("accent"));
+    this.surroundings.render();
     this.renderer.render(this.scene, this.camera);
   }
 
@@ -240,6 +254,8 @@ class SurfaceView {
     this.paint(s, at.share > 0.5 ? next / 3 : from / 3);
     this.placeDots(time, magnify);
     if (this.arrows) this.arrows.show(time, position);
+    this.surroundings.show(time, position);
+    this.placeMark();
     this.render();
   }
 
@@ -292,6 +308,8 @@ class SurfaceView {
   }
 }
 
+let surfaceView = null;
+
 function startSurface() {
   const host = $("surface");
   let renderer;
@@ -303,6 +321,7 @@ function startSurface() {
     return;
   }
   const view = new SurfaceView(host, renderer);
+  surfaceView = view;
   const gradient = stops.map(([at, c]) => c + " " + 100 * at + "%").join(",");
   document.documentElement.style.setProperty("--misfit-scale", "linear-gradient(90deg," + gradient + ")");
   if (!view.tracked.length) $("measured").closest("label").remove();
@@ -315,6 +334,8 @@ function startSurface() {
     again();
   });
   $("glass").addEventListener("change", again);
+  $("surroundings").addEventListener("change", again);
+  $("surface-png").addEventListener("click", () => savePicture("surface", renderer.domElement, ""));
   if ($("arrows")) $("arrows").addEventListener("change", again);
   $("turn").addEventListener("change", () => view.turn($("turn").checked));
   $("view").addEventListener("click", () => view.resetView());

@@ -1,5 +1,6 @@
 // Every control of the page, used. What is not used here fails the test.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { surfaceColours, surfaceHash } from "./browser.js";
 
 const clock = async (page) => parseFloat(await page.textContent("#clock"));
@@ -60,6 +61,10 @@ async function useSurface(page) {
   assert.equal(await page.textContent("#magnify-value"), "10");
   await page.locator("#magnify").fill("0");
   if (await page.locator("#arrows").count()) await changesSurface(page, "hiding the missing force", () => page.click("#arrows"));
+  await changesSurface(page, "hiding loads and supports", () => page.click("#surroundings"));
+  assert.equal(await page.locator(".in-view:visible").count(), 0, "their words go as well");
+  await page.click("#surroundings");
+  assert.ok((await page.locator(".in-view:visible").count()) >= 3, "the axes have names");
   const glass = await page.isChecked("#glass");
   await page.click("#glass");
   assert.equal(await page.isChecked("#glass"), !glass);
@@ -97,6 +102,52 @@ async function useMotion(page) {
   }
 }
 
+// A click on the surface chooses the point that is plotted.
+async function pickPoint(page) {
+  const tracks = await page.evaluate(() => surfaceView.tracked.length);
+  if (tracks < 2) return;
+  await page.click("#view");
+  const title = () => page.textContent("[data-chart=motion] h3");
+  const goal = await page.evaluate(() => {
+    const seen = surfaceView.trackVertex.map((v, i) => ({ i, ...surfaceView.project(surfaceView.geometry.attributes.position.array.subarray(3 * v, 3 * v + 3)) }));
+    const other = seen.filter((p) => surfaceView.tracked[p.i] !== Number(document.getElementById("track").value));
+    return other.sort((a, b) => a.depth - b.depth)[0];
+  });
+  const before = await title(), box = await page.locator("#surface").boundingBox();
+  await page.mouse.click(box.x + goal.x, box.y + goal.y);
+  assert.notEqual(await title(), before, "a click on the surface changes the chart");
+  assert.ok((await title()).startsWith(await page.evaluate((i) => player.replay.tracks[surfaceView.tracked[i]].name + ",", goal.i)));
+  assert.ok((await page.textContent("#picked")).includes(await page.evaluate((i) => player.replay.tracks[surfaceView.tracked[i]].name, goal.i)));
+}
+
+// Every plot gives its numbers and its picture.
+async function savePlots(page) {
+  for (const kind of ["csv", "png"]) {
+    for (const button of await page.locator(`button[name=save-${kind}]`).all()) {
+      if (!(await button.isVisible())) continue;
+      const [download] = await Promise.all([page.waitForEvent("download"), button.click()]);
+      const file = readFileSync(await download.path());
+      assert.ok(download.suggestedFilename().endsWith("." + kind));
+      if (kind === "png") { assert.equal(file.subarray(1, 4).toString(), "PNG"); continue; }
+      const rows = file.toString().trim().split("\r\n"), width = rows[0].match(/"[^"]*"/g).length;
+      assert.ok(rows.length > 2 && width > 1, "numbers with headings: " + rows[0]);
+      for (const row of rows.slice(1)) assert.equal(row.split(",").length, width, row);
+    }
+  }
+  const [download] = await Promise.all([page.waitForEvent("download"), page.click("#surface-png")]);
+  assert.ok(readFileSync(await download.path()).length > 5000, "the surface's picture");
+}
+
+// The scrubber stands below the surface and covers neither it nor a chart.
+async function checkScrubber(page) {
+  const bar = await page.locator(".player").boundingBox();
+  for (const selector of ["#surface", "[data-chart=motion]", "#picture"]) {
+    if (!(await page.locator(selector).count())) continue;
+    const box = await page.locator(selector).boundingBox();
+    assert.ok(bar.y >= box.y + box.height || bar.y + bar.height <= box.y, "the scrubber lies over " + selector);
+  }
+}
+
 async function useRest(page) {
   for (const box of await page.locator("[data-chart] input[type=checkbox]").all()) {
     if (!(await box.isVisible())) continue;
@@ -120,7 +171,7 @@ async function useRest(page) {
 }
 
 const used = new Set(["play", "scrub", "speed", "colour", "span", "model", "measured", "magnify", "glass", "arrows", "turn", "view",
-  "track", "component", "theme", "camera"]);
+  "track", "component", "theme", "camera", "surroundings", "surface-png", "save-csv", "save-png"]);
 
 // Both outlines are on the picture, and it plays.
 async function checkPicture(page) {
@@ -162,6 +213,9 @@ export async function checkControls(page) {
   await usePlayer(page);
   await useSurface(page);
   await useMotion(page);
+  await pickPoint(page);
+  await checkScrubber(page);
+  await savePlots(page);
   await checkPicture(page);
   await useRest(page);
 }
