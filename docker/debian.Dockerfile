@@ -1,0 +1,12 @@
+# Debian 12 with its own ROS packages.
+# No test builds this image.
+#   docker build -f docker/debian.Dockerfile -t tissue_stiffness .
+#   docker run --rm -v "$PWD:/data" tissue_stiffness estimate /data/model.yaml /data/recording.bag --output /data/out
+FROM debian:12-slim
+WORKDIR /opt/tissue_stiffness
+COPY scripts/environment scripts/install_dependencies scripts/
+RUN scripts/install_dependencies --python && rm -rf /var/lib/apt/lists/*
+COPY . .
+RUN scripts/build
+ENTRYPOINT ["scripts/run"]
+CMD ["--help"]
