@@ -16,10 +16,18 @@ constexpr double kRedSigmas = 3.0;
 constexpr int kRings = 3;  // of facets around a measured node, over which its misfit is interpolated
 constexpr double kAmbient = 0.65;
 
+/// The scale of the report's surface, from blue over cream to red, which colour-blind people tell apart.
+const std::array<Eigen::Vector3f, 5> kScale = {
+    Eigen::Vector3f(0.231F, 0.435F, 0.714F), Eigen::Vector3f(0.435F, 0.718F, 0.788F),
+    Eigen::Vector3f(0.957F, 0.910F, 0.643F), Eigen::Vector3f(0.941F, 0.565F, 0.290F),
+    Eigen::Vector3f(0.710F, 0.090F, 0.184F)};
+
 Eigen::Vector3f heat_colour(double sigmas) {
   if (!std::isfinite(sigmas)) return Eigen::Vector3f::Constant(0.7F);
-  const double heat = std::min(std::abs(sigmas) / kRedSigmas, 1.0);
-  return {static_cast<float>(std::min(2.0 * heat, 1.0)), static_cast<float>(std::min(2.0 - 2.0 * heat, 1.0)), 0.1F};
+  const double place = 4.0 * std::min(std::abs(sigmas) / kRedSigmas, 1.0);
+  const auto below = std::min<std::size_t>(static_cast<std::size_t>(place), 3);
+  const auto share = static_cast<float>(place - static_cast<double>(below));
+  return (1.0F - share) * kScale[below] + share * kScale[below + 1];
 }
 
 /// `light`: from 0 in the shade to 1 in the light.

@@ -61,6 +61,7 @@ StiffnessPanel::StiffnessPanel(QWidget* parent) : rviz::Panel(parent), calls_(st
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(8, 8, 8, 8);
   build_header();
+  build_legend();
   layout->addWidget(modulus_view_ = new CurveView("E with its 95 % band", QColor(0x2f, 0x74, 0xc0), this), 3);
   layout->addWidget(misfit_view_ = new CurveView("misfit", QColor(0xc7, 0x77, 0x00), this), 3);
 
@@ -118,6 +119,25 @@ void StiffnessPanel::build_header() {
   layout->addLayout(below);
   layout->addWidget(state_reason_ = name_it(new QLabel(this), "state_reason"));
   state_reason_->setWordWrap(true);
+}
+
+/// Says what the colours of the surface and the other things in the view mean.
+void StiffnessPanel::build_legend() {
+  auto* row = new QHBoxLayout;
+  row->addWidget(new QLabel("Surface: misfit 0", this));
+  auto* scale = name_it(new QLabel(this), "legend");
+  scale->setMinimumWidth(60);
+  scale->setFixedHeight(12);
+  scale->setStyleSheet(
+      "background: qlineargradient(x1:0, y1:0, x2:1, y2:0, stop:0 #3b6fb6, stop:0.25 #6fb7c9, stop:0.5 #f4e8a4, "
+      "stop:0.75 #f0904a, stop:1 #b5172f); border-radius: 4px;");
+  row->addWidget(scale, 1);
+  row->addWidget(new QLabel("3 sigma", this));
+  auto* layout = static_cast<QVBoxLayout*>(this->layout());
+  layout->addLayout(row);
+  auto* words = new QLabel("Grey: not measured. White balls: measured points. Arrows: missing force.", this);
+  words->setWordWrap(true);
+  layout->addWidget(words);
 }
 
 void StiffnessPanel::build_buttons() {

@@ -36,6 +36,7 @@ class StiffnessPanel : public rviz::Panel {
 
  private:
   void build_header();
+  void build_legend();
   void build_buttons();
   void connect_to(const QString& node_namespace);
   void ask_what_was_added();
