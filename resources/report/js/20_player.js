@@ -16,7 +16,7 @@ const player = {
 
 // A hundredth of the recording can be told.
 function clockDigits() {
-  const times = replays.length ? player.replay.time : page.course.time, span = times[times.length - 1] - times[0];
+  const times = replays.length ? player.replay.time : page.course ? page.course.time : page.compare.runs[0].time, span = times[times.length - 1] - times[0];
   return span > 0 ? Math.min(6, Math.max(1, Math.ceil(2 - Math.log10(span)))) : 2;
 }
 

@@ -28,6 +28,7 @@ if (page.course) {
   const misfit = document.querySelector("[data-chart=misfit]");
   if (misfit) misfitChart(misfit);
 }
+if (page.compare) startComparison();
 if (page.diagnosis) { residualCharts(); staircase(); }
 if (replays.length) {
   startSurface();

@@ -10,6 +10,7 @@ export const browser = await chromium.launch(options);
 
 export async function open(file, settings = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, ...settings });
+  context.setDefaultTimeout(600000);  // a busy machine is slow
   const page = await context.newPage();
   const wrong = [];
   page.on("console", (message) => {

@@ -1,12 +1,12 @@
-// node report_test.js FOLDER-OF-ESTIMATE FOLDER-OF-DIAGNOSE [REPORT.html ...]
+// node report_test.js FOLDER-OF-ESTIMATE FOLDER-OF-DIAGNOSE COMPARISON.html [REPORT.html ...]
 import assert from "node:assert/strict";
 import { statSync } from "node:fs";
 import { resolve } from "node:path";
 import { browser, open } from "./browser.js";
-import { checkControls } from "./controls.js";
+import { checkControls, savePlots } from "./controls.js";
 import { checkDiagnosis, checkResults } from "./numbers.js";
 
-const [estimate, diagnose, ...others] = process.argv.slice(2).map((path) => resolve(path));
+const [estimate, diagnose, comparison, ...others] = process.argv.slice(2).map((path) => resolve(path));
 const pages = [estimate + "/report.html", diagnose + "/report.html", ...others];
 let failed = 0;
 
@@ -59,6 +59,19 @@ for (const file of pages) {
     assert.match(await page.textContent("#answer"), /\d [GMk]?Pa/);
   });
 }
+await visit("comparison", comparison, {}, async (page) => {
+  const names = await page.evaluate(() => JSON.parse(document.getElementById("data").textContent).compare.runs.map((r) => r.name));
+  assert.equal(await page.locator("#runs tbody tr").count(), names.length);
+  const titles = await page.locator("[data-chart] h3").allTextContents();
+  assert.ok(titles.some((t) => t.startsWith("Young's modulus")) && titles.some((t) => t.startsWith("Error of each frame")), titles.join());
+  for (const name of names) assert.ok((await page.textContent("[data-chart=compare-misfit] .u-legend")).includes(name));
+  await savePlots(page);
+  await page.screenshot(picture(comparison, "light"));
+});
+await visit("comparison on a phone", comparison, { viewport: { width: 390, height: 844 }, isMobile: true, colorScheme: "dark" }, async (page) => {
+  assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= 390, "nothing sticks out");
+  await page.screenshot(picture(comparison, "phone"));
+});
 await browser.close();
 console.log(failed === 0 ? "scripts/test_report: all passed" : `scripts/test_report: ${failed} FAILED`);
 process.exit(failed === 0 ? 0 : 1);

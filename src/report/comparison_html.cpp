@@ -1,0 +1,192 @@
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "report/comparison.hpp"
+#include "report/course.hpp"
+#include "report/page.hpp"
+#include "report/text.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kMostPoints = 1500;
+
+const ParameterEstimate* parameter(const ComparedRun& run, const std::string& name) {
+  const auto found = std::find_if(run.parameters.begin(), run.parameters.end(),
+                                  [&](const ParameterEstimate& p) { return p.name == name; });
+  return found == run.parameters.end() ? nullptr : &*found;
+}
+
+/// Returns the names of all parameters, Young's moduli first.
+std::vector<std::string> names(const std::vector<ComparedRun>& runs) {
+  std::set<std::string> all;
+  for (const ComparedRun& run : runs) {
+    for (const ParameterEstimate& p : run.parameters) all.insert(p.name);
+  }
+  std::vector<std::string> out(all.begin(), all.end());
+  std::stable_partition(out.begin(), out.end(), [](const std::string& name) { return is_young_modulus(name); });
+  return out;
+}
+
+/// Returns the unit with the prefix that suits the largest of all means.
+ShownUnit common_unit(const std::vector<ComparedRun>& runs, const std::string& name) {
+  double most = 0.0;
+  std::string unit;
+  for (const ComparedRun& run : runs) {
+    const ParameterEstimate* p = parameter(run, name);
+    if (p == nullptr) continue;
+    unit = p->unit;
+    most = std::isfinite(p->mean) ? std::max(most, std::abs(p->mean)) : most;
+  }
+  return shown_unit(most, unit);
+}
+
+std::string cell(const std::string& text, const std::string& kind = "") {
+  return "<td" + (kind.empty() ? "" : " class=\"" + kind + "\"") + ">" + escape_html(text) + "</td>";
+}
+
+/// Returns a length; both numbers of a run in the same unit can be compared at sight.
+std::string millimetres(double metres) {
+  return std::isfinite(metres) ? short_number(1e3 * metres, 3) + " mm" : "-";
+}
+
+std::string badge(const std::string& state) {
+  const std::string colour = state == "converged"                             ? "good"
+                             : state == "model_invalid" || state == "no_data" ? "bad"
+                                                                              : "warn";
+  std::string text = state;
+  std::replace(text.begin(), text.end(), '_', ' ');
+  return "<span class=\"badge " + colour + "\">" + escape_html(text) + "</span>";
+}
+
+std::string overview(const std::vector<ComparedRun>& runs) {
+  std::string rows;
+  for (const ComparedRun& run : runs) {
+    rows += "<tr>" + cell(run.name) + cell(short_path(run.model)) + cell(short_path(run.recording)) + "<td>" +
+            badge(run.state) + " <span class=\"soft\">" + escape_html(run.state_reason) + "</span></td>" +
+            cell(millimetres(run.rms_error), "n") + cell(millimetres(run.noise_rms), "n") +
+            cell(short_number(run.rms_error / run.noise_rms, 3), "n") + cell(std::to_string(run.frames), "n") + "</tr>";
+  }
+  return section("runs", "Runs",
+                 "<div class=\"scroll\"><table><thead><tr><th>run</th><th>model</th><th>recording</th><th>state</th><th "
+                 "class=\"n\">error</th><th class=\"n\">noise</th><th class=\"n\">error / noise</th><th "
+                 "class=\"n\">frames</th></tr></thead><tbody>" +
+                     rows + "</tbody></table></div>");
+}
+
+/// Ends of the axis that holds all intervals.
+struct Span {
+  double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
+  void add(double value) {
+    if (!std::isfinite(value)) return;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  double percent(double value) const { return high > low ? 100.0 * (value - low) / (high - low) : 50.0; }
+};
+
+/// Draws an interval as a bar with its mean as a dot.
+std::string interval_bar(const ParameterEstimate& p, const Span& span) {
+  if (!std::isfinite(p.lower95) || !std::isfinite(p.upper95)) return "<td></td>";
+  const double from = span.percent(p.lower95), to = span.percent(p.upper95);
+  return "<td class=\"whisker\"><div><i style=\"left:" + short_number(from, 4) + "%;width:" + short_number(to - from, 4) +
+         "%\"></i><b style=\"left:" + short_number(span.percent(p.mean), 4) + "%\"></b></div></td>";
+}
+
+std::string parameter_rows(const std::vector<ComparedRun>& runs, const std::string& name) {
+  const ShownUnit unit = common_unit(runs, name);
+  Span span;
+  for (const ComparedRun& run : runs) {
+    if (const ParameterEstimate* p = parameter(run, name)) span.add(p->lower95), span.add(p->upper95);
+  }
+  std::string rows;
+  for (const ComparedRun& run : runs) {
+    const ParameterEstimate* p = parameter(run, name);
+    if (p == nullptr) {
+      rows += "<tr>" + cell(run.name) + cell("not in this model") + cell("") + "<td></td></tr>";
+      continue;
+    }
+    const auto show = [&](double value) { return rounded(unit.scale * value, unit.scale * p->std); };
+    rows += "<tr>" + cell(run.name) + cell(show(p->mean) + " " + unit.name) +
+            cell(show(p->lower95) + " to " + show(p->upper95)) + interval_bar(*p, span) + "</tr>";
+  }
+  return "<h3>" + escape_html(parameter_title(name)) +
+         "</h3><div class=\"scroll\"><table><thead><tr><th>run</th><th>estimate</th><th>95 %</th><th "
+         "class=\"whisker\"></th></tr></thead><tbody>" +
+         rows + "</tbody></table></div>" + chart_place("compare:" + escape_html(name));
+}
+
+std::string parameters(const std::vector<ComparedRun>& runs) {
+  std::string content;
+  for (const std::string& name : names(runs)) content += parameter_rows(runs, name);
+  return section("parameters", "Parameters", content);
+}
+
+std::string models(const std::vector<ComparedRun>& runs) {
+  std::string content = file_details("Model of " + runs.front().name, runs.front().model_text, "", false);
+  for (std::size_t i = 1; i < runs.size(); ++i) {
+    const bool same = runs[i].model_text == runs.front().model_text;
+    content += same ? "<p>" + escape_html(runs[i].name) + " has the same model file.</p>"
+                    : file_details("Model of " + runs[i].name + ", with the lines marked that the first one lacks",
+                                   runs[i].model_text, runs.front().model_text, true);
+  }
+  return section("model", "Models", content);
+}
+
+/// Returns numbers times a scale, thinned to every `step`-th; null where there is none.
+json list(const std::vector<double>& values, double scale, std::size_t step) {
+  json out = json::array();
+  for (std::size_t k = 0; k < values.size(); k += step)
+    out.push_back(std::isfinite(values[k]) ? json(scale * values[k]) : json(nullptr));
+  return out;
+}
+
+json run_json(const std::vector<ComparedRun>& runs, const ComparedRun& run) {
+  const std::size_t step = 1 + run.time.size() / kMostPoints;
+  json all = json::object();
+  for (std::size_t i = 0; i < run.parameters.size(); ++i) {
+    const std::string& name = run.parameters[i].name;
+    const ShownUnit unit = common_unit(runs, name);
+    all[name] = {{"mean", list(run.mean[i], unit.scale, step)},
+                 {"lower", list(run.lower[i], unit.scale, step)},
+                 {"upper", list(run.upper[i], unit.scale, step)}};
+  }
+  return {{"name", run.name},
+          {"time", list(run.time, 1.0, step)},
+          {"misfit", list(run.misfit, 1e3, step)},
+          {"parameters", all}};
+}
+
+std::string data(const std::vector<ComparedRun>& runs) {
+  json all = json::array(), titles = json::object();
+  for (const ComparedRun& run : runs) all.push_back(run_json(runs, run));
+  for (const std::string& name : names(runs)) {
+    const std::string unit = common_unit(runs, name).name;
+    titles[name] = parameter_title(name) + (unit.empty() ? "" : " [" + unit + "]");
+  }
+  return json({{"compare", {{"runs", all}, {"titles", titles}}}, {"showing", {{"replays", json::array()}}}})
+      .dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+}  // namespace
+
+std::string comparison_html(const std::vector<ComparedRun>& runs, const std::string& command_line,
+                            const std::vector<std::pair<std::string, std::string>>& versions) {
+  Page page;
+  page.title = "Comparison - tissue stiffness";
+  page.heading = "Comparison";
+  page.subheading = std::to_string(runs.size()) + " runs";
+  page.body = overview(runs) + parameters(runs) +
+              section("fails", "Error over time",
+                      chart_place("compare-misfit") +
+                          "<p class=\"soft\">The error of each frame at the estimate of that moment.</p>") +
+              models(runs) + colophon(command_line, versions);
+  page.data = data(runs);
+  return page.html();
+}
+
+}  // namespace tissue_stiffness

@@ -1,0 +1,27 @@
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "report/comparison.hpp"
+#include "report/write_results.hpp"
+#include "tools/run_tool.hpp"
+
+int main(int argc, char** argv) {
+  using namespace tissue_stiffness;
+  CLI::App app("Shows runs of `estimate` beside each other, on one page.", "compare");
+  std::vector<std::string> folders;
+  std::string output;
+  bool quiet = false;
+  app.add_option("RUNS", folders, "folders that `estimate` wrote, two or more")->required()->expected(2, 100);
+  app.add_option("-o,--output", output, "the page, an HTML file")->required();
+  app.add_flag("--quiet", quiet, "no word about what was written");
+  app.footer("Example: compare before after -o compare.html");
+  return run_tool(app, argc, argv, [&] {
+    std::vector<ComparedRun> runs;
+    for (const std::string& folder : folders) runs.push_back(read_run(folder));
+    std::string command = "compare";
+    for (int i = 1; i < argc; ++i) command += std::string(" ") + argv[i];
+    write_text(output, comparison_html(runs, command, versions()));
+    if (!quiet) std::cout << "written " << output << "\n";
+  });
+}
