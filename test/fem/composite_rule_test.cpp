@@ -23,7 +23,7 @@ double integral(int nodes, int divisions, int a, int b) {
   return sum;
 }
 
-TEST(FacetQuadrature, IsExactToItsDegreeWholeAndInParts) {
+TEST(CompositeRule, IsExactToItsDegreeWholeAndInParts) {
   for (const int divisions : {1, 2, 3, 5}) {
     for (const int nodes : {3, 6}) {
       EXPECT_NEAR(integral(nodes, divisions, 0, 0), 0.5, 1e-12);
@@ -35,7 +35,7 @@ TEST(FacetQuadrature, IsExactToItsDegreeWholeAndInParts) {
 }
 
 // A function with a kink: the error of n parts goes down with n.
-TEST(FacetQuadrature, PartsResolveAKink) {
+TEST(CompositeRule, PartsResolveAKink) {
   const auto error = [](int divisions) {
     const FacetQuadrature rule(6, divisions);
     FacetNodes x(3, 6);
