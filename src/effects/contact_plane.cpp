@@ -34,25 +34,22 @@ class ContactPlane : public RigidContact {
  public:
   ContactPlane(const Value& arguments, const EffectContext& context)
       : RigidContact(context, all_facets(context.mesh), std::numeric_limits<double>::infinity()),
-        point_(arguments.at("point").as_vector3("m")),
-        normal_(arguments.at("normal").as_vector3("-")),
         default_penalty_(kRelativePenalty * context.young_modulus / mean_edge()) {
-    if (!(normal_.norm() > 0.0)) {
+    const Eigen::Vector3d normal = arguments.at("normal").as_vector3("-");
+    if (!(normal.norm() > 0.0)) {
       throw InputError(arguments.at("normal").path(), arguments.at("normal").shown(), "a vector that is not zero");
     }
-    normal_.normalize();
+    plane_ = std::make_shared<const Plane>(arguments.at("point").as_vector3("m"), normal.normalized());
   }
 
  private:
-  std::unique_ptr<const Obstacle> obstacle(double /*time*/, const Parameters& /*p*/) const override {
-    return std::make_unique<Plane>(point_, normal_);
-  }
+  std::shared_ptr<const Obstacle> obstacle(double /*time*/, const Parameters& /*p*/) const override { return plane_; }
   double offset(const Parameters& p) const override { return p[kGap]; }
   double penalty(const Parameters& p) const override { return p[kStiffness] > 0.0 ? p[kStiffness] : default_penalty_; }
   double friction(const Parameters& p) const override { return p[kFriction]; }
 
-  Eigen::Vector3d point_, normal_;
   double default_penalty_;
+  std::shared_ptr<const Obstacle> plane_;
 };
 
 }  // namespace

@@ -43,7 +43,7 @@ double RigidContact::mean_edge() const {
 
 template <typename Act>
 void RigidContact::for_each_inside(const Motion& motion, const Parameters& p, const Act& act) const {
-  const std::unique_ptr<const Obstacle> there = obstacle(motion.time, p);
+  const std::shared_ptr<const Obstacle> there = obstacle(motion.time, p);
   if (!there) return;
   const double k = penalty(p), out = offset(p);
   for (std::size_t i = 0; i < facets_.size(); ++i) {

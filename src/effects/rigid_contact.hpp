@@ -49,7 +49,7 @@ class RigidContact : public Effect, public NonlinearForce, public Contact {
   RigidContact(const EffectContext& context, std::vector<int> facets, double fine);
 
   /// Returns the obstacle; null where there is none yet.
-  virtual std::unique_ptr<const Obstacle> obstacle(double time, const Parameters& p) const = 0;
+  virtual std::shared_ptr<const Obstacle> obstacle(double time, const Parameters& p) const = 0;
   virtual double offset(const Parameters& p) const = 0;    ///< of the obstacle's surface, outwards [m]
   virtual double penalty(const Parameters& p) const = 0;   ///< k [N/m^3]
   virtual double friction(const Parameters& p) const = 0;  ///< mu [-]

@@ -112,7 +112,7 @@ class ToolContact : public RigidContact {
   std::string reacting_region() const override { return region_; }
 
  private:
-  std::unique_ptr<const Obstacle> obstacle(double time, const Parameters& p) const override {
+  std::shared_ptr<const Obstacle> obstacle(double time, const Parameters& p) const override {
     const std::optional<Pose> pose = course_->pose(time);
     if (!pose) return nullptr;
     const Eigen::Vector3d from = apply(*pose, from_), to = apply(*pose, to_);
@@ -122,10 +122,10 @@ class ToolContact : public RigidContact {
   double offset(const Parameters& p) const override { return p[kOffset]; }
 
   template <typename Shape>
-  std::unique_ptr<const Obstacle> moving(const Shape& shape, double time, const Pose& pose, const Parameters& p) const {
-    if (!(friction(p) > 0.0)) return std::make_unique<Shape>(shape);
-    return std::make_unique<MovingTool<Shape>>(shape, pose, *course_->pose(time - kVelocityStep),
-                                               *course_->pose(time + kVelocityStep));
+  std::shared_ptr<const Obstacle> moving(const Shape& shape, double time, const Pose& pose, const Parameters& p) const {
+    if (!(friction(p) > 0.0)) return std::make_shared<const Shape>(shape);
+    return std::make_shared<const MovingTool<Shape>>(shape, pose, *course_->pose(time - kVelocityStep),
+                                                     *course_->pose(time + kVelocityStep));
   }
 
   // A penalty in proportion to the tissue's modulus: where the tool's motion is given, the shape does not depend on it.
