@@ -39,12 +39,12 @@ struct Difference {
   double displacement, force;  // rms over the run, relative
 };
 
-Difference compare(const ModelSettings& settings, double end = 0.9) {
+Difference compare(const ModelSettings& settings, double end = 0.6) {
   Model model(settings, block_mesh(4));
   drive(model);
   EXPECT_TRUE(ContactModel::suits(model));
   FullModel::Options options;
-  options.step = 0.0005;
+  options.step = 0.001;
   options.spectral_radius = 0.9;
   const auto full = FullModel(model, options).start(prior(model), 0.0);
   const ContactModel contact(model, BasisOptions());
