@@ -49,11 +49,6 @@ std::string cell(const std::string& text, const std::string& kind = "") {
   return "<td" + (kind.empty() ? "" : " class=\"" + kind + "\"") + ">" + escape_html(text) + "</td>";
 }
 
-/// Returns a length; both numbers of a run in the same unit can be compared at sight.
-std::string millimetres(double metres) {
-  return std::isfinite(metres) ? short_number(1e3 * metres, 3) + " mm" : "-";
-}
-
 std::string badge(const std::string& state) {
   const std::string colour = state == "converged"                             ? "good"
                              : state == "model_invalid" || state == "no_data" ? "bad"

@@ -13,10 +13,6 @@ namespace {
 
 constexpr std::size_t kShownEffects = 6;  // in full; the others in a table to fold out
 
-std::string millimetres(double metres) {
-  return std::isfinite(metres) ? short_number(1e3 * metres, 3) + " mm" : "-";
-}
-
 std::string percent(double share) {
   return short_number(100.0 * share, 3) + " %";
 }

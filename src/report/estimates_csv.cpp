@@ -1,25 +1,15 @@
 #include "report/text.hpp"
 #include "report/write_results.hpp"
+#include "types/csv.hpp"
 
 namespace tissue_stiffness {
 namespace {
-
-/// By RFC 4180 a field is quoted where needed, and quotes are doubled.
-std::string field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"') quoted += '"';
-    quoted += c;
-  }
-  return quoted + "\"";
-}
 
 std::string header(const std::vector<ParameterEstimate>& parameters) {
   std::string line = "time [s],used,state";
   for (const ParameterEstimate& p : parameters) {
     for (const std::string part : {"mean", "std", "lower95", "upper95"}) {
-      line += "," + field(p.name + "." + part + " [" + p.unit + "]");
+      line += "," + csv_field(p.name + "." + part + " [" + p.unit + "]");
     }
   }
   return line + ",misfit_rms [m],misfit_rms [sigma],nis [-],nis_dof [-],outliers [-],reason,state_reason";
@@ -36,8 +26,8 @@ std::string row(const FrameRecord& frame, std::size_t parameter_count) {
     for (const double value : {p.mean, p.std, p.lower95, p.upper95}) line += "," + exact_number(value);
   }
   for (const double value : {frame.misfit_rms, frame.misfit_sigma, frame.nis}) line += "," + exact_number(value);
-  return line + "," + std::to_string(frame.dof) + "," + std::to_string(frame.outliers) + "," + field(frame.reason) + "," +
-         field(frame.state_reason);
+  return line + "," + std::to_string(frame.dof) + "," + std::to_string(frame.outliers) + "," + csv_field(frame.reason) +
+         "," + csv_field(frame.state_reason);
 }
 
 }  // namespace

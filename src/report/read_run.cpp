@@ -6,6 +6,7 @@
 
 #include "report/comparison.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "types/csv.hpp"
 #include "types/read_file.hpp"
 
 namespace tissue_stiffness {
@@ -43,26 +44,6 @@ void read_json(const std::string& file, ComparedRun& out) {
   }
 }
 
-/// Returns the cells of a CSV file's next line, which moves `at` behind it. Cells may be in double quotes.
-std::vector<std::string> next_row(const std::string& text, std::size_t& at) {
-  std::vector<std::string> cells(1);
-  bool quoted = false;
-  for (; at < text.size(); ++at) {
-    const char c = text[at];
-    if (c == '"') {
-      quoted = !quoted;
-    } else if (!quoted && c == ',') {
-      cells.emplace_back();
-    } else if (!quoted && c == '\n') {
-      ++at;
-      break;
-    } else {
-      cells.back() += c;
-    }
-  }
-  return cells;
-}
-
 double number(const std::string& cell) {
   return cell.empty() ? std::numeric_limits<double>::quiet_NaN() : std::strtod(cell.c_str(), nullptr);
 }
@@ -74,17 +55,16 @@ std::size_t column(const std::vector<std::string>& head, const std::string& name
 }
 
 void read_course(const std::string& file, ComparedRun& out) {
-  const std::string text = read_file(file, file, kAllowed, kLargestFile);
-  std::size_t at = 0;
-  const std::vector<std::string> head = next_row(text, at);
+  const std::vector<std::vector<std::string>> rows = split_csv(read_file(file, file, kAllowed, kLargestFile));
+  const std::vector<std::string> head = rows.empty() ? std::vector<std::string>() : rows.front();
   const std::size_t time = column(head, "time [s]", file), used = column(head, "used", file),
                     misfit = column(head, "misfit_rms [m]", file);
   std::vector<std::size_t> first;
   for (const ParameterEstimate& p : out.parameters) first.push_back(column(head, p.name + ".mean [" + p.unit + "]", file));
   out.mean.resize(first.size());
   out.lower = out.upper = out.mean;
-  while (at < text.size()) {
-    const std::vector<std::string> row = next_row(text, at);
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    const std::vector<std::string>& row = rows[k];
     if (row.size() != head.size()) throw InputError(file, "a row of " + std::to_string(row.size()) + " cells", kAllowed);
     if (row[used] != "1") continue;
     out.time.push_back(number(row[time]));

@@ -66,6 +66,10 @@ std::string short_number(double value, int digits) {
   return stream.str();
 }
 
+std::string millimetres(double metres) {
+  return std::isfinite(metres) ? short_number(1e3 * metres, 3) + " mm" : "-";
+}
+
 ShownUnit shown_unit(double value, const std::string& unit) {
   static const std::vector<std::string> scaled = {"Pa", "N", "m", "s"};
   static const std::vector<std::pair<double, std::string>> prefixes = {{1e9, "G"}, {1e6, "M"},  {1e3, "k"},

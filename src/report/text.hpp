@@ -14,6 +14,9 @@ std::string exact_number(double value);
 /// Writes a number for the reader: `digits` significant digits, no exponent between 1e-4 and 1e6; "-" when not finite.
 std::string short_number(double value, int digits);
 
+/// Writes a length: "0.35 mm"; "-" when not finite.
+std::string millimetres(double metres);
+
 /// A unit with the SI prefix that suits `value`: 30e3 Pa -> {1e-3, "kPa"}. Only Pa, N, m and s get a prefix.
 struct ShownUnit {
   double scale = 1.0;

@@ -19,9 +19,7 @@ int main(int argc, char** argv) {
   return run_tool(app, argc, argv, [&] {
     std::vector<ComparedRun> runs;
     for (const std::string& folder : folders) runs.push_back(read_run(folder));
-    std::string command = "compare";
-    for (int i = 1; i < argc; ++i) command += std::string(" ") + argv[i];
-    write_text(output, comparison_html(runs, command, versions()));
+    write_text(output, comparison_html(runs, join_arguments("compare", argc, argv), versions()));
     if (!quiet) std::cout << "written " << output << "\n";
   });
 }

@@ -119,7 +119,7 @@ int main(int argc, char** argv) {
       diagnosis = diagnose(settings, reader.mesh(), recording, options);
     } catch (const Interrupted&) {  // while the recording was read
     }
-    for (int i = 0; i < argc; ++i) texts.command_line += (i > 0 ? " " : "") + std::string(i > 0 ? argv[i] : "diagnose");
+    texts.command_line = join_arguments("diagnose", argc, argv);
     texts.model_text = read_text(texts.model);
     texts.next_model_text = extend_model(texts.model_text, diagnosis.entries, settings.directory, GatheredFiles(output));
     texts.versions = versions();

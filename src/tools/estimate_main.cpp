@@ -17,12 +17,6 @@ namespace {
 
 using namespace tissue_stiffness;
 
-std::string join_arguments(int argc, char** argv) {
-  std::string line = "estimate";
-  for (int i = 1; i < argc; ++i) line += std::string(" ") + argv[i];
-  return line;
-}
-
 // Returns the arguments that every row's results depend on.
 std::vector<std::string> row_arguments(const ModelOption& model, std::size_t frames) {
   std::vector<std::string> out;
@@ -126,7 +120,7 @@ int main(int argc, char** argv) {
     }
     progress.finish();
     steps.finish();
-    run.results.command_line = join_arguments(argc, argv);
+    run.results.command_line = join_arguments("estimate", argc, argv);
     if (run.results.map) write_text(output + "/map.vtk", run.map_vtk);
     write_results(run.results, run.showing, output);
     if (json) {

@@ -11,6 +11,7 @@
 #include "tissue_stiffness/types/error.hpp"
 #include "tools/read_text.hpp"
 #include "tools/versions.hpp"
+#include "types/csv.hpp"
 #include "types/read_file.hpp"
 
 namespace tissue_stiffness {
@@ -19,33 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kLargestFile = 100'000'000;  // [byte]
-
-// Splits CSV text into rows of cells (RFC 4180). Empty lines are left out.
-std::vector<std::vector<std::string>> split(const std::string& text) {
-  std::vector<std::vector<std::string>> rows;
-  std::vector<std::string> row(1);
-  bool quoted = false;
-  const auto end_row = [&] {
-    if (row.size() > 1 || !row.front().empty()) rows.push_back(row);
-    row.assign(1, "");
-  };
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (quoted && c == '"' && i + 1 < text.size() && text[i + 1] == '"') {
-      row.back() += text[++i];
-    } else if (c == '"') {
-      quoted = !quoted;
-    } else if (!quoted && c == ',') {
-      row.emplace_back();
-    } else if (!quoted && c == '\n') {
-      end_row();
-    } else if (quoted || c != '\r') {
-      row.back() += c;
-    }
-  }
-  end_row();
-  return rows;
-}
 
 /// FNV-1a: Fowler, Noll & Vo, http://www.isthe.com/chongo/tech/comp/fnv.
 class Hash {
@@ -95,7 +69,7 @@ void add_model(Hash& hash, const std::string& file) {
 Manifest read_manifest(const std::string& file) {
   const std::string what = "a CSV file with the columns model and recording";
   Manifest out;
-  for (std::vector<std::string>& cells : split(read_file(file, file, what, kLargestFile))) {
+  for (std::vector<std::string>& cells : split_csv(read_file(file, file, what, kLargestFile))) {
     if (out.columns.empty()) {
       out.columns = std::move(cells);
       continue;
@@ -134,13 +108,7 @@ std::string csv_row(const std::vector<std::string>& cells) {
   std::string out;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (i > 0) out += ',';
-    if (cells[i].find_first_of(",\"\r\n") == std::string::npos) {
-      out += cells[i];
-      continue;
-    }
-    out += '"';
-    for (const char c : cells[i]) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-    out += '"';
+    out += csv_field(cells[i]);
   }
   return out + "\n";
 }

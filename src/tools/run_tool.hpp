@@ -4,6 +4,7 @@
 #include <exception>
 #include <iostream>
 #include <new>
+#include <string>
 #include <type_traits>
 
 #include "tissue_stiffness/types/error.hpp"
@@ -12,6 +13,13 @@
 #include "types/freed_memory.hpp"
 
 namespace tissue_stiffness {
+
+/// Returns the command line as a reader would write it, with the tool's name and without its folder.
+inline std::string join_arguments(const std::string& tool, int argc, char** argv) {
+  std::string line = tool;
+  for (int i = 1; i < argc; ++i) line += std::string(" ") + argv[i];
+  return line;
+}
 
 /// Ends the parsing of a command line that asks for the versions alone.
 struct VersionWanted {};
