@@ -1,5 +1,6 @@
 #include "export/material_groups.hpp"
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <sstream>
@@ -23,6 +24,12 @@ std::vector<int> fixed_nodes(const ExportedModel& model) {
   for (std::size_t i = 0; i < model.fixed.size(); ++i) {
     if (model.fixed[i] != 0) nodes.push_back(static_cast<int>(i));
   }
+  return nodes;
+}
+
+std::vector<int> fixed_corners(const ExportedModel& model) {
+  std::vector<int> nodes = fixed_nodes(model);
+  nodes.erase(std::lower_bound(nodes.begin(), nodes.end(), model.mesh.corner_count), nodes.end());
   return nodes;
 }
 

@@ -1,6 +1,5 @@
 // SOFA's scene file. The names of its components are those of SOFA 23.12, where FixedConstraint became
 // FixedProjectiveConstraint.
-#include <algorithm>
 #include <limits>
 #include <sstream>
 
@@ -60,8 +59,7 @@ void write_body(const ExportedModel& model, const TetMesh& mesh, std::ostream& o
 }
 
 void write_fixed(const ExportedModel& model, std::ostream& out) {
-  std::vector<int> nodes = fixed_nodes(model);
-  nodes.erase(std::remove_if(nodes.begin(), nodes.end(), [&](int i) { return i >= model.mesh.corner_count; }), nodes.end());
+  const std::vector<int> nodes = fixed_corners(model);
   if (nodes.empty()) return;
   out << "    <FixedProjectiveConstraint template=\"Vec3\" indices=\"";
   for (std::size_t i = 0; i < nodes.size(); ++i) out << (i == 0 ? "" : " ") << nodes[i];

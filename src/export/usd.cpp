@@ -1,5 +1,4 @@
 // OpenUSD's text format, with the schemas of deformable bodies in Omni Physics 107 and later. TetMesh is in OpenUSD 24.03.
-#include <algorithm>
 #include <limits>
 #include <sstream>
 
@@ -136,8 +135,7 @@ ExportFile usd_file(const ExportedModel& model) {
   const std::vector<std::string> remarks = remarks_of(model, several);
   TetMesh mesh = model.mesh;
   if (mesh.quadratic()) drop_mid_nodes(mesh);
-  std::vector<int> fixed = fixed_nodes(model);
-  fixed.erase(std::remove_if(fixed.begin(), fixed.end(), [&](int i) { return i >= mesh.corner_count; }), fixed.end());
+  const std::vector<int> fixed = fixed_corners(model);
   std::ostringstream out;
   out.precision(std::numeric_limits<float>::max_digits10);  // the format's numbers are of single precision
   write_head(model, remarks, out);
