@@ -5,15 +5,14 @@
 #include <cmath>
 #include <set>
 
+#include "forward/force_steps.hpp"
 #include "tissue_stiffness/types/error.hpp"
 #include "types/body_size.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kLongestStep = 0.010;  // [s]
-constexpr double kLeastShare = 0.5;     // of the span that advance() is asked for, likewise
-constexpr double kSettled = 1e-9;       // body sizes
+constexpr double kSettled = 1e-9;  // body sizes
 constexpr int kMostIterations = 60;
 constexpr double kCut = 0.4, kLeastCut = 0.01;  // of a step
 constexpr double kCloser = 0.95;                // what a step has to leave of the distance
@@ -76,8 +75,7 @@ ContactTrajectory::ContactTrajectory(const ContactModel& owner, const Eigen::Vec
 void ContactTrajectory::advance(double time) {
   const double start = linear_.time(), span = time - start;
   if (!(span > 0.0)) return;
-  const double longest = std::min(kLongestStep, kLeastShare * span);
-  const int steps = static_cast<int>(std::ceil(span / longest * (1.0 - 1e-9)));
+  const int steps = force_steps(span);
   for (int k = 1; k <= steps; ++k) step(k == steps ? time : start + span * k / steps);
 }
 

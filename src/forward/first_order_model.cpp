@@ -1,17 +1,12 @@
 #include "forward/first_order_model.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "forward/extra_force.hpp"
 #include "forward/for_each_index.hpp"
+#include "forward/force_steps.hpp"
 #include "forward/reduced_trajectory.hpp"
 
 namespace tissue_stiffness {
 namespace {
-
-constexpr double kForceStep = 0.010;  // [s] at most between two evaluations of the force
-constexpr double kLeastShare = 0.5;   // of the span that advance() is asked for, likewise
 
 class FirstOrderTrajectory : public Trajectory {
  public:
@@ -33,8 +28,8 @@ class FirstOrderTrajectory : public Trajectory {
       linear_.advance(time);
       return;
     }
-    const double start = linear_.time(), longest = std::min(kForceStep, kLeastShare * span);
-    const int steps = static_cast<int>(std::ceil(span / longest * (1.0 - 1e-9)));
+    const double start = linear_.time();
+    const int steps = force_steps(span);
     std::vector<double> times;
     Eigen::MatrixXd coordinates(reduced_.basis().cols(), 2 * steps), modal_velocities(force_.size(), steps);
     for (int k = 0; k < steps; ++k) {

@@ -67,7 +67,7 @@ class ModelSystem : public DynamicSystem {
   /// Returns whether the mass can be lumped, and no force changes faster with the velocity than explicit steps can follow.
   bool supports_explicit_steps() const { return explicit_steps_; }
   void find_rotations(const Eigen::VectorXd& u, Eigen::Matrix3Xd& rotations) const override;
-  /// Returns the force of the springs that impose motions [N], see Model::find_reactions.
+  /// Returns the forces of the springs that impose motions, and of tools [N], see Model::find_reactions.
   Eigen::VectorXd reactions(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const;
   /// Returns kinetic and stored energy less the work of gravity [J].
   double energy(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const;
