@@ -96,10 +96,9 @@ Eigen::Matrix<double, 3, 4> MotionPath::pose(double time) const {
 
 void MotionPath::find_rest() {
   if (knots_.empty()) return;
-  Eigen::Matrix3d rotation;
-  for (int i = 0; i < 9; ++i) rotation(i % 3, i / 3) = at(rest_, 3 + i);
-  from_rest_rotation_ = rotation.inverse();
-  for (int i = 0; i < 3; ++i) rest_position_[i] = at(rest_, i);
+  const Eigen::Matrix<double, 3, 4> rest = pose(rest_);
+  from_rest_rotation_ = rest.leftCols<3>().inverse();
+  rest_position_ = rest.col(3);
 }
 
 // A component needs one row of R(t) only.

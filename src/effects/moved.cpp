@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "effects/registry.hpp"
+#include "effects/solids.hpp"
 #include "fem/facet_quadrature.hpp"
 
 namespace tissue_stiffness::effects {
@@ -30,9 +31,7 @@ class Moved : public Effect {
   void linear_terms(LinearTerms& out) const override {
     // Springs in proportion to the tissue's modulus: where the motion is given, the shape does not depend on it.
     const auto stiffness = [this](const Parameters& p) {
-      double sum = 0.0;
-      for (std::size_t s = 0; s < solids_; ++s) sum += p[kOwn + 2 * static_cast<Eigen::Index>(s)];
-      return 1.0 / (static_cast<double>(solids_) / (firmness_ * sum) + p[kCompliance]);
+      return 1.0 / (1.0 / (firmness_ * mean_young_modulus(p, kOwn, solids_)) + p[kCompliance]);
     };
     out.stiffness.push_back({springs_, stiffness, false});
     for (int i = 0; i < kMotions; ++i) {

@@ -19,13 +19,20 @@ int divisions(double edge, double fine) {
   return static_cast<int>(std::min<double>(kMostDivisions, std::max(1.0, std::ceil(edge / fine))));
 }
 
+double find_mean_edge(const TetMesh& mesh, const std::vector<int>& facets) {
+  double sum = 0.0;
+  for (const int f : facets) sum += (mesh.nodes.col(mesh.facets(0, f)) - mesh.nodes.col(mesh.facets(1, f))).norm();
+  return sum / static_cast<double>(facets.size());
+}
+
 }  // namespace
 
 RigidContact::RigidContact(const EffectContext& context, std::vector<int> facets, double fine)
     : mesh_(context.mesh),
       fem_(context.fem),
       facets_(std::move(facets)),
-      rule_(static_cast<int>(context.mesh.facets.rows()), divisions(mean_edge(), fine)),
+      mean_edge_(find_mean_edge(mesh_, facets_)),
+      rule_(static_cast<int>(context.mesh.facets.rows()), divisions(mean_edge_, fine)),
       slow_(kSlow * body_size(context.mesh.nodes)) {
   std::set<int> nodes;
   for (const int f : facets_) {
@@ -33,12 +40,6 @@ RigidContact::RigidContact(const EffectContext& context, std::vector<int> facets
     for (Eigen::Index a = 0; a < mesh_.facets.rows(); ++a) nodes.insert(mesh_.facets(a, f));
   }
   nodes_.assign(nodes.begin(), nodes.end());
-}
-
-double RigidContact::mean_edge() const {
-  double sum = 0.0;
-  for (const int f : facets_) sum += (mesh_.nodes.col(mesh_.facets(0, f)) - mesh_.nodes.col(mesh_.facets(1, f))).norm();
-  return sum / static_cast<double>(facets_.size());
 }
 
 template <typename Act>

@@ -54,7 +54,7 @@ class RigidContact : public Effect, public NonlinearForce, public Contact {
   virtual double penalty(const Parameters& p) const = 0;   ///< k [N/m^3]
   virtual double friction(const Parameters& p) const = 0;  ///< mu [-]
   /// Returns the mean length of the facets' edges [m].
-  double mean_edge() const;
+  double mean_edge() const { return mean_edge_; }
 
  private:
   /// A quadrature point that is inside the obstacle.
@@ -76,6 +76,7 @@ class RigidContact : public Effect, public NonlinearForce, public Contact {
   const Discretisation& fem_;
   std::vector<int> facets_, nodes_;
   std::vector<std::vector<int>> local_;  ///< local numbers of the nodes of each of these facets
+  double mean_edge_;
   FacetQuadrature rule_;
   double slow_;  ///< what slides more slowly sticks, nearly [m/s]
 };

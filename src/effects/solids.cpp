@@ -10,4 +10,10 @@ Solids::Solids(const EffectContext& context, int own) : own_(own) {
   }
 }
 
+double mean_young_modulus(const Parameters& p, int own, std::size_t solids) {
+  double sum = 0.0;
+  for (std::size_t s = 0; s < solids; ++s) sum += p[own + 2 * static_cast<Eigen::Index>(s)];
+  return sum / static_cast<double>(solids);
+}
+
 }  // namespace tissue_stiffness

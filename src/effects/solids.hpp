@@ -28,4 +28,8 @@ class Solids {
   std::vector<NeoHookean> solids_;
 };
 
+/// Returns the mean Young's modulus of all elasticities, whose parameters follow the `own` ones of an effect that
+/// needs_elasticity() [Pa].
+double mean_young_modulus(const Parameters& p, int own, std::size_t solids);
+
 }  // namespace tissue_stiffness

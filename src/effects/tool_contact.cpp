@@ -5,6 +5,7 @@
 
 #include "effects/registry.hpp"
 #include "effects/rigid_contact.hpp"
+#include "effects/solids.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness::effects {
@@ -98,8 +99,7 @@ class ToolContact : public RigidContact {
         from_(arguments.at("center").as_vector3("m")),
         to_(arguments.has("end") ? arguments.at("end").as_vector3("m") : from_),
         flat_(arguments.has("flat") && arguments.at("flat").as_boolean()),
-        solids_(context.solids.size()),
-        edge_(mean_edge()) {
+        solids_(context.solids.size()) {
     if (flat_ && from_ == to_) {
       throw InputError(arguments.path() + ": flat", arguments.has("end") ? "center and end at one place" : "no end",
                        "the cylinder's two ends, `center` and `end`");
@@ -131,9 +131,7 @@ class ToolContact : public RigidContact {
   // A penalty in proportion to the tissue's modulus: where the tool's motion is given, the shape does not depend on it.
   double penalty(const Parameters& p) const override {
     if (p[kStiffness] > 0.0) return p[kStiffness];
-    double sum = 0.0;
-    for (std::size_t s = 0; s < solids_; ++s) sum += p[kOwn + 2 * static_cast<Eigen::Index>(s)];
-    return kRelativePenalty * sum / static_cast<double>(solids_) / edge_;
+    return kRelativePenalty * mean_young_modulus(p, kOwn, solids_) / mean_edge();
   }
   double friction(const Parameters& p) const override { return p[kFriction]; }
 
@@ -142,7 +140,6 @@ class ToolContact : public RigidContact {
   Eigen::Vector3d from_, to_;  ///< in the tool's frame [m]
   bool flat_;
   std::size_t solids_;
-  double edge_;  ///< [m]
 };
 
 }  // namespace
@@ -153,8 +150,7 @@ EffectSpec tool_contact_spec() {
   spec.summary = "a rigid tool whose pose is measured touches the surface: a ball, a capsule or a flat punch";
   spec.formula =
       "-k min(g, 0) (n - mu v / sqrt(v^2 + v0^2)) at each surface point, g its distance from the tool - offset, v along "
-      "the "
-      "tool, v0 a hundredth of the body's size a second";
+      "the tool, v0 a hundredth of the body's size a second";
   spec.source = "penalty method, Wriggers 2006, sec. 5.3.2, Coulomb's law regularised, sec. 5.2; force per rest area";
   spec.parameters = {
       {"radius", "R", "m", kLeastRadius, kLargestRadius, ParameterSpec::Default::required, 0.0, NAN, 1, 0.0, 0.005},

@@ -194,8 +194,9 @@ std::string MeshError::why_not(const TetMesh& mesh) {
 
 std::string MeshError::why_not(const Model& model) {
   if (!model.settings().mesh.discretisation_error) return "the model file asks not to";
+  const bool in_full = studied_in_full(model);
   for (const Model::Part& part : model.parts()) {
-    if (!has_linear_form(part) && !studied_in_full(model)) return part.label + " has no linear form";
+    if (!in_full && !has_linear_form(part)) return part.label + " has no linear form";
   }
   return why_not(model.mesh());
 }
