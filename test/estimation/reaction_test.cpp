@@ -4,6 +4,7 @@
 #include <random>
 
 #include "bar.hpp"
+#include "felt_forces.hpp"
 #include "forward/full_model.hpp"
 #include "forward/load_error_response.hpp"
 #include "forward/reduced_model.hpp"
@@ -34,23 +35,7 @@ std::vector<LoadSample> poses(double interval = 0.005) {
 std::vector<Frame> measured(const std::string& young_modulus = std::to_string(kTruth)) {
   Model model(box_settings(effects(young_modulus)), bar_mesh());
   model.loads().drive(0.0, poses(0.001));
-  FullModel::Options options;
-  options.step = 0.001;
-  const FullModel full(model, options);
-  const auto run = full.start(model.parameters().theta(Eigen::VectorXd(0)), 0.0);
-  std::mt19937 random(5);
-  std::normal_distribution<double> noise(0.0, kForceNoise);
-  std::vector<Frame> frames;
-  for (int k = 1; k <= 45; ++k) {
-    run->advance(kFilmed * k);
-    Observation force;
-    force.kind = ObservationKind::reaction;
-    force.time = kFilmed * k;
-    force.points = run->output().tail<3>();
-    for (int i = 0; i < 3; ++i) force.points(i, 0) += noise(random);
-    frames.push_back({force.time, {force}});
-  }
-  return frames;
+  return felt_forces(model, 0.001, kFilmed, 45, kForceNoise);
 }
 
 StepResult estimated(Estimator& estimator, const std::vector<Frame>& frames) {

@@ -2,11 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
 #include "../block_model.hpp"
 #include "bar.hpp"
-#include "forward/full_model.hpp"
+#include "felt_forces.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -47,23 +46,7 @@ std::vector<LoadSample> poses(double offset = 0.0) {
 std::vector<Frame> felt(const TetMesh& mesh, double offset = 0.0, int count = 9) {
   Model model(palpation(std::to_string(kTruth), "false"), mesh);
   model.loads().drive(0.0, poses(offset));
-  FullModel::Options options;
-  options.step = 0.002;
-  const FullModel full(model, options);
-  const auto run = full.start(model.parameters().theta(Eigen::VectorXd(0)), 0.0);
-  std::mt19937 random(5);
-  std::normal_distribution<double> noise(0.0, kForceNoise);
-  std::vector<Frame> frames;
-  for (int k = 1; k <= count; ++k) {
-    run->advance(0.06 * k);
-    Observation force;
-    force.kind = ObservationKind::reaction;
-    force.time = 0.06 * k;
-    force.points = run->output().tail<3>();
-    for (int i = 0; i < 3; ++i) force.points(i, 0) += noise(random);
-    frames.push_back({force.time, {force}});
-  }
-  return frames;
+  return felt_forces(model, 0.002, 0.06, count, kForceNoise);
 }
 
 ParameterEstimate estimated(const ModelSettings& settings, const TetMesh& mesh, const std::vector<Frame>& frames) {
