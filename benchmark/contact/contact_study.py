@@ -3,32 +3,25 @@ usage: contact_study.py ROOT --output FOLDER [--seeds N] [--estimate PROGRAM]"""
 import argparse
 import json
 import os
-import subprocess
 import sys
 import time
 
-import genpy
 import numpy as np
 import rosbag
 import yaml
-from geometry_msgs.msg import PoseStamped, WrenchStamped
+from geometry_msgs.msg import PoseStamped
 
 import contact_truths as truths
 import meshes
-from foreign import START, simulate_header
+from foreign import simulate_header
+from rig_recordings import FAR_PRIOR, estimated, stamp, write_force
 from study_arguments import study_arguments
 
 WANTED = 0.02
-FAR_PRIOR = (0.4, 0.6, 1.7, 2.5)  # prior median over truth
-EDGE = 1e-6                       # m
-
-
-def stamp(t):
-    return genpy.Time.from_sec(START + t)
+EDGE = 1e-6  # m
 
 
 def write_bag(path, truth, forces, rng):
-    noise = truths.FORCE_NOISE * np.abs(forces).max()
     with rosbag.Bag(path, 'w') as bag:
         for k, t in enumerate(np.arange(0.0, truth.end + 0.05, 1 / truths.POSE_RATE)):
             message = PoseStamped(header=simulate_header(k, stamp(t)))
@@ -36,12 +29,7 @@ def write_bag(path, truth, forces, rng):
             p.x, p.y, p.z = np.array([*truth.center, truth.height(t)]) + truths.POSE_NOISE * rng.standard_normal(3)
             q.w = 1.0
             bag.write('/tool/pose', message, message.header.stamp)
-        for k, force in enumerate(forces):
-            message = WrenchStamped(header=simulate_header(k, stamp(k / truths.FPS)))
-            f = message.wrench.force
-            f.x, f.y, f.z = force + noise * rng.standard_normal(3)
-            bag.write('/tool/wrench', message, message.header.stamp)
-    return float(noise)
+        return write_force(bag, forces, truths.FPS, truths.FORCE_NOISE, rng)
 
 
 def model_of(truth, prior, noise):
@@ -77,23 +65,15 @@ def recorded(args, seed, folder):
                    'force': float(np.abs(forces).max())}, file)
 
 
-def estimated(args, folder):
-    out = os.path.join(folder, 'estimate')
-    begun = time.monotonic()
-    run = subprocess.run([args.estimate, os.path.join(folder, 'model.yaml'), os.path.join(folder, 'recording.bag'), '--output', out],
-                         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    if run.returncode not in (0, 3):
-        raise RuntimeError(run.stdout)
-    with open(os.path.join(out, 'results.json')) as file:
-        return json.load(file), time.monotonic() - begun
-
-
 def row_of(args, seed):
     folder = os.path.join(args.output, str(seed))
     recorded(args, seed, folder)
     with open(os.path.join(folder, 'truth.json')) as file:
         truth = json.load(file)
-    result, seconds = estimated(args, folder)
+    begun = time.monotonic()
+    result, _ = estimated(args.estimate, os.path.join(folder, 'model.yaml'), os.path.join(folder, 'recording.bag'),
+                          os.path.join(folder, 'estimate'))
+    seconds = time.monotonic() - begun
     modulus = result['parameters']['elasticity.young_modulus']
     low, high = modulus['interval95']
     return dict(truth, seed=seed, error=modulus['mean'] / truth['modulus'] - 1.0, inside=bool(low <= truth['modulus'] <= high),

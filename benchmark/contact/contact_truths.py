@@ -6,6 +6,8 @@ import sys
 
 import numpy as np
 
+from smooth_course import smooth
+
 DENSITY, POISSON = 1060.0, 0.45
 SIZE = (0.05, 0.05, 0.025)                # m; the block stands on a table, and its upper side is touched
 FPS, FRAMES, STEP = 25.0, 32, 0.01        # Hz, -, s
@@ -55,10 +57,8 @@ class Truth:
     def height(self, t):
         """Of the ball's lowest point: down, half up, and deeper."""
         times, depths = np.array([0.05, 0.45, 0.7, 1.1, 1.3]) * self.end / 1.3, np.array([0, 1, 0.5, 1.2, 0.3]) * self.depth
-        k = int(np.clip(np.searchsorted(times, t, side='right') - 1, 0, len(times) - 2))
-        s = np.clip((t - times[k]) / (times[k + 1] - times[k]), 0, 1)
         way = self.clear * (1.0 - np.clip(t / times[1], 0, 1))
-        return SIZE[2] + way - depths[k] - (depths[k + 1] - depths[k]) * s ** 3 * (10 - 15 * s + 6 * s * s)
+        return SIZE[2] + way - smooth(times, depths)(t)
 
     def config(self, simulate):
         c = copy.deepcopy(simulate.DEFAULTS)

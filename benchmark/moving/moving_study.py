@@ -3,30 +3,24 @@ usage: moving_study.py ROOT --output FOLDER [--seeds N] [--estimate PROGRAM] [--
 import argparse
 import json
 import os
-import subprocess
 import sys
 
 import numpy as np
 import rosbag
 import sensor_msgs.point_cloud2 as point_cloud2
 import yaml
-from geometry_msgs.msg import PoseStamped, WrenchStamped
+from geometry_msgs.msg import PoseStamped
 from scipy.spatial.transform import Rotation
 from sensor_msgs.msg import PointField
-import genpy
 
 import meshes
 import moving_truths as truths
-from foreign import START, simulate_header
+from foreign import simulate_header
+from rig_recordings import FAR_PRIOR, estimated, stamp, write_force
 from study_arguments import study_arguments
 
 WANTED = {'indentation': 0.02, 'retraction, force': 0.02, 'retraction, no force': 0.05, 'shaken base': 0.02}
 TOOL_AT = np.array([0.2, -0.1, 0.15])  # the pose's own place: only its motion counts
-FAR_PRIOR = (0.4, 0.6, 1.7, 2.5)       # prior median over truth
-
-
-def stamp(t):
-    return genpy.Time.from_sec(START + t)
 
 
 def write_pose(bag, truth, rng):
@@ -39,16 +33,6 @@ def write_pose(bag, truth, rng):
         p.x, p.y, p.z = rotation.apply(TOOL_AT) + shift + truths.POSE_NOISE[truth.kind] * rng.standard_normal(3)
         q.x, q.y, q.z, q.w = rotation.as_quat()
         bag.write('/tool/pose', message, message.header.stamp)
-
-
-def write_force(bag, forces, rng):
-    noise = truths.FORCE_NOISE * np.abs(forces).max()
-    for k, force in enumerate(forces):
-        message = WrenchStamped(header=simulate_header(k, stamp(k / truths.FPS)))
-        f = message.wrench.force
-        f.x, f.y, f.z = force + noise * rng.standard_normal(3)
-        bag.write('/tool/wrench', message, message.header.stamp)
-    return float(noise)
 
 
 def write_points(bag, positions, vertices, rng):
@@ -100,7 +84,7 @@ def recorded(args, kind, seed, folder):
     with rosbag.Bag(os.path.join(folder, 'recording.bag'), 'w') as bag:
         write_pose(bag, truth, rng)
         if kind != 'shaken base':
-            noise = write_force(bag, forces, rng)
+            noise = write_force(bag, forces, truths.FPS, truths.FORCE_NOISE, rng)
         if kind != 'indentation':
             write_points(bag, positions, surface, rng)
     prior = truth.modulus * float(rng.choice(FAR_PRIOR))
@@ -112,15 +96,9 @@ def recorded(args, kind, seed, folder):
                    'force': float(np.abs(forces).max())}, file)
 
 
-def estimated(args, case, folder):
+def estimated_case(args, case, folder):
     model = os.path.join(folder, case.replace(', ', '_').replace(' ', '_') + '.yaml')
-    out = model[:-5]
-    run = subprocess.run([args.estimate, model, os.path.join(folder, 'recording.bag'), '--output', out],
-                         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    if run.returncode not in (0, 3):
-        raise RuntimeError(run.stdout)
-    with open(os.path.join(out, 'results.json')) as file:
-        return json.load(file), run.returncode
+    return estimated(args.estimate, model, os.path.join(folder, 'recording.bag'), model[:-5])
 
 
 def judged(case, result, truth):
@@ -186,7 +164,7 @@ def main():
             with open(os.path.join(folder, 'truth.json')) as file:
                 truth = json.load(file)
             for case in cases_of(kind):
-                result, code = estimated(args, case, folder)
+                result, code = estimated_case(args, case, folder)
                 error, inside, width = judged(case, result, truth)
                 verdict = result['identifiable']['elasticity.young_modulus']['verdict']
                 state = result.get('state', '')

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 import foreign_bodies as bodies
+from smooth_course import smooth
 
 DENSITY, POISSON = 1060.0, 0.45
 FIRM = 3e4          # times the body's stiffness: springs by which a region follows
@@ -69,15 +70,6 @@ def in_region(region):
         return lambda x: np.linalg.norm(x - np.array(ball['center']), axis=1) < ball['radius']
     low, high = (np.array(region['box'][k]) for k in ('min', 'max'))
     return lambda x: np.all((x >= low) & (x <= high), axis=1)
-
-
-def smooth(times, values):
-    """A course through its knots without jolts."""
-    def course(t):
-        k = int(np.clip(np.searchsorted(times, t, side='right') - 1, 0, len(times) - 2))
-        s = np.clip((t - times[k]) / (times[k + 1] - times[k]), 0, 1)
-        return values[k] + (values[k + 1] - values[k]) * s ** 3 * (10 - 15 * s + 6 * s * s)
-    return course
 
 
 class Truth:
