@@ -167,10 +167,20 @@ std::string data(const std::vector<ComparedRun>& runs) {
       .dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
+/// Names each run by its folder, without the folders that all runs lie in.
+std::vector<ComparedRun> with_short_names(std::vector<ComparedRun> runs) {
+  std::vector<std::string> names;
+  for (const ComparedRun& run : runs) names.push_back(run.name);
+  names = without_common_folders(names);
+  for (std::size_t i = 0; i < runs.size(); ++i) runs[i].name = names[i];
+  return runs;
+}
+
 }  // namespace
 
-std::string comparison_html(const std::vector<ComparedRun>& runs, const std::string& command_line,
+std::string comparison_html(const std::vector<ComparedRun>& compared, const std::string& command_line,
                             const std::vector<std::pair<std::string, std::string>>& versions) {
+  const std::vector<ComparedRun> runs = with_short_names(compared);
   Page page;
   page.title = "Comparison - tissue stiffness";
   page.heading = "Comparison";

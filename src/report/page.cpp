@@ -1,5 +1,6 @@
 #include "report/page.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -94,6 +95,19 @@ std::string interruption_notice(const std::string& interrupted) {
 std::string short_path(const std::string& file) {
   const std::filesystem::path path(file);
   return (path.parent_path().filename() / path.filename()).string();
+}
+
+std::vector<std::string> without_common_folders(const std::vector<std::string>& paths) {
+  std::vector<std::string> out = paths;
+  for (std::size_t end; (end = out.front().find('/')) != std::string::npos;) {
+    const std::string folder = out.front().substr(0, end + 1);
+    if (!std::all_of(out.begin(), out.end(),
+                     [&](const std::string& path) { return path.compare(0, end + 1, folder) == 0; })) {
+      break;
+    }
+    for (std::string& path : out) path.erase(0, end + 1);
+  }
+  return out;
 }
 
 std::string Page::html() const {

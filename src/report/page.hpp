@@ -29,6 +29,9 @@ std::string interruption_notice(const std::string& interrupted);
 /// Returns the name of a file with its folder.
 std::string short_path(const std::string& file);
 
+/// Returns the paths without the folders that all of them lie in.
+std::vector<std::string> without_common_folders(const std::vector<std::string>& paths);
+
 /// Returns the place of a chart. The page's script knows `id` and fills the place.
 std::string chart_place(const std::string& id);
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "example.hpp"
+#include "report/page.hpp"
 #include "report/write_results.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
@@ -75,9 +76,9 @@ TEST_F(Comparison, ShowsRunsBesideEachOther) {
       comparison_html({read_run(folder_ + "/before"), read_run(folder_ + "/after")}, "compare a b", {});
   std::size_t at = 0;
   for (const std::string fragment :
-       {"id=\"runs\"", "/before", "converged", "/after", "model invalid", "Young&#39;s modulus (elasticity)", "412.3 kPa",
-        "408.2 to 416.5", "300.0 kPa", "tau (viscoelasticity)", "not in this model", "compare-misfit",
-        "<ins>- viscoelasticity: {tau: &lt;0.2&gt;}</ins>", "compare a b"}) {
+       {"id=\"runs\"", "<td>before</td>", "converged", "<td>after</td>", "model invalid",
+        "Young&#39;s modulus (elasticity)", "412.3 kPa", "408.2 to 416.5", "300.0 kPa", "tau (viscoelasticity)",
+        "not in this model", "compare-misfit", "<ins>- viscoelasticity: {tau: &lt;0.2&gt;}</ins>", "compare a b"}) {
     const std::size_t found = page.find(fragment, at);
     EXPECT_NE(found, std::string::npos) << fragment;
     if (found != std::string::npos) at = found;
@@ -89,6 +90,14 @@ TEST_F(Comparison, ShowsRunsBesideEachOther) {
   EXPECT_EQ(data.at("runs")[0].at("time").size(), 38U);
   EXPECT_NEAR(data.at("runs")[1].at("parameters").at("elasticity.young_modulus").at("mean").back(), 412.0, 0.1);
   EXPECT_EQ(data.at("titles").at("viscoelasticity.tau"), "tau (viscoelasticity) [s]");
+}
+
+TEST(WithoutCommonFolders, KeepsWhatTellsPathsApart) {
+  using Paths = std::vector<std::string>;
+  EXPECT_EQ(without_common_folders({"/a/b/c", "/a/b/d/c"}), (Paths{"c", "d/c"}));
+  EXPECT_EQ(without_common_folders({"a/one", "ab/one"}), (Paths{"a/one", "ab/one"}));
+  EXPECT_EQ(without_common_folders({"a/b", "a"}), (Paths{"a/b", "a"}));
+  EXPECT_EQ(without_common_folders({"a/b", "a/b"}), (Paths{"b", "b"}));
 }
 
 TEST_F(Comparison, NamesWhatIsMissing) {
