@@ -1,6 +1,7 @@
 // A force sensor has a wrong zero: a constant force acts in addition to the measured one.
 #include <algorithm>
 
+#include "effects/force_shares.hpp"
 #include "effects/registry.hpp"
 #include "fem/facet_quadrature.hpp"
 
@@ -10,7 +11,7 @@ namespace {
 class LoadOffset : public Effect {
  public:
   LoadOffset(const Value& arguments, const EffectContext& context)
-      : weights_(facet_mean(context.mesh, find_surface(arguments.at("region"), context.regions).facets)) {}
+      : weights_(force_shares(arguments.at("region"), context)) {}
 
   bool shareable() const override { return true; }
   void linear_terms(LinearTerms& out) const override {
@@ -47,7 +48,7 @@ EffectSpec load_offset_spec() {
   spec.formula = "F_0 int N_a dA / A";
   spec.source = "systematic error of a load's sensor: its zero";
   spec.parameters = {{"force", "F_0", "N", -1e4, 1e4, ParameterSpec::Default::required, 0.0, 0.0, 3}};
-  spec.keys = {{"region", "facets it acts on"}};
+  spec.keys = {{"region", "facets it acts on; where it holds none, its vertices in equal parts"}};
   spec.proposals = propose;
   spec.of_recording = true;
   return spec;

@@ -2,6 +2,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "effects/force_shares.hpp"
 #include "effects/registry.hpp"
 #include "fem/facet_quadrature.hpp"
 #include "tissue_stiffness/types/error.hpp"
@@ -28,8 +29,7 @@ std::shared_ptr<Course> course_on(const Value& region, const EffectContext& cont
 class LoadRotation : public Effect {
  public:
   LoadRotation(const Value& arguments, const EffectContext& context)
-      : weights_(facet_mean(context.mesh, find_surface(arguments.at("region"), context.regions).facets)),
-        course_(course_on(arguments.at("region"), context)) {}
+      : weights_(force_shares(arguments.at("region"), context)), course_(course_on(arguments.at("region"), context)) {}
 
   // Adds the difference between the rotated force and the measured one.
   void linear_terms(LinearTerms& out) const override {

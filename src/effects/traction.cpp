@@ -1,4 +1,5 @@
-// A measured total force is spread evenly over a patch of the surface.
+// A measured total force is spread evenly over a patch of the surface, or acts at points.
+#include "effects/force_shares.hpp"
 #include "effects/registry.hpp"
 #include "fem/facet_quadrature.hpp"
 
@@ -9,7 +10,7 @@ class Traction : public Effect {
  public:
   Traction(const Value& arguments, const EffectContext& context)
       : course_(load_course(arguments, LoadInput::Kind::wrench, context)) {
-    weights_ = facet_mean(context.mesh, find_surface(arguments.at("region"), context.regions).facets);
+    weights_ = force_shares(arguments.at("region"), context);
   }
 
   void linear_terms(LinearTerms& out) const override {
@@ -33,11 +34,12 @@ class Traction : public Effect {
 EffectSpec traction_spec() {
   EffectSpec spec;
   spec.name = "traction";
-  spec.summary = "measured total force, spread evenly over a patch of the surface; the torque is not used";
+  spec.summary =
+      "measured total force, spread evenly over a patch of the surface or acting at points; the torque is not used";
   spec.formula = "scale F(t) int N_a dA / A";
   spec.source = "Yang & Lin 2016, eq. 4, fourth term";
   spec.parameters = {{"scale", "s", "-", -1e3, 1e3, ParameterSpec::Default::optional, 1.0, 0.0, 1}};
-  spec.keys = {{"region", "facets it acts on"},
+  spec.keys = {{"region", "facets it acts on; where it holds none, its vertices in equal parts"},
                {"topic", "geometry_msgs/WrenchStamped"},
                {"course", "{file: f.csv} with rows of time [s], fx, fy, fz [N], tx, ty, tz [N m]; instead of topic"}};
   spec.load = LoadInput::Kind::wrench;

@@ -299,5 +299,34 @@ TEST(Traction, ResultantIsTheMeasuredForce) {
   EXPECT_LT((moment(mesh, zero(model), force) - centre.cross(expected)).norm(), 1e-13);
 }
 
+// Far from where it acts, a force bends the body alike, be it spread over the tip or at two points beside its middle.
+TEST(Traction, ActsAtPointsThatHoldNoFacet) {
+  const TetMesh mesh = bar_mesh(8, 2, 2);
+  VertexShape sides, inside;
+  for (int v = 0; v < mesh.corner_count; ++v) {
+    const Eigen::Vector3d x = mesh.nodes.col(v);
+    if (x[0] > 0.0999 && std::abs(std::abs(x[1] - 0.01) - 0.01) < 1e-6 && std::abs(x[2] - 0.01) < 1e-6)
+      sides.vertices.push_back(v);
+    if ((x - Eigen::Vector3d(0.05, 0.01, 0.01)).norm() < 1e-6) inside.vertices.push_back(v);
+  }
+  ASSERT_EQ(sides.vertices.size(), 2U);
+  ASSERT_EQ(inside.vertices.size(), 1U);
+  const auto sag = [&](const std::string& region) {
+    ModelSettings settings =
+        box_settings({kInertia, kLinear, "fixed: {region: clamp}", "traction: {region: " + region + ", topic: /w}"});
+    settings.regions.push_back({"sides", sides});
+    settings.regions.push_back({"inside", inside});
+    Model model(settings, mesh);
+    Eigen::VectorXd wrench = Eigen::VectorXd::Zero(6);
+    wrench[2] = -0.01;
+    model.loads().courses().at("/w")->add(0.0, wrench);
+    EXPECT_NEAR(resultant(ModelSystem(model, prior(model)).force(0.0, zero(model), zero(model)))[2], -0.01, 1e-15);
+    return Eigen::VectorXd(static_sag(model).segment(3 * inside.vertices.front(), 3));
+  };
+  const Eigen::VectorXd spread = sag("tip");
+  EXPECT_LT((sag("sides") - spread).norm(), 1e-3 * spread.norm());
+  EXPECT_NE(refusal([&] { sag("inside"); }).find("or vertices of the surface"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace tissue_stiffness
