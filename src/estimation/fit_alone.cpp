@@ -23,7 +23,8 @@ LinearFit fit_alone(const JointRows& rows, std::size_t recording, const Eigen::V
   }
   const auto tested = [&] {
     const Eigen::MatrixXd information = posterior.sum(best.normal, posterior.scales(best.normal)).information;
-    return rows.test(recording, best.z, posterior.covariance(best.normal).cwiseProduct(information).sum());
+    const double fitted = posterior.covariance(best.normal).cwiseProduct(information).sum();
+    return rows.test(recording, best.z, fitted, posterior.tolerated(best.normal));
   };
   test = tested();
   if (posterior.nuisance_count() > 0) {

@@ -87,12 +87,16 @@ InputModels::InputModels(const Model& model)
 NormalEquations::NormalEquations(Eigen::Index size, Eigen::Index constant_count)
     : information(Eigen::MatrixXd::Zero(size, size)),
       gradient(Eigen::VectorXd::Zero(size)),
-      constants(Eigen::MatrixXd::Zero(size, constant_count)) {}
+      constants(Eigen::MatrixXd::Zero(size, constant_count)),
+      constants_information(Eigen::MatrixXd::Zero(constant_count, constant_count)),
+      constants_gradient(Eigen::VectorXd::Zero(constant_count)) {}
 
 void NormalEquations::repeat(double times) {
   information *= times;
   gradient *= times;
   constants *= times;
+  constants_information *= times;
+  constants_gradient *= times;
   cost *= times;
   rows *= times;
 }
@@ -101,6 +105,8 @@ void NormalEquations::add(const NormalEquations& other, double times) {
   information += times * other.information;
   gradient += times * other.gradient;
   constants += times * other.constants;
+  constants_information += times * other.constants_information;
+  constants_gradient += times * other.constants_gradient;
   cost += times * other.cost;
   rows += times * other.rows;
 }
@@ -113,6 +119,7 @@ InputLinearisation::InputLinearisation(const MeshError::Question& question, Inpu
   const Eigen::MatrixXd& basis = models.linear_form().basis();
   motions_.resize(models.rigid.rows(), basis.cols() + models.rigid.cols());
   motions_ << basis, models.rigid;
+  note_measured_forces();
   if (models.base.settings().exact_inputs) return;
   for (const auto& [topic, course] : models.uncertain.loads().courses()) add_load(topic, course);
   for (std::size_t i = 0; i < models.base.settings().observations.size(); ++i) add_pose(i);
@@ -244,29 +251,60 @@ InputLinearisation::Row InputLinearisation::row(std::size_t index, const std::ve
   out.direct = Eigen::MatrixXd::Zero(rows, direct_columns());
   if (sensor_column_count() > 0)
     out.direct.leftCols(sensor_column_count()) = sensor_columns(frame, there, seen.rightCols(models_.rigid.cols()));
-  const Eigen::VectorXd precision = row_weights(there).cwiseQuotient(there.sigma.cwiseAbs2());
-  if (mesh_columns_ > 0) out.direct.rightCols(mesh_columns_) = mesh_columns(index, out.modes, precision);
+  if (mesh_columns_ > 0) out.direct.rightCols(mesh_columns_) = mesh_columns(index, out.modes, precision(frame, there));
   Prediction corrected = there;
   corrected.predicted += out.direct * z.tail(direct_columns());
   out.error = there.measured - corrected.predicted;
-  weigh_forces(frame, corrected, out);
-  out.precision = row_weights(corrected).cwiseQuotient(corrected.sigma.cwiseAbs2());
+  note_forces(frame, corrected, out);
+  out.precision = precision(frame, corrected);
   clean(out);
   return out;
 }
 
-// Counts the errors of each force sensor, and takes its noise as large as it was found to be.
-void InputLinearisation::weigh_forces(const Frame& frame, Prediction& corrected, Row& row) const {
+// Both the measured force and what the model leaves of it hold the sensor's noise. The rest of each is smoother.
+void InputLinearisation::note_measured_forces() {
+  std::map<int, std::vector<double>> times;
+  for (const Frame& frame : q_.frames) {
+    for (const Observation& observation : frame.observations) {
+      if (!traits_of(observation.kind).force) continue;
+      const double sigma = models_.base.settings().observations[static_cast<std::size_t>(observation.source)].noise;
+      measured_noise_[observation.source].add(frame.time, observation.points.col(0) / sigma);
+      times[observation.source].push_back(frame.time);
+    }
+  }
+  for (const auto& [source, noise] : measured_noise_) {
+    const Eigen::VectorXd weights = noise.weights();
+    for (std::size_t k = 0; k < times[source].size(); ++k)
+      force_weights_[source][times[source][k]] = weights[static_cast<Eigen::Index>(k)];
+  }
+}
+
+// A frame's few force rows cannot tell an outlier from a misfit; the sensor's neighbouring values can. Its noise is as
+// large as it was found to be.
+Eigen::VectorXd InputLinearisation::precision(const Frame& frame, const Prediction& p) const {
+  Eigen::VectorXd out = row_weights(p).cwiseQuotient(p.sigma.cwiseAbs2());
   Eigen::Index first = 0;
   for (const Observation& observation : frame.observations) {
     const Eigen::Index count = observation.row_count();
     if (traits_of(observation.kind).force) {
-      auto sigma = corrected.sigma.segment(first, count);
-      Eigen::Vector2d& sums = row.forces.try_emplace(observation.source, Eigen::Vector2d::Zero()).first->second;
-      sums +=
-          Eigen::Vector2d(row.error.segment(first, count).cwiseQuotient(sigma).squaredNorm(), static_cast<double>(count));
       const auto noise = force_noise_.find(observation.source);
-      if (noise != force_noise_.end()) sigma *= std::sqrt(noise->second);
+      const double weight = force_weights_.at(observation.source).at(frame.time);
+      const double variance = noise == force_noise_.end() ? 1.0 : noise->second;
+      out.segment(first, count) = weight / variance * p.sigma.segment(first, count).cwiseAbs2().cwiseInverse();
+    }
+    first += count;
+  }
+  return out;
+}
+
+void InputLinearisation::note_forces(const Frame& frame, const Prediction& corrected, Row& row) {
+  Eigen::Index first = 0;
+  for (const Observation& observation : frame.observations) {
+    const Eigen::Index count = observation.row_count();
+    if (traits_of(observation.kind).force) {
+      const auto error = row.error.segment(first, count).cwiseQuotient(corrected.sigma.segment(first, count));
+      residual_noise_[observation.source].add(frame.time, error);
+      for (Eigen::Index i = 0; i < count; ++i) row.forces.push_back(first + i);
     }
     first += count;
   }
@@ -356,6 +394,7 @@ Eigen::MatrixXd InputLinearisation::mesh_columns(std::size_t frame, const Eigen:
 
 // Visits every used frame, linearised at z, with the modal amplitudes of the loads' errors.
 void InputLinearisation::each_row(const Eigen::VectorXd& z, const Visitor& visit) {
+  residual_noise_.clear();
   correct_loads(z);
   const std::vector<Eigen::VectorXd> thetas = points(z.head(p_));
   const auto all = models_.runs->start_all(thetas, q_.start);
@@ -408,12 +447,14 @@ NormalEquations InputLinearisation::at(const Eigen::VectorXd& z) {
     out.constants.topRows(p_) += constants.topRows(p_);
     out.constants.bottomRows(c) += constants.bottomRows(c);
     out.constants.middleRows(p_, l) += amplitudes.transpose() * (seen.transpose() * row.constants);
+    const Eigen::MatrixXd weighted_constants = row.precision.asDiagonal() * row.constants;
+    out.constants_information += weighted_constants.transpose() * row.constants;
+    out.constants_gradient += weighted_constants.transpose() * row.error;
     out.cost += row.error.dot(row.precision.cwiseProduct(row.error));
     out.rows += static_cast<double>((row.precision.array() > 0.0).count());
-    for (const auto& [source, sums] : row.forces) {
-      out.forces.try_emplace(source, Eigen::Vector2d::Zero()).first->second += sums;
-    }
   });
+  for (const auto& [source, noise] : measured_noise_)
+    out.force_noise[source] = std::min(noise.variance(), residual_noise_[source].variance());
   out.information.triangularView<Eigen::StrictlyLower>() = out.information.transpose();
   out.repeat(repeated_);
   return out;

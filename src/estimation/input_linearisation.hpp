@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "effects/load_error.hpp"
+#include "estimation/difference_noise.hpp"
 #include "estimation/mesh_error.hpp"
 #include "forward/study_model.hpp"
 #include "observation/observation_operator.hpp"
@@ -30,12 +31,14 @@ struct InputModels {
 /// These are the normal equations of the rows r = y - h(z), z = [w; eta]. z holds the p parameters, then the inputs' errors
 /// in units of their tolerances, then the mesh's. The sums go over the frames, with the noise's precision R^-1.
 struct NormalEquations {
-  Eigen::MatrixXd information;  ///< Z^T R^-1 Z
-  Eigen::VectorXd gradient;     ///< Z^T R^-1 r
-  Eigen::MatrixXd constants;    ///< Z^T R^-1 C; each column of C is one constant's tolerance
-  double cost = 0.0;            ///< r^T R^-1 r
+  Eigen::MatrixXd information;            ///< Z^T R^-1 Z
+  Eigen::VectorXd gradient;               ///< Z^T R^-1 r
+  Eigen::MatrixXd constants;              ///< Z^T R^-1 C; each column of C is one constant's tolerance
+  Eigen::MatrixXd constants_information;  ///< C^T R^-1 C
+  Eigen::VectorXd constants_gradient;     ///< C^T R^-1 r
+  double cost = 0.0;                      ///< r^T R^-1 r
   double rows = 0.0;
-  std::map<int, Eigen::Vector2d> forces;  ///< the same cost and rows of each force sensor, with its noise as stated
+  std::map<int, double> force_noise;  ///< of each force sensor, its noise's variance over the stated one
 
   NormalEquations(Eigen::Index size, Eigen::Index constant_count);
   /// Multiplies all sums, because every frame stands for those that were left out.
@@ -63,7 +66,7 @@ class InputLinearisation {
   struct Row {
     Eigen::VectorXd error, precision;
     Eigen::MatrixXd parameters, constants, direct;  ///< d row / d each; direct: by poses, force sensors, mesh
-    std::map<int, Eigen::Vector2d> forces;          ///< cost and rows of each force sensor, see NormalEquations
+    std::vector<Eigen::Index> forces;               ///< rows of force sensors
     Eigen::MatrixXd modes;  ///< d row / d amplitude of each mode, and then by each reaction of a run's output
   };
   struct Load {
@@ -99,7 +102,7 @@ class InputLinearisation {
   /// Returns the first of the columns that say what the mesh may change; they are the last of z.
   Eigen::Index first_of_mesh() const { return size_ - mesh_columns_; }
 
-  /// Sets by how much the variance of a force sensor's noise is larger than stated.
+  /// Sets by how much the variance of a force sensor's noise is larger than stated. NormalEquations tell it.
   void set_force_noise(int source, double variance) { force_noise_[source] = variance; }
   /// Returns the normal equations at z. Throws NumericalError when runs diverge.
   NormalEquations at(const Eigen::VectorXd& z);
@@ -114,7 +117,9 @@ class InputLinearisation {
   std::vector<Eigen::VectorXd> points(const Eigen::VectorXd& w) const;
   Eigen::MatrixXd modes_seen(const Frame& frame, const Eigen::VectorXd& theta, const Eigen::MatrixXd& seen,
                              const ReducedModes& modes) const;
-  void weigh_forces(const Frame& frame, Prediction& corrected, Row& row) const;
+  void note_measured_forces();
+  Eigen::VectorXd precision(const Frame& frame, const Prediction& p) const;
+  void note_forces(const Frame& frame, const Prediction& corrected, Row& row);
   Row row(std::size_t index, const std::vector<Eigen::VectorXd>& thetas, const Eigen::MatrixXd& u,
           const ReducedModes& modes, const Eigen::VectorXd& z);
   const Eigen::MatrixXd& motions_seen(const Frame& frame, const Eigen::VectorXd& theta, const Eigen::VectorXd& u);
@@ -134,9 +139,12 @@ class InputLinearisation {
   std::vector<Pose> poses_;
   std::vector<ForceSensor> force_sensors_;
   std::map<int, double> force_noise_;
-  Eigen::MatrixXd motions_;                            ///< the runs' basis, then the rigid motions
-  std::map<std::vector<int>, Eigen::MatrixXd> named_;  ///< rows / amplitude of each motion, by the named nodes seen
-  Eigen::MatrixXd seen_;                               ///< rows / amplitude of each motion, for any other frame
+  std::map<int, DifferenceNoise> measured_noise_;          ///< of the forces of all frames, over the stated noise
+  std::map<int, std::map<double, double>> force_weights_;  ///< of each force sensor, by the times of its frames
+  std::map<int, DifferenceNoise> residual_noise_;          ///< of the residuals that are being visited
+  Eigen::MatrixXd motions_;                                ///< the runs' basis, then the rigid motions
+  std::map<std::vector<int>, Eigen::MatrixXd> named_;      ///< rows / amplitude of each motion, by the named nodes seen
+  Eigen::MatrixXd seen_;                                   ///< rows / amplitude of each motion, for any other frame
 };
 
 }  // namespace tissue_stiffness

@@ -20,8 +20,9 @@ constexpr int kMostImprobable = 3;    // such points in a row end the line: one 
 constexpr double kNegligible = 9.0;   // -2 log posterior above the least, where the grid is not refined
 constexpr double kResolved = 2.0;     // local standard deviations between two points
 constexpr std::size_t kMostPoints = 60;
-constexpr double kLinear = 3.0;    // fall of -2 log posterior that the linear form predicts well
-constexpr double kFurthest = 3.0;  // prior standard deviations
+constexpr double kLinear = 3.0;         // fall of -2 log posterior that the linear form predicts well
+constexpr double kFurthest = 3.0;       // prior standard deviations
+constexpr double kMostTolerated = 3.0;  // standard deviations of a constant
 
 }  // namespace
 
@@ -92,6 +93,17 @@ Eigen::MatrixXd InputPosterior::information(const Equations& normal) const {
 
 Eigen::MatrixXd InputPosterior::covariance(const Equations& normal) const {
   return information(normal).ldlt().solve(Eigen::MatrixXd::Identity(size_, size_));
+}
+
+// At the mode the gradient of z vanishes, so that c solves the Schur complement of z.
+InputPosterior::Tolerated InputPosterior::tolerated(const Equations& normal) const {
+  const NormalEquations all = sum(normal, scales(normal));
+  const Eigen::MatrixXd move = information(normal).ldlt().solve(all.constants);
+  Eigen::MatrixXd left = all.constants_information - all.constants.transpose() * move;
+  left.diagonal().array() += 1.0 / kTails;
+  const double most = kMostTolerated * std::sqrt(kTails);
+  const Eigen::VectorXd c = left.ldlt().solve(all.constants_gradient).cwiseMax(-most).cwiseMin(most);
+  return {-move * c, c};
 }
 
 double InputPosterior::learnt(const Eigen::MatrixXd& covariance, Eigen::Index i) const {

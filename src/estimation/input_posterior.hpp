@@ -9,6 +9,8 @@
 
 namespace tissue_stiffness {
 
+constexpr double kTails = 2.0;  ///< variance of Student's distribution with 4 degrees of freedom and scale 1
+
 /// This is the posterior of z = [w; eta], parameters and nuisance parameters. Their priors are normal and independent. The
 /// likelihood of each recording i is taken to the power 1 / temperature (Miller & Dunson 2019).
 ///   -2 log p(z) = sum_i r_i(z)^T R_i^-1 r_i(z) / s_i + (z - m)^T P^-1 (z - m),
@@ -54,6 +56,14 @@ class InputPosterior {
   /// Returns the inverse covariance of the linear form.
   Eigen::MatrixXd information(const Equations& normal) const;
   Eigen::MatrixXd covariance(const Equations& normal) const;
+  /// These are the errors of constants that are most probable within their tolerances, in units of these, and by how much
+  /// the mode of z moves with them.
+  struct Tolerated {
+    Eigen::VectorXd z, constants;
+  };
+  /// Returns them for the mode with these normal equations. No error exceeds three standard deviations, because what is
+  /// further off is no tolerance.
+  Tolerated tolerated(const Equations& normal) const;
   /// Returns the share of nuisance i's prior variance that the data have taken away.
   double learnt(const Eigen::MatrixXd& covariance, Eigen::Index i) const;
 

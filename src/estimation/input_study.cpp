@@ -69,16 +69,16 @@ class InputFit {
     return posterior_.cost(other, s) < posterior_.cost(best, s) ? other : best;
   }
 
-  // A force has three rows beside hundreds of points', which would hide that it fits badly: the noise of a pose shows in
-  // the force that it takes. So the noise of each force sensor is that of its own residual, or as stated where that is
-  // more.
+  // A force has three rows beside hundreds of points', which would hide that it is noisier than stated: the noise of a pose
+  // shows in the force that it takes. So each force sensor has a noise of its own. What a model misses is smoother, and is
+  // left to the test.
   Fit with_noise_of_forces(Fit best) {
     for (int k = 0; k < kNoiseSteps; ++k) {
       bool changed = false;
       for (std::size_t r = 0; r < rows_.recordings(); ++r) {
-        for (const auto& [source, sums] : best.normal[r].forces) {
-          const double variance = std::max(1.0, sums[0] / std::max(1.0, sums[1]));
-          rows_.part(r).rows.set_force_noise(source, variance);
+        for (const auto& [source, variance] : best.normal[r].force_noise) {
+          if (!std::isfinite(variance)) continue;
+          rows_.part(r).rows.set_force_noise(source, std::max(1.0, variance));
           changed = changed || variance > kMoreNoise;
         }
       }
@@ -132,10 +132,11 @@ class InputFit {
   void test(const Fit& fit, InputStudy::Answer& answer) {
     const Eigen::MatrixXd left = posterior_.covariance(fit.normal);
     const Eigen::VectorXd scales = posterior_.scales(fit.normal);
+    const InputPosterior::Tolerated tolerated = posterior_.tolerated(fit.normal);
     for (std::size_t r = 0; r < rows_.recordings(); ++r) {
       if (rows_.part(r).predicted) continue;
       const auto& information = fit.normal[r].information / scales[static_cast<Eigen::Index>(r)];
-      answer.recordings[r].test = rows_.test(r, fit.z, left.cwiseProduct(information).sum());
+      answer.recordings[r].test = rows_.test(r, fit.z, left.cwiseProduct(information).sum(), tolerated);
     }
   }
 

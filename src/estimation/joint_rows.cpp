@@ -65,12 +65,19 @@ InputPosterior::Equations JointRows::at(const Eigen::VectorXd& z) const {
   return out;
 }
 
-MisfitTest JointRows::test(std::size_t recording, const Eigen::VectorXd& z, double fitted) const {
+MisfitTest JointRows::test(std::size_t recording, const Eigen::VectorXd& z, double fitted,
+                           const InputPosterior::Tolerated& tolerated) const {
+  const Eigen::VectorXd move = columns_.of(recording, tolerated.z),
+                        constants = columns_.constants_of(recording, tolerated.constants);
   MisfitTest out;
   parts_[recording]->rows.each_row(
-      columns_.of(recording, z), [&](const InputLinearisation::Row& row, const Eigen::MatrixXd&) {
+      columns_.of(recording, z), [&](const InputLinearisation::Row& row, const Eigen::MatrixXd& amplitudes) {
+        const Eigen::Index p = row.parameters.cols(), d = row.direct.cols(), l = amplitudes.cols();
+        const Eigen::VectorXd explained = row.constants * constants + row.parameters * move.head(p) +
+                                          row.modes * (amplitudes * move.segment(p, l)) + row.direct * move.tail(d);
         const Eigen::Index most = std::min<Eigen::Index>(kModes, std::max<Eigen::Index>(1, row.error.size() / 4));
-        out.add(row.error, row.precision, row.modes.leftCols(std::min(most, row.modes.cols())));
+        out.add(row.error - explained, row.precision,
+                with_unit_columns(row.modes.leftCols(std::min(most, row.modes.cols())), row.forces));
       });
   out.set_fitted(fitted);
   return out;

@@ -11,8 +11,6 @@
 
 namespace tissue_stiffness {
 
-constexpr double kTails = 2.0;  ///< variance of Student's distribution with 4 degrees of freedom and scale 1
-
 /// The rows of several recordings of one body as functions of z = [w; eta], what all of them share and what each has for
 /// itself.
 class JointRows {
@@ -44,8 +42,10 @@ class JointRows {
   NormalEquations of(std::size_t recording, const Eigen::VectorXd& z) const;
   /// Returns those of each recording; of predicted ones they are empty.
   InputPosterior::Equations at(const Eigen::VectorXd& z) const;
-  /// Tests a recording's residual at z. `fitted`: degrees of freedom that the fit took of it.
-  MisfitTest test(std::size_t recording, const Eigen::VectorXd& z, double fitted) const;
+  /// Tests a recording's residual at z, less what tolerated constants may leave of it. `fitted`: degrees of freedom that
+  /// the fit took of it.
+  MisfitTest test(std::size_t recording, const Eigen::VectorXd& z, double fitted,
+                  const InputPosterior::Tolerated& tolerated) const;
   /// Returns the temperature of a recording's likelihood by that test. Structure that the residual may hide imitates what
   /// little tells the modulus. It counts as one error that all rows share (Miller & Dunson 2019).
   double temperature(std::size_t recording, const MisfitTest& test) const;

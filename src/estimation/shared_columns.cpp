@@ -82,17 +82,30 @@ void SharedColumns::add_constants(const std::vector<UncertainConstant>& constant
   }
 }
 
+Eigen::VectorXd SharedColumns::constants_of(std::size_t recording, const Eigen::VectorXd& constants) const {
+  const std::vector<Eigen::Index>& columns = constant_columns_[recording];
+  Eigen::VectorXd out(static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t i = 0; i < columns.size(); ++i) out[static_cast<Eigen::Index>(i)] = constants[columns[i]];
+  return out;
+}
+
 NormalEquations SharedColumns::spread(std::size_t recording, const NormalEquations& own) const {
   const Eigen::SparseMatrix<double>& map = maps_[recording];
   NormalEquations out(size_, static_cast<Eigen::Index>(constants_.size()));
   out.information = map.transpose() * own.information * map;
   out.gradient = map.transpose() * own.gradient;
   const Eigen::MatrixXd constants = map.transpose() * own.constants;
-  for (std::size_t i = 0; i < constant_columns_[recording].size(); ++i)
-    out.constants.col(constant_columns_[recording][i]) = constants.col(static_cast<Eigen::Index>(i));
+  const std::vector<Eigen::Index>& columns = constant_columns_[recording];
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    out.constants.col(columns[i]) = constants.col(k);
+    out.constants_gradient[columns[i]] = own.constants_gradient[k];
+    for (std::size_t j = 0; j < columns.size(); ++j)
+      out.constants_information(columns[i], columns[j]) = own.constants_information(k, static_cast<Eigen::Index>(j));
+  }
   out.cost = own.cost;
   out.rows = own.rows;
-  out.forces = own.forces;
+  out.force_noise = own.force_noise;
   return out;
 }
 

@@ -32,6 +32,8 @@ class SharedColumns {
   const std::vector<UncertainConstant>& constants() const { return constants_; }
 
   Eigen::VectorXd of(std::size_t recording, const Eigen::VectorXd& z) const { return maps_[recording] * z; }
+  /// Returns a recording's own ones of all constants.
+  Eigen::VectorXd constants_of(std::size_t recording, const Eigen::VectorXd& constants) const;
   /// Returns a recording's normal equations in the shared z.
   NormalEquations spread(std::size_t recording, const NormalEquations& own) const;
 

@@ -46,10 +46,11 @@ StateJudgement by_size(const StateEvidence& e) {
 
 std::string misfit_text(const MisfitTest& test) {
   char text[200];
-  std::snprintf(text, sizeof text,
-                "along the body's lowest modes the misfit is %.2g times the noise's variance, %.1f standard deviations "
-                "beyond what passes",
-                1.0 + test.excess(), test.z());
+  std::snprintf(
+      text, sizeof text,
+      "along the body's lowest modes, and in forces, the misfit is %.2g times the noise's variance, %.1f standard "
+      "deviations beyond what passes",
+      1.0 + test.excess(), test.z());
   return text;
 }
 

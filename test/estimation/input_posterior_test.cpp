@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <cmath>
 #include <functional>
@@ -55,6 +56,32 @@ Eigen::Vector2d brute_force(const Values& h, const Eigen::VectorXd& y, double pr
 InputPosterior posterior(const InputPosterior::Rows& rows, double prior_std, double nuisance_std) {
   return {rows, Eigen::VectorXd::Zero(1), Eigen::VectorXd::Constant(1, prior_std),
           Eigen::VectorXd::Constant(1, nuisance_std)};
+}
+
+// y = X w + C c: a joint fit of both says which c is most probable, and by how much w moves with it.
+TEST(InputPosterior, ToleratesWhatConstantsLeave) {
+  const Eigen::Vector4d x(3.0, 1.0, -2.0, 0.5), c(1.0, 2.0, 0.3, -4.0), y = 0.2 * x + 0.2 * c;
+  const auto rows = [&](const Eigen::VectorXd& z) {
+    NormalEquations out(1, 1);
+    const Eigen::Vector4d error = y - x * z[0];
+    out.information(0, 0) = x.squaredNorm();
+    out.gradient[0] = x.dot(error);
+    out.constants(0, 0) = x.dot(c);
+    out.constants_information(0, 0) = c.squaredNorm();
+    out.constants_gradient[0] = c.dot(error);
+    out.cost = error.squaredNorm();
+    out.rows = 4.0;
+    return InputPosterior::Equations{out};
+  };
+  InputPosterior p(rows, Eigen::VectorXd::Zero(1), Eigen::VectorXd::Constant(1, 2.0), Eigen::VectorXd(0));
+  const InputPosterior::Fit mode = p.mode(Eigen::VectorXd::Zero(1));
+  const double s = p.scales(mode.normal)[0];
+  Eigen::Matrix2d joint;
+  joint << x.squaredNorm() / s + 0.25, x.dot(c) / s, x.dot(c) / s, c.squaredNorm() / s + 1.0 / kTails;
+  const Eigen::Vector2d both = joint.ldlt().solve(Eigen::Vector2d(x.dot(y), c.dot(y)) / s);
+  const InputPosterior::Tolerated tolerated = p.tolerated(mode.normal);
+  EXPECT_NEAR(tolerated.constants[0], both[1], 1e-9);
+  EXPECT_NEAR(mode.z[0] + tolerated.z[0], both[0], 1e-9);
 }
 
 TEST(InputPosterior, IsNormalForLinearRows) {

@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kTruth = 24e3, kForceNoise = 1e-3, kOffset = 1e-4;
 
-ModelSettings palpation(const std::string& young_modulus, const std::string& mesh_error, const std::string& more = "") {
+ModelSettings palpation(const std::string& young_modulus, const std::string& mesh_error, const std::string& more = "",
+                        const std::string& damping = "- viscous_damping: {beta: 0.01}\n") {
   const std::string text =
       "mesh: {file: block.vtk, boundary: faceted, discretisation_error: " + mesh_error +
       "}\n"
@@ -23,11 +24,8 @@ ModelSettings palpation(const std::string& young_modulus, const std::string& mes
       "- inertia: {density: 1000}\n"
       "- fixed: {region: bottom}\n"
       "- elasticity: {law: linear, poisson_ratio: 0.4, young_modulus: " +
-      young_modulus +
-      "}\n"
-      "- viscous_damping: {beta: 0.01}\n"
-      "- tool_contact: {region: top, topic: /pose, center: [0, 0, 0.01], radius: {value: 0.01, tolerance: 0}" +
-      more +
+      young_modulus + "}\n" + damping +
+      "- tool_contact: {region: top, topic: /pose, center: [0, 0, 0.01], radius: {value: 0.01, tolerance: 0}" + more +
       "}\n"
       "observations: [{reaction: {topic: /force, region: top, noise: 1.0e-3, gain: 0.005, bias: 1.0e-3}}]\n";
   return read_model(parse_yaml(text, "model.yaml"), "");
@@ -49,14 +47,19 @@ std::vector<Frame> felt(const TetMesh& mesh, double offset = 0.0, int count = 9)
   return felt_forces(model, 0.002, 0.06, count, kForceNoise);
 }
 
-ParameterEstimate estimated(const ModelSettings& settings, const TetMesh& mesh, const std::vector<Frame>& frames) {
+Estimate estimate(const ModelSettings& settings, const TetMesh& mesh, const std::vector<Frame>& frames) {
   Estimator estimator(settings, mesh);
   estimator.set_first_stamp(0.0);
   for (const LoadSample& sample : poses()) estimator.add_load(sample);
   estimator.replay(frames);
   const ParameterEstimate e = estimator.estimate().parameters.at(0);
-  std::printf("E %.1f (%.1f to %.1f) of %.1f\n", e.mean, e.lower95, e.upper95, kTruth);
-  return e;
+  std::printf("E %.1f (%.1f to %.1f) of %.1f, %s\n", e.mean, e.lower95, e.upper95, kTruth,
+              estimator.estimate().state_reason.c_str());
+  return estimator.estimate();
+}
+
+ParameterEstimate estimated(const ModelSettings& settings, const TetMesh& mesh, const std::vector<Frame>& frames) {
+  return estimate(settings, mesh, frames).parameters.at(0);
 }
 
 TEST(Palpation, TheForceAtAToolTellsTheModulus) {
@@ -71,10 +74,25 @@ TEST(Palpation, TheForceAtAToolTellsTheModulus) {
 // A tool that is 0.1 mm lower than its pose says presses harder: the tolerance of `offset` is what the interval needs.
 TEST(Palpation, TheIntervalHoldsTheToleranceOfTheToolsPlace) {
   const TetMesh mesh = block_mesh();
-  const ParameterEstimate e = estimated(palpation(prior(60e3, 3), "false"), mesh, felt(mesh, kOffset));
+  const Estimate last = estimate(palpation(prior(60e3, 3), "false"), mesh, felt(mesh, kOffset, 19));
+  const ParameterEstimate e = last.parameters.at(0);
+  EXPECT_EQ(last.state, EstimateState::converged) << "what a tolerated offset leaves is no missing physics";
   EXPECT_GT(e.mean, 1.02 * kTruth);
   EXPECT_TRUE(holds(e, kTruth));
   EXPECT_LT(e.upper95 / e.lower95, 2.2);
+}
+
+// No place across the lowest modes tells the noise of a force, so that a wrong damping could pass for it.
+TEST(Palpation, AForceThatIsNotExplainedIsNoNoise) {
+  const TetMesh mesh = block_mesh();
+  const std::vector<Frame> frames = felt(mesh, 0.0, 19);
+  const Estimate right = estimate(palpation(prior(60e3, 3), "false"), mesh, frames),
+                 wrong =
+                     estimate(palpation(prior(60e3, 3), "false", "", "- viscous_damping: {beta: 0.007}\n"), mesh, frames);
+  EXPECT_EQ(right.state, EstimateState::converged) << right.state_reason;
+  EXPECT_TRUE(holds(right.parameters.at(0), kTruth));
+  EXPECT_EQ(wrong.state, EstimateState::doubtful) << wrong.state_reason;
+  EXPECT_TRUE(holds(wrong.parameters.at(0), kTruth));
 }
 
 // The force grows otherwise with the depth than with the modulus, so both can be found.
