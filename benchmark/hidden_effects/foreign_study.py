@@ -78,7 +78,7 @@ def second_gains(arguments, row, folder):
     found = sorted(row['hidden'], key=lambda effect: effect not in row['final'])
     with tempfile.TemporaryDirectory() as output:
         call([arguments.diagnose, os.path.join(folder, 'model.yaml'), os.path.join(folder, 'recording.bag'), '--quiet',
-              '--output', output] + [word for effect in found for word in ('--add', effect)])
+              '--allow-outside', '--output', output] + [word for effect in found for word in ('--add', effect)])
         with open(os.path.join(output, 'diagnosis.json')) as file:
             return short(json.load(file)['steps'][-1]['log_bayes_factor'])
 

@@ -182,11 +182,28 @@ class InputFit {
     return tolerance * tolerance * shift * shift.transpose();
   }
 
+  // Returns the largest standard deviation of the moduli, which are logarithms, that a covariance of the parameters holds;
+  // that of the first parameter where no modulus is free.
+  double modulus_std(const Eigen::MatrixXd& covariance) const {
+    double out = 0.0;
+    bool any = false;
+    for (Eigen::Index i = 0; i < p_; ++i) {
+      if (!is_young_modulus(rows_.parameters().all()[static_cast<std::size_t>(i)].free.name)) continue;
+      out = std::max(out, std::sqrt(std::max(0.0, covariance(i, i))));
+      any = true;
+    }
+    return any || p_ == 0 ? out : std::sqrt(std::max(0.0, covariance(0, 0)));
+  }
+
+  // Tells first what moves the modulus most.
   void tell_inputs(const Fit& fit, InputStudy::Answer& answer) {
     const Eigen::MatrixXd posterior = posterior_.covariance(fit.normal);
     for (const InputGroup& group : columns_.inputs()) {
       if (group.tolerance > 0.0) tell(group, fit.z, posterior, answer);
     }
+    tell_constants(fit, posterior, answer);
+    std::stable_sort(answer.inputs.begin(), answer.inputs.end(),
+                     [](const InputUncertainty& a, const InputUncertainty& b) { return a.modulus_std > b.modulus_std; });
     // All errors of a load are of one sensor: what makes one of them implausible is believed of all.
     std::map<int, double> widest;
     for (const InputGroup& group : columns_.inputs()) {
@@ -196,8 +213,23 @@ class InputFit {
     for (const InputGroup& group : columns_.inputs()) {
       if (group.load >= 0) posterior_.set_nuisance_std(group.first, group.count, widest[group.load]);
     }
-    for (const UncertainConstant& c : columns_.constants())
-      answer.inputs.push_back({c.name, "value", "", c.std, 0.0, c.std});
+  }
+
+  // Constants are considered and not estimated, so they move the parameters by their whole tolerances.
+  void tell_constants(const Fit& fit, const Eigen::MatrixXd& posterior, InputStudy::Answer& answer) const {
+    const NormalEquations normal = posterior_.sum(fit.normal, posterior_.scales(fit.normal));
+    const Eigen::MatrixXd shifts = (posterior * normal.constants).topRows(p_);
+    for (std::size_t i = 0; i < columns_.constants().size(); ++i) {
+      const UncertainConstant& c = columns_.constants()[i];
+      const auto shift = shifts.col(static_cast<Eigen::Index>(i));
+      answer.inputs.push_back({c.name, "value", "", c.std, 0.0, c.std, modulus_std(kTails * shift * shift.transpose())});
+    }
+  }
+
+  // Returns what exact knowledge of these errors would take off the parameters' covariance.
+  Eigen::MatrixXd caused_by(const InputGroup& group, const Eigen::MatrixXd& posterior) const {
+    const Eigen::MatrixXd across = posterior.block(0, group.first, p_, group.count);
+    return across * posterior.block(group.first, group.first, group.count, group.count).ldlt().solve(across.transpose());
   }
 
   // A group whose estimate is further from zero than its tolerance allows is implausible. It then counts as wide as it
@@ -211,7 +243,7 @@ class InputFit {
     double known = 0.0;  // degrees of freedom that the data determine
     for (Eigen::Index i = first; i < first + count; ++i) known += posterior_.learnt(posterior, i);
     answer.inputs.push_back({group.input, group.error, group.unit, group.tolerance, group.tolerance * std::sqrt(square / n),
-                             group.tolerance * std::sqrt(std::min(1.0, left))});
+                             group.tolerance * std::sqrt(std::min(1.0, left)), modulus_std(caused_by(group, posterior))});
     const double variances = square / std::pow(posterior_.nuisance_std(first), 2);
     if (variances <= std::max(1.0, known + kPlausible * std::sqrt(2.0 * known))) return;
     posterior_.set_nuisance_std(first, count, std::sqrt(square / std::max(1.0, known)));

@@ -1,5 +1,6 @@
 #include "report/input_table.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -9,6 +10,8 @@
 
 namespace tissue_stiffness {
 namespace {
+
+constexpr double kTold = 0.01;  // of E: a smaller effect of an input is not worth a word
 
 std::vector<std::pair<std::string, double>> named(const VarianceShares& shares) {
   return {{"noise", shares.noise},
@@ -44,11 +47,11 @@ std::string errors_table(const Results& results) {
     const std::string unit = input.unit == "-" || input.unit.empty() ? "" : " " + input.unit;
     rows += "<tr><td>" + escape_html(input.input) + "</td><td>" + escape_html(input.error) + "</td>" +
             cell(short_number(input.tolerance, 3) + unit) + cell(short_number(input.mean, 3) + unit) +
-            cell(short_number(input.std, 3) + unit) + "</tr>";
+            cell(short_number(input.std, 3) + unit) + cell(percent(input.modulus_std)) + "</tr>";
   }
   if (rows.empty()) return "";
   return "<div class=\"scroll\"><table><tr><th>input</th><th>error</th><th class=\"n\">tolerance</th>"
-         "<th class=\"n\">found</th><th class=\"n\">left</th></tr>" +
+         "<th class=\"n\">found</th><th class=\"n\">left</th><th class=\"n\">moves E by</th></tr>" +
          rows + "</table></div>";
 }
 
@@ -56,7 +59,14 @@ std::string errors_table(const Results& results) {
 
 std::string inputs_line(const Results& results) {
   if (results.inputs.empty()) return "every load, pose and constant is taken as exact";
-  return "the interval counts " + std::to_string(results.inputs.size()) + " errors of loads, poses and constants";
+  const auto most =
+      std::max_element(results.inputs.begin(), results.inputs.end(),
+                       [](const InputUncertainty& a, const InputUncertainty& b) { return a.modulus_std < b.modulus_std; });
+  const std::string counts =
+      "the interval counts " + std::to_string(results.inputs.size()) + " errors of loads, poses and constants";
+  if (!(most->modulus_std >= kTold)) return counts;
+  const std::string error = most->error == "value" ? "" : "the " + most->error + " of ";
+  return counts + "; E rests most on " + error + most->input + " (+-" + percent(most->modulus_std) + ")";
 }
 
 std::string variance_line(const VarianceShares& shares) {

@@ -36,7 +36,8 @@ json inputs_json(const std::vector<InputUncertainty>& inputs) {
                    {"unit", i.unit},
                    {"tolerance", number(i.tolerance)},
                    {"found", number(i.mean)},
-                   {"left", number(i.std)}});
+                   {"left", number(i.std)},
+                   {"modulus_std", number(i.modulus_std)}});
   }
   return out;
 }

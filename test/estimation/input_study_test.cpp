@@ -113,6 +113,26 @@ TEST(InputStudy, CountsTheToleranceOfAConstant) {
   EXPECT_GT(uncertain, 1.1 * exact);
 }
 
+// The tolerance of 30 % in the density is all that makes E uncertain here: whoever asks what to measure better is told so.
+TEST(InputStudy, NamesTheInputThatMovesTheModulusMost) {
+  const StepResult last = estimated(
+      pushed(", gain: 0, bias: 0, noise: 0, delay: 0, hysteresis: 0, direction: 0", "{value: 1000, tolerance: 300}"),
+      [](LoadSample&) {});
+  const std::vector<InputUncertainty>& inputs = last.estimate.inputs;
+  ASSERT_FALSE(inputs.empty());
+  EXPECT_EQ(inputs.front().input, "inertia.density");
+  double constants = 0.0;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    if (i > 0) {
+      EXPECT_LE(inputs[i].modulus_std, inputs[i - 1].modulus_std);
+    }
+    if (inputs[i].error == "value") constants += std::pow(inputs[i].modulus_std, 2);
+  }
+  const ParameterEstimate& e = last.estimate.parameters.front();
+  const double variance = std::log1p(std::pow(e.std / e.mean, 2));  // of the logarithm
+  EXPECT_NEAR(constants / (variance * last.estimate.variance.front().constants), 1.0, 0.1);
+}
+
 TEST(InputStudy, SharesOfTheVarianceAddUpToOne) {
   const StepResult last = estimated(pushed(), [](LoadSample&) {});
   ASSERT_EQ(last.estimate.variance.size(), 1U);

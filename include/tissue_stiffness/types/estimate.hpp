@@ -41,6 +41,9 @@ struct InputUncertainty {
   double tolerance = 0.0;  ///< 1 sigma, as stated or by default
   double mean = 0.0;       ///< estimated error: root mean square over its components; 0 if the error is only considered
   double std = 0.0;        ///< 1 sigma that remains of the tolerance
+  /// Relative standard deviation of Young's modulus that this error causes, of the modulus that it moves most. Exact
+  /// knowledge of the error would take its square off the modulus' variance.
+  double modulus_std = 0.0;
 };
 
 /// Sources of a parameter's variance, as shares that add up to 1.
