@@ -112,14 +112,17 @@ void NormalEquations::add(const NormalEquations& other, double times) {
 }
 
 InputLinearisation::InputLinearisation(const MeshError::Question& question, InputModels& models)
-    : q_(question), models_(models), p_(question.w.size()), size_(p_) {
+    : q_(question),
+      models_(models),
+      p_(question.w.size()),
+      size_(p_),
+      force_noise_(models.base.settings().observations, question.frames) {
   const std::size_t stride = (question.frames.size() + kMostFrames - 1) / kMostFrames;
   for (std::size_t k = question.frames.size(); k > 0; k -= std::min(k, stride)) frames_.insert(frames_.begin(), k - 1);
   repeated_ = static_cast<double>(question.frames.size()) / static_cast<double>(frames_.size());
   const Eigen::MatrixXd& basis = models.linear_form().basis();
   motions_.resize(models.rigid.rows(), basis.cols() + models.rigid.cols());
   motions_ << basis, models.rigid;
-  note_measured_forces();
   if (models.base.settings().exact_inputs) return;
   for (const auto& [topic, course] : models.uncertain.loads().courses()) add_load(topic, course);
   for (std::size_t i = 0; i < models.base.settings().observations.size(); ++i) add_pose(i);
@@ -251,63 +254,15 @@ InputLinearisation::Row InputLinearisation::row(std::size_t index, const std::ve
   out.direct = Eigen::MatrixXd::Zero(rows, direct_columns());
   if (sensor_column_count() > 0)
     out.direct.leftCols(sensor_column_count()) = sensor_columns(frame, there, seen.rightCols(models_.rigid.cols()));
-  if (mesh_columns_ > 0) out.direct.rightCols(mesh_columns_) = mesh_columns(index, out.modes, precision(frame, there));
+  if (mesh_columns_ > 0)
+    out.direct.rightCols(mesh_columns_) = mesh_columns(index, out.modes, force_noise_.precision(frame, there));
   Prediction corrected = there;
   corrected.predicted += out.direct * z.tail(direct_columns());
   out.error = there.measured - corrected.predicted;
-  note_forces(frame, corrected, out);
-  out.precision = precision(frame, corrected);
+  out.forces = force_noise_.note(frame, corrected, out.error);
+  out.precision = force_noise_.precision(frame, corrected);
   clean(out);
   return out;
-}
-
-// Both the measured force and what the model leaves of it hold the sensor's noise. The rest of each is smoother.
-void InputLinearisation::note_measured_forces() {
-  std::map<int, std::vector<double>> times;
-  for (const Frame& frame : q_.frames) {
-    for (const Observation& observation : frame.observations) {
-      if (!traits_of(observation.kind).force) continue;
-      const double sigma = models_.base.settings().observations[static_cast<std::size_t>(observation.source)].noise;
-      measured_noise_[observation.source].add(frame.time, observation.points.col(0) / sigma);
-      times[observation.source].push_back(frame.time);
-    }
-  }
-  for (const auto& [source, noise] : measured_noise_) {
-    const Eigen::VectorXd weights = noise.weights();
-    for (std::size_t k = 0; k < times[source].size(); ++k)
-      force_weights_[source][times[source][k]] = weights[static_cast<Eigen::Index>(k)];
-  }
-}
-
-// A frame's few force rows cannot tell an outlier from a misfit; the sensor's neighbouring values can. Its noise is as
-// large as it was found to be.
-Eigen::VectorXd InputLinearisation::precision(const Frame& frame, const Prediction& p) const {
-  Eigen::VectorXd out = row_weights(p).cwiseQuotient(p.sigma.cwiseAbs2());
-  Eigen::Index first = 0;
-  for (const Observation& observation : frame.observations) {
-    const Eigen::Index count = observation.row_count();
-    if (traits_of(observation.kind).force) {
-      const auto noise = force_noise_.find(observation.source);
-      const double weight = force_weights_.at(observation.source).at(frame.time);
-      const double variance = noise == force_noise_.end() ? 1.0 : noise->second;
-      out.segment(first, count) = weight / variance * p.sigma.segment(first, count).cwiseAbs2().cwiseInverse();
-    }
-    first += count;
-  }
-  return out;
-}
-
-void InputLinearisation::note_forces(const Frame& frame, const Prediction& corrected, Row& row) {
-  Eigen::Index first = 0;
-  for (const Observation& observation : frame.observations) {
-    const Eigen::Index count = observation.row_count();
-    if (traits_of(observation.kind).force) {
-      const auto error = row.error.segment(first, count).cwiseQuotient(corrected.sigma.segment(first, count));
-      residual_noise_[observation.source].add(frame.time, error);
-      for (Eigen::Index i = 0; i < count; ++i) row.forces.push_back(first + i);
-    }
-    first += count;
-  }
 }
 
 // A force sensor sees the elastic force of each mode, and what else is in the reaction.
@@ -394,7 +349,7 @@ Eigen::MatrixXd InputLinearisation::mesh_columns(std::size_t frame, const Eigen:
 
 // Visits every used frame, linearised at z, with the modal amplitudes of the loads' errors.
 void InputLinearisation::each_row(const Eigen::VectorXd& z, const Visitor& visit) {
-  residual_noise_.clear();
+  force_noise_.start_run();
   correct_loads(z);
   const std::vector<Eigen::VectorXd> thetas = points(z.head(p_));
   const auto all = models_.runs->start_all(thetas, q_.start);
@@ -453,8 +408,7 @@ NormalEquations InputLinearisation::at(const Eigen::VectorXd& z) {
     out.cost += row.error.dot(row.precision.cwiseProduct(row.error));
     out.rows += static_cast<double>((row.precision.array() > 0.0).count());
   });
-  for (const auto& [source, noise] : measured_noise_)
-    out.force_noise[source] = std::min(noise.variance(), residual_noise_[source].variance());
+  out.force_noise = force_noise_.found();
   out.information.triangularView<Eigen::StrictlyLower>() = out.information.transpose();
   out.repeat(repeated_);
   return out;

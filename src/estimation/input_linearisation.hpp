@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "effects/load_error.hpp"
-#include "estimation/difference_noise.hpp"
+#include "estimation/force_noise.hpp"
 #include "estimation/mesh_error.hpp"
 #include "forward/study_model.hpp"
 #include "observation/observation_operator.hpp"
@@ -103,7 +103,7 @@ class InputLinearisation {
   Eigen::Index first_of_mesh() const { return size_ - mesh_columns_; }
 
   /// Sets by how much the variance of a force sensor's noise is larger than stated. NormalEquations tell it.
-  void set_force_noise(int source, double variance) { force_noise_[source] = variance; }
+  void set_force_noise(int source, double variance) { force_noise_.set(source, variance); }
   /// Returns the normal equations at z. Throws NumericalError when runs diverge.
   NormalEquations at(const Eigen::VectorXd& z);
   /// Visits every used frame in the order of time.
@@ -117,9 +117,6 @@ class InputLinearisation {
   std::vector<Eigen::VectorXd> points(const Eigen::VectorXd& w) const;
   Eigen::MatrixXd modes_seen(const Frame& frame, const Eigen::VectorXd& theta, const Eigen::MatrixXd& seen,
                              const ReducedModes& modes) const;
-  void note_measured_forces();
-  Eigen::VectorXd precision(const Frame& frame, const Prediction& p) const;
-  void note_forces(const Frame& frame, const Prediction& corrected, Row& row);
   Row row(std::size_t index, const std::vector<Eigen::VectorXd>& thetas, const Eigen::MatrixXd& u,
           const ReducedModes& modes, const Eigen::VectorXd& z);
   const Eigen::MatrixXd& motions_seen(const Frame& frame, const Eigen::VectorXd& theta, const Eigen::VectorXd& u);
@@ -138,13 +135,10 @@ class InputLinearisation {
   std::vector<Load> loads_;
   std::vector<Pose> poses_;
   std::vector<ForceSensor> force_sensors_;
-  std::map<int, double> force_noise_;
-  std::map<int, DifferenceNoise> measured_noise_;          ///< of the forces of all frames, over the stated noise
-  std::map<int, std::map<double, double>> force_weights_;  ///< of each force sensor, by the times of its frames
-  std::map<int, DifferenceNoise> residual_noise_;          ///< of the residuals that are being visited
-  Eigen::MatrixXd motions_;                                ///< the runs' basis, then the rigid motions
-  std::map<std::vector<int>, Eigen::MatrixXd> named_;      ///< rows / amplitude of each motion, by the named nodes seen
-  Eigen::MatrixXd seen_;                                   ///< rows / amplitude of each motion, for any other frame
+  ForceNoise force_noise_;
+  Eigen::MatrixXd motions_;                            ///< the runs' basis, then the rigid motions
+  std::map<std::vector<int>, Eigen::MatrixXd> named_;  ///< rows / amplitude of each motion, by the named nodes seen
+  Eigen::MatrixXd seen_;                               ///< rows / amplitude of each motion, for any other frame
 };
 
 }  // namespace tissue_stiffness
