@@ -9,7 +9,6 @@
 #include "fit/ensemble.hpp"
 #include "forward/load_error_response.hpp"
 #include "forward/reduced_trajectory.hpp"
-#include "observation/frame_misfit.hpp"
 #include "types/least_squares.hpp"
 
 namespace tissue_stiffness {

@@ -20,9 +20,9 @@ constexpr int kMostImprobable = 3;    // such points in a row end the line: one 
 constexpr double kNegligible = 9.0;   // -2 log posterior above the least, where the grid is not refined
 constexpr double kResolved = 2.0;     // local standard deviations between two points
 constexpr std::size_t kMostPoints = 60;
-constexpr double kLinear = 3.0;         // fall of -2 log posterior that the linear form predicts well
-constexpr double kFurthest = 3.0;       // prior standard deviations
-constexpr double kMostTolerated = 3.0;  // standard deviations of a constant
+constexpr double kLinear = 3.0;          // fall of -2 log posterior that the linear form predicts well
+constexpr double kFurthest = 3.0;        // prior standard deviations
+constexpr double kMostTolerated = 1.96;  // standard deviations of a constant: its 95 % interval
 
 }  // namespace
 

@@ -61,8 +61,8 @@ class InputPosterior {
   struct Tolerated {
     Eigen::VectorXd z, constants;
   };
-  /// Returns them for the mode with these normal equations. No error exceeds three standard deviations, because what is
-  /// further off is no tolerance.
+  /// Returns them for the mode with these normal equations. No error leaves its 95 % interval, because the interval of the
+  /// estimate allows for no more.
   Tolerated tolerated(const Equations& normal) const;
   /// Returns the share of nuisance i's prior variance that the data have taken away.
   double learnt(const Eigen::MatrixXd& covariance, Eigen::Index i) const;
