@@ -28,6 +28,8 @@ std::vector<Eigen::Index> judged(const std::vector<FreeParameter>& free) {
 
 StateJudgement by_shape(const StateEvidence& e) {
   const MisfitTest& test = e.systematic.test();
+  if (test.passes() && e.misfit_has_risen)
+    return {EstimateState::converging, "the misfit has risen since it was tested, and is tested again"};
   if (test.passes()) return {EstimateState::converged, "the misfit is noise"};
   if (e.mesh_pending) return {EstimateState::converging, "the error of the mesh has not been estimated yet"};
   return {EstimateState::doubtful, misfit_text(test)};
@@ -80,7 +82,7 @@ StateJudgement judge_state(const StateEvidence& e) {
   if (!e.settled) return {unknown, "the estimate still moves out of its own interval"};
   if (!inputs->implausible.empty()) return {EstimateState::doubtful, inputs->implausible};
   StateJudgement of_misfit = inputs->fitted ? by_shape(e) : by_size(e);
-  if (of_misfit.state == EstimateState::doubtful) return of_misfit;
+  if (of_misfit.state != EstimateState::converged) return of_misfit;
   if (std::string why = unlearnt(e.model.parameters().free(), e.covariance, e.model.settings().known_before); !why.empty())
     return {unknown, std::move(why)};
   return of_misfit;

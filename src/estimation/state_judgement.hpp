@@ -17,6 +17,7 @@ struct StateEvidence {
   const Model& model;
   const Misfit& misfit;               ///< of the present frame
   double misfit_scale;                ///< mean square of all frames' misfit over the noise's, at the present parameters
+  bool misfit_has_risen;              ///< since it was tested
   bool change_suspected;              ///< the misfit has risen, and no change has been searched for yet
   bool invalid;                       ///< the free run has left the measurements for good
   std::string stale_load;             ///< a sentence; empty: no load is stale

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "forward/study_model.hpp"
@@ -25,7 +26,7 @@ SystematicError::Corrected SystematicError::correct(const Filtered& filtered) co
   out.covariance = filtered.covariance + parts_.all;
   Eigen::MatrixXd of_model = Eigen::MatrixXd::Zero(out.mean.size(), out.mean.size());
   // The misfit may lie along what the parameters do, with all rows and frames alike (Kennedy & O'Hagan 2001).
-  const double discrepancy = inputs_ ? std::max(test_.discrepancy(), unexplained(filtered.misfit_scale)) : 0.0;
+  const double discrepancy = inputs_ ? std::max(test_.discrepancy(), unexplained(filtered.misfit)) : 0.0;
   if (discrepancy > 0.0) {
     of_model =
         within_prior(discrepancy * inputs_->recordings.front().rows * inputs_->from_noise, model_.parameters().prior_std());
@@ -59,11 +60,20 @@ void SystematicError::refresh() {
 // Returns the mean square of all frames' misfit beyond noise and mesh, at the present parameters, in noise variances. It
 // counts where the misfit does not pass, or has risen since it was tested: then no interval is tighter than the misfit
 // allows, whatever the state.
-double SystematicError::unexplained(double misfit_scale) const {
-  const double tested = inputs_->fitted ? studied_misfit_scale_ : 1.0;
+double SystematicError::unexplained(const FilteredMisfit& misfit) const {
+  const double tested = inputs_->fitted ? studied_.scale : 1.0;
   const bool passes = inputs_->implausible.empty() && (!inputs_->fitted || test_.passes());
-  if (passes && misfit_scale <= kFullSigmas * kFullSigmas * tested) return 0.0;
-  return std::max(0.0, misfit_scale - test_.noise_level() - of_mesh());
+  if (passes && misfit.scale <= kFullSigmas * kFullSigmas * tested && !misfit_has_risen(misfit)) return 0.0;
+  return std::max(0.0, misfit.scale - test_.noise_level() - of_mesh());
+}
+
+// The sums of squares of all frames and of those that were tested leave that of the frames since then.
+bool SystematicError::misfit_has_risen(const FilteredMisfit& misfit) const {
+  if (!inputs_ || !inputs_->fitted || !(misfit.rows > studied_.rows)) return false;
+  const double rows = misfit.rows - studied_.rows;
+  const double since = (misfit.scale * misfit.rows - studied_.scale * studied_.rows) / rows;
+  const double passing = kFullSigmas * kFullSigmas + MisfitTest::bound * std::sqrt(2.0 / rows);
+  return since > passing * (studied_.scale + of_mesh());
 }
 
 Eigen::VectorXd SystematicError::mesh_shift() const {
@@ -90,14 +100,15 @@ void SystematicError::take_mesh(const MeshError::Answer& answer, double misfit_s
   refresh();
 }
 
-void SystematicError::take_inputs(InputStudy::Answer answer, double misfit_scale) {
+void SystematicError::take_inputs(InputStudy::Answer answer, const FilteredMisfit& misfit) {
   inputs_ = std::move(answer);
-  studied_misfit_scale_ = misfit_scale;
+  studied_ = misfit;
   refresh();
 }
 
-void SystematicError::set_runs_at(const Eigen::VectorXd& w) {
+void SystematicError::set_runs_at(const Eigen::VectorXd& w, double misfit_scale) {
   runs_at_ = w;
+  studied_.scale = misfit_scale;
   input_shift_ = inputs_->w - w;
   refresh();
 }

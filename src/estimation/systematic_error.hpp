@@ -26,11 +26,16 @@ class SystematicError {
   /// The model has to outlive this.
   explicit SystematicError(const Model& model);
 
-  /// This is a filter's estimate. `misfit_scale` is the mean square of all frames' misfit there over the noise's.
+  /// This is the misfit of all frames so far, at a filter's estimate.
+  struct FilteredMisfit {
+    double scale = 1.0;  ///< its mean square over the noise's
+    double rows = 0.0;   ///< of all frames
+  };
+  /// This is a filter's estimate.
   struct Filtered {
     Eigen::VectorXd mean;
     Eigen::MatrixXd covariance;
-    double misfit_scale;
+    FilteredMisfit misfit;
   };
   /// This is the estimate to publish.
   struct Corrected {
@@ -41,10 +46,11 @@ class SystematicError {
   Corrected correct(const Filtered& filtered) const;
 
   void take_mesh(const MeshError::Answer& answer, double misfit_scale);
-  /// `misfit_scale` is that of the time when the study was asked for. set_runs_at() has to follow.
-  void take_inputs(InputStudy::Answer answer, double misfit_scale);
-  /// Sets the runs' parameters, from which the shift to the joint fit of parameters and input errors is counted.
-  void set_runs_at(const Eigen::VectorXd& w);
+  /// `misfit` is that of the time when the study was asked for. set_runs_at() has to follow.
+  void take_inputs(InputStudy::Answer answer, const FilteredMisfit& misfit);
+  /// Sets the runs' parameters, from which the shift to the joint fit of parameters and input errors is counted, and the
+  /// scale of the misfit there.
+  void set_runs_at(const Eigen::VectorXd& w, double misfit_scale);
   /// Drops the joint fit, which says nothing about the present runs.
   void drop_fit();
   /// Forgets all studies.
@@ -59,11 +65,14 @@ class SystematicError {
   /// Returns whether the estimated errors of the inputs are plausible and leave a misfit that passes. If not, the estimate
   /// is the one under the inputs as they are. Its distance from the joint fit is then part of its discrepancy.
   bool inputs_believed() const;
+  /// Returns whether the frames since the last test leave more than noise and mesh, compared with those that were tested.
+  /// It is false where no misfit was tested.
+  bool misfit_has_risen(const FilteredMisfit& misfit) const;
   /// Returns whether the runs have left the place where the inputs were studied.
   bool left_study(const Filtered& filtered) const;
 
  private:
-  double unexplained(double misfit_scale) const;
+  double unexplained(const FilteredMisfit& misfit) const;
   Eigen::VectorXd mesh_shift() const;
   void refresh();
 
@@ -73,7 +82,7 @@ class SystematicError {
   std::optional<InputStudy::Answer> inputs_;
   Eigen::VectorXd input_shift_;  ///< from the runs' parameters to the joint fit; empty: not known
   Eigen::VectorXd runs_at_;      ///< parameters of the runs
-  double studied_misfit_scale_ = 1.0;
+  FilteredMisfit studied_;       ///< of the frames of the last study, at the runs' parameters
   MisfitTest test_;
   /// This is the covariance by its sources, without noise and model, as of the last refresh; it is empty before.
   struct {

@@ -232,18 +232,22 @@ class UnscentedScheme : public Scheme {
     result.estimate = estimate_;
   }
 
+  static SystematicError::FilteredMisfit misfit_of(const PosteriorLinearizationFilter& filter) {
+    return {filter.misfit_scale(), static_cast<double>(filter.rows())};
+  }
+
   SystematicError::Filtered filtered() const {
     const PosteriorLinearizationFilter& filter = filter_run_->filter();
-    return {filter_run_->mean(), filter_run_->covariance(), filter.misfit_scale()};
+    return {filter_run_->mean(), filter_run_->covariance(), misfit_of(filter)};
   }
 
   StateJudgement judge(const Misfit& misfit, const SystematicError::Filtered& now,
                        const Eigen::MatrixXd& covariance) const {
     const bool mesh_pending = !systematic_.mesh_known() && studies_.mesh_unknown().empty() && !more_follow();
-    return judge_state({*model_, misfit, now.misfit_scale, watch_.suspicious() && !watch_.searched(), validity_.invalid(),
-                        stale_load(misfit.time), filter_run_->start().motion != nullptr,
-                        restudying_ || systematic_.left_study(now), settling_.settled(), mesh_pending, systematic_,
-                        covariance});
+    return judge_state({*model_, misfit, now.misfit.scale, systematic_.misfit_has_risen(now.misfit),
+                        watch_.suspicious() && !watch_.searched(), validity_.invalid(), stale_load(misfit.time),
+                        filter_run_->start().motion != nullptr, restudying_ || systematic_.left_study(now),
+                        settling_.settled(), mesh_pending, systematic_, covariance});
   }
 
   // Studies what the mesh and errors of the inputs do to the estimate, whenever the recording has grown; in the background
@@ -255,7 +259,7 @@ class UnscentedScheme : public Scheme {
     const Studies::Subjects subjects = studies_.due(frames_.size(), restudying_, replaying(), background());
     if (!subjects.any()) return moved;
     const PosteriorLinearizationFilter& filter = filter_run_->filter();
-    if (subjects.inputs) misfit_scale_asked_ = filter.misfit_scale();
+    if (subjects.inputs) misfit_asked_ = misfit_of(filter);
     studies_.begin({*model_, frames_, filter.mean(), filter.spread(), model_->parameters().prior_std()}, subjects,
                    replaying(), hurried());
     return !hurried() ? take_studies() || moved : moved;
@@ -270,7 +274,7 @@ class UnscentedScheme : public Scheme {
   // A load's estimated error is taken off where it is plausible, leaves a misfit that passes, and moves the estimate. What
   // the runs then still leave to the fit's parameters is a shift. An error that is not believed must not hide the misfit.
   bool take_inputs(InputStudy::Answer answer) {
-    systematic_.take_inputs(std::move(answer), misfit_scale_asked_);
+    systematic_.take_inputs(std::move(answer), misfit_asked_);
     const InputStudy::Answer& inputs = *systematic_.inputs();
     restudying_ = false;
     if (!inputs.fitted) return false;
@@ -290,7 +294,8 @@ class UnscentedScheme : public Scheme {
       filter_run_->rerun(frames_, inputs.mode);
       validity_.reset();
     }
-    systematic_.set_runs_at(change ? filter_run_->filter().mean() : inputs.asked);
+    const PosteriorLinearizationFilter& filter = filter_run_->filter();
+    systematic_.set_runs_at(change ? filter.mean() : inputs.asked, filter.misfit_scale());
     return change;
   }
 
@@ -305,9 +310,9 @@ class UnscentedScheme : public Scheme {
 
   std::size_t frames_at_reprocessing_ = 0;  ///< number of frames at the last reprocessing
   SystematicError systematic_;
-  double misfit_scale_asked_ = 1.0;  ///< misfit scale when the inputs' study was asked for
-  bool corrected_ = false;           ///< the loads' estimated errors are taken off
-  bool restudying_ = false;          ///< the runs have left the place of the last study
+  SystematicError::FilteredMisfit misfit_asked_;  ///< when the inputs' study was asked for
+  bool corrected_ = false;                        ///< the loads' estimated errors are taken off
+  bool restudying_ = false;                       ///< the runs have left the place of the last study
   Settling settling_;
   Studies studies_;  ///< declared last, because its thread reads the model
 };
