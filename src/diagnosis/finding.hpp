@@ -24,7 +24,7 @@ struct Finding {
   double discretisation_error = 0.0;   ///< rms of what a finer mesh would change [sigma]
   PreviousRound previous;              ///< for the next round
   bool base_moved = false;             ///< the base fits better elsewhere, and has been moved there
-  bool to_repeat = false;  ///< the search has to be repeated from the moved base, and all effects compared from there
+  bool to_repeat = false;  ///< nothing explains the recording, and all effects have to be compared from the moved base
   std::shared_ptr<const ModelComparison> models;
   std::string failure;  ///< why the last refit that could not be run failed; empty: none
 

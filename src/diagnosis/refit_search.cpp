@@ -32,7 +32,7 @@ class RefitSearch {
   /// See search_refits.
   bool all() {
     refit_from_tangents();
-    if (!screening_.settled && refits_.move_to_better_base()) return true;
+    if (!screening_.settled && refits_.move_to_better_base()) return !explained();
     if (!wide()) return false;
     if (!screening_.beside_another && !explained()) refit_other_variants();
     if (!explained()) refit_from_initial_segment();
