@@ -100,9 +100,9 @@ void SystematicError::take_mesh(const MeshError::Answer& answer, double misfit_s
   refresh();
 }
 
-void SystematicError::take_inputs(InputStudy::Answer answer, const FilteredMisfit& misfit) {
+void SystematicError::take_inputs(InputStudy::Answer answer, double rows) {
   inputs_ = std::move(answer);
-  studied_ = misfit;
+  studied_.rows = rows;
   refresh();
 }
 

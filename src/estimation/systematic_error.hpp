@@ -46,8 +46,8 @@ class SystematicError {
   Corrected correct(const Filtered& filtered) const;
 
   void take_mesh(const MeshError::Answer& answer, double misfit_scale);
-  /// `misfit` is that of the time when the study was asked for. set_runs_at() has to follow.
-  void take_inputs(InputStudy::Answer answer, const FilteredMisfit& misfit);
+  /// `rows` is the number of rows when the study was asked for. set_runs_at() has to follow.
+  void take_inputs(InputStudy::Answer answer, double rows);
   /// Sets the runs' parameters, from which the shift to the joint fit of parameters and input errors is counted, and the
   /// scale of the misfit there.
   void set_runs_at(const Eigen::VectorXd& w, double misfit_scale);

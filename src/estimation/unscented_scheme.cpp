@@ -232,13 +232,9 @@ class UnscentedScheme : public Scheme {
     result.estimate = estimate_;
   }
 
-  static SystematicError::FilteredMisfit misfit_of(const PosteriorLinearizationFilter& filter) {
-    return {filter.misfit_scale(), static_cast<double>(filter.rows())};
-  }
-
   SystematicError::Filtered filtered() const {
     const PosteriorLinearizationFilter& filter = filter_run_->filter();
-    return {filter_run_->mean(), filter_run_->covariance(), misfit_of(filter)};
+    return {filter_run_->mean(), filter_run_->covariance(), {filter.misfit_scale(), static_cast<double>(filter.rows())}};
   }
 
   StateJudgement judge(const Misfit& misfit, const SystematicError::Filtered& now,
@@ -259,7 +255,7 @@ class UnscentedScheme : public Scheme {
     const Studies::Subjects subjects = studies_.due(frames_.size(), restudying_, replaying(), background());
     if (!subjects.any()) return moved;
     const PosteriorLinearizationFilter& filter = filter_run_->filter();
-    if (subjects.inputs) misfit_asked_ = misfit_of(filter);
+    if (subjects.inputs) rows_asked_ = filter.rows();
     studies_.begin({*model_, frames_, filter.mean(), filter.spread(), model_->parameters().prior_std()}, subjects,
                    replaying(), hurried());
     return !hurried() ? take_studies() || moved : moved;
@@ -274,7 +270,7 @@ class UnscentedScheme : public Scheme {
   // A load's estimated error is taken off where it is plausible, leaves a misfit that passes, and moves the estimate. What
   // the runs then still leave to the fit's parameters is a shift. An error that is not believed must not hide the misfit.
   bool take_inputs(InputStudy::Answer answer) {
-    systematic_.take_inputs(std::move(answer), misfit_asked_);
+    systematic_.take_inputs(std::move(answer), rows_asked_);
     const InputStudy::Answer& inputs = *systematic_.inputs();
     restudying_ = false;
     if (!inputs.fitted) return false;
@@ -310,9 +306,9 @@ class UnscentedScheme : public Scheme {
 
   std::size_t frames_at_reprocessing_ = 0;  ///< number of frames at the last reprocessing
   SystematicError systematic_;
-  SystematicError::FilteredMisfit misfit_asked_;  ///< when the inputs' study was asked for
-  bool corrected_ = false;                        ///< the loads' estimated errors are taken off
-  bool restudying_ = false;                       ///< the runs have left the place of the last study
+  double rows_asked_ = 0.0;  ///< number of rows when the inputs' study was asked for
+  bool corrected_ = false;   ///< the loads' estimated errors are taken off
+  bool restudying_ = false;  ///< the runs have left the place of the last study
   Settling settling_;
   Studies studies_;  ///< declared last, because its thread reads the model
 };

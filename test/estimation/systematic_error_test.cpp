@@ -16,7 +16,7 @@ bool risen(double since, double further) {
   answer.recordings.resize(1);
   answer.w = answer.mode = answer.asked = Eigen::VectorXd::Zero(1);
   answer.from_noise = answer.from_loads = answer.from_mesh = answer.from_constants = Eigen::MatrixXd::Zero(1, 1);
-  error.take_inputs(answer, {9.9, 1000.0});
+  error.take_inputs(answer, 1000.0);
   error.set_runs_at(Eigen::VectorXd::Zero(1), 1.2);
   const double rows = 1000.0 + further;
   return error.misfit_has_risen({(1.2 * 1000.0 + since * further) / rows, rows});
