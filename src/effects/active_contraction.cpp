@@ -1,9 +1,11 @@
 // Fibres pull actively, in a rhythm of their own.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "effects/fibre_field.hpp"
 #include "effects/registry.hpp"
+#include "fem/point_assembly.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {
@@ -21,7 +23,8 @@ double twitch(double time, const Parameters& p) {
 
 class ActiveContraction : public Effect, public FiniteStrainForm {
  public:
-  ActiveContraction(const Value& arguments, const EffectContext& context) : fem_(context.fem), fibres_(arguments, context) {
+  ActiveContraction(const Value& arguments, const EffectContext& context)
+      : fem_(context.fem), points_(context.fem), fibres_(arguments, context) {
     if (arguments.has("course")) course_ = load_csv(arguments.at("course"), LoadInput::Kind::pressure, context);
   }
 
@@ -30,7 +33,7 @@ class ActiveContraction : public Effect, public FiniteStrainForm {
     load.coefficient = [](const Parameters& p) { return p[kAmplitude]; };
     load.activation = [this](double time, const Parameters& p) { return activation(time, p); };
     load.shaped = [this](const Parameters& p) {
-      const auto pull = [&](int e, int q) { return strain_of(fibres_.direction(e, q, p[kAngle], p[kTilt])); };
+      const auto pull = [&](int e, int q) { return strain_of(direction(e, q, p)); };
       Eigen::VectorXd force = Eigen::VectorXd::Zero(fem_.dof_count());
       add_stress_force(fem_, pull, force);
       return force;
@@ -41,24 +44,27 @@ class ActiveContraction : public Effect, public FiniteStrainForm {
   const FiniteStrainForm* finite_strain() const override { return this; }
   void add_finite_force(const Motion& motion, const Parameters& p, Eigen::VectorXd& force) const override {
     const double now = p[kAmplitude] * activation(motion.since, p);
-    if (now != 0.0) add_fibre_force(fem_, directions(p), constant(now), motion.displacement, force);
+    const auto stress = [&](int e, int q, const Eigen::Matrix3d& f, Eigen::Matrix3d& out) {
+      add_fibre_stress({now, 0.0}, direction(e, q, p), f, out);
+    };
+    if (now != 0.0) points_.add_force(std::cref(stress), motion.displacement, force);
   }
   void add_finite_stiffness(const Motion& motion, const Parameters& p, SparseMatrix& stiffness) const override {
     const double now = p[kAmplitude] * activation(motion.since, p);
-    if (now != 0.0) add_fibre_stiffness(fem_, directions(p), constant(now), motion.displacement, stiffness);
+    const auto tangent = [&](int e, int q, const Eigen::Matrix3d& f, StressTangent& out) {
+      add_fibre_tangent({now, 0.0}, direction(e, q, p), f, out);
+    };
+    if (now != 0.0) points_.add_stiffness(std::cref(tangent), motion.displacement, stiffness);
   }
 
  private:
   double activation(double time, const Parameters& p) const { return course_ ? course_->value(time, 0) : twitch(time, p); }
-  // The result refers to p, because a copy would allocate memory at every force.
-  FibreDirections directions(const Parameters& p) const {
-    return [this, &p](int e, int q) { return fibres_.direction(e, q, p[kAngle], p[kTilt]); };
-  }
-  static FibreLaw constant(double tension) {
-    return [tension](double) { return FibreTension{tension, 0.0}; };
+  Eigen::Vector3d direction(int e, int q, const Parameters& p) const {
+    return fibres_.direction(e, q, p[kAngle], p[kTilt]);
   }
 
   const Discretisation& fem_;
+  PointAssembly points_;
   FibreField fibres_;
   std::shared_ptr<const Course> course_;
 };

@@ -45,6 +45,7 @@ struct EffectSpec {
   Proposer proposals = nullptr;                           ///< null: its absence is not searched for
   bool of_simulation = false;                             ///< not physics, but a property of simulated recordings
   bool of_recording = false;                              ///< differs between recordings of one body
+  bool of_finite_strain = false;                          ///< a law that has no meaning at small strain
   bool contact = false;                                   ///< keeps bodies apart; its stiffness is a penalty
 };
 

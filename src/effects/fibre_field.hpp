@@ -58,15 +58,12 @@ class FibreField {
 struct FibreTension {
   double value, slope;
 };
-using FibreLaw = std::function<FibreTension(double strain)>;
-/// Returns the direction at a quadrature point.
-using FibreDirections = std::function<Eigen::Vector3d(int e, int q)>;
-
-/// Fibres under finite strain. The first subtracts the internal force int S (F a) (a . grad N) dV with S = tension((|F a|^2
-/// - 1) / 2). The second adds its derivative (Holzapfel 2000, sec. 6.7).
-void add_fibre_force(const Discretisation& fem, const FibreDirections& directions, const FibreLaw& law,
-                     const Eigen::VectorXd& u, Eigen::VectorXd& force);
-void add_fibre_stiffness(const Discretisation& fem, const FibreDirections& directions, const FibreLaw& law,
-                         const Eigen::VectorXd& u, SparseMatrix& stiffness);
+/// Returns the Green strain (|F a|^2 - 1) / 2 along a direction.
+double fibre_strain(const Eigen::Matrix3d& f, const Eigen::Vector3d& direction);
+/// Adds the stress S (F a) a^T of fibres under a tension S, and its derivative (Holzapfel 2000, sec. 6.7).
+void add_fibre_stress(const FibreTension& tension, const Eigen::Vector3d& direction, const Eigen::Matrix3d& f,
+                      Eigen::Matrix3d& stress);
+void add_fibre_tangent(const FibreTension& tension, const Eigen::Vector3d& direction, const Eigen::Matrix3d& f,
+                       StressTangent& tangent);
 
 }  // namespace tissue_stiffness

@@ -1,14 +1,15 @@
 // One family of fibres resists stretching.
 #include "effects/fibre_field.hpp"
+#include "effects/pointwise_effect.hpp"
 #include "effects/registry.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {
 
-class FibreReinforcement : public Effect, public FiniteStrainForm {
+class FibreReinforcement : public PointwiseEffect {
  public:
   FibreReinforcement(const Value& arguments, const EffectContext& context)
-      : fem_(context.fem), fibres_(arguments, context) {}
+      : PointwiseEffect(context.fem), fibres_(arguments, context) {}
 
   void linear_terms(LinearTerms& out) const override {
     StrainTerm term;
@@ -19,24 +20,24 @@ class FibreReinforcement : public Effect, public FiniteStrainForm {
     term.shape = {1, 2};
     out.strain_stiffness.push_back(std::move(term));
   }
-  const FiniteStrainForm* finite_strain() const override { return this; }
-  void add_finite_force(const Motion& motion, const Parameters& p, Eigen::VectorXd& force) const override {
-    if (p[0] != 0.0) add_fibre_force(fem_, directions(p), law(p[0]), motion.displacement, force);
+  void add_stress(int e, int q, const Eigen::Matrix3d& f, const Parameters& p, Eigen::Matrix3d& stress) const override {
+    const Eigen::Vector3d a = direction(e, q, p);
+    add_fibre_stress(tension(fibre_strain(f, a), p), a, f, stress);
   }
-  void add_finite_stiffness(const Motion& motion, const Parameters& p, SparseMatrix& stiffness) const override {
-    if (p[0] != 0.0) add_fibre_stiffness(fem_, directions(p), law(p[0]), motion.displacement, stiffness);
+  void add_tangent(int e, int q, const Eigen::Matrix3d& f, const Parameters& p, StressTangent& tangent) const override {
+    const Eigen::Vector3d a = direction(e, q, p);
+    add_fibre_tangent(tension(fibre_strain(f, a), p), a, f, tangent);
   }
 
  private:
-  // The result refers to p, because a copy would allocate memory at every force.
-  FibreDirections directions(const Parameters& p) const {
-    return [this, &p](int e, int q) { return fibres_.direction(e, q, p[1], p[2]); };
-  }
-  static FibreLaw law(double modulus) {
-    return [modulus](double strain) { return FibreTension{modulus * strain, modulus}; };
+  Eigen::Vector3d direction(int e, int q, const Parameters& p) const { return fibres_.direction(e, q, p[1], p[2]); }
+  static FibreTension tension(double strain, const Parameters& p) { return {p[0] * strain, p[0]}; }
+  bool is_absent(const Parameters& p) const override { return p[0] == 0.0; }
+  double energy_density(int e, int q, const Eigen::Matrix3d& f, const Parameters& p) const override {
+    const double strain = fibre_strain(f, direction(e, q, p));
+    return 0.5 * p[0] * strain * strain;
   }
 
-  const Discretisation& fem_;
   FibreField fibres_;
 };
 

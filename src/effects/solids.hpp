@@ -21,6 +21,7 @@ class Solids {
   int ratio_index(std::size_t solid) const { return modulus_index(solid) + 1; }
   double modulus(std::size_t solid, const Parameters& p) const { return p[modulus_index(solid)]; }
   double ratio(std::size_t solid, const Parameters& p) const { return p[ratio_index(solid)]; }
+  Lame moduli(std::size_t solid, const Parameters& p) const { return lame(modulus(solid, p), ratio(solid, p)); }
 
  private:
   int own_;

@@ -2,6 +2,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "effects/pointwise_effect.hpp"
 #include "effects/registry.hpp"
 #include "effects/solids.hpp"
 #include "effects/spread_points.hpp"
@@ -18,10 +19,13 @@ double mean_edge(const Discretisation& fem) {
   return std::cbrt(6.0 * std::sqrt(2.0) * fem.volume() / fem.element_count());
 }
 
-class StiffInclusion : public Effect, public FiniteStrainForm {
+class StiffInclusion : public PointwiseEffect {
  public:
   explicit StiffInclusion(const EffectContext& context)
-      : fem_(context.fem), solids_(context, kOwn), half_width_(kEdge * mean_edge(context.fem)) {}
+      : PointwiseEffect(context.fem),
+        fem_(context.fem),
+        solids_(context, kOwn),
+        half_width_(kEdge * mean_edge(context.fem)) {}
 
   bool needs_elasticity() const override { return true; }
   void linear_terms(LinearTerms& out) const override {
@@ -38,18 +42,27 @@ class StiffInclusion : public Effect, public FiniteStrainForm {
       out.strain_stiffness.push_back(std::move(term));
     }
   }
-  const FiniteStrainForm* finite_strain() const override { return this; }
-  void add_finite_force(const Motion& motion, const Parameters& p, Eigen::VectorXd& force) const override {
-    for (std::size_t s = 0; p[kExcess] != 0.0 && s < solids_.count(); ++s) {
-      const Lame c = lame(solids_.modulus(s, p), solids_.ratio(s, p));
-      solids_.finite(s).add_force(c, motion.displacement, scale(p), force);
+  void add_stress(int e, int q, const Eigen::Matrix3d& f, const Parameters& p, Eigen::Matrix3d& stress) const override {
+    const double excess = excess_at(e, q, p);
+    for (std::size_t s = 0; excess != 0.0 && s < solids_.count(); ++s) {
+      if (solids_.holds(s, e)) stress += excess * neo_hookean_stress(solids_.moduli(s, p), f);
     }
   }
-  void add_finite_stiffness(const Motion& motion, const Parameters& p, SparseMatrix& stiffness) const override {
-    for (std::size_t s = 0; p[kExcess] != 0.0 && s < solids_.count(); ++s) {
-      const Lame c = lame(solids_.modulus(s, p), solids_.ratio(s, p));
-      solids_.finite(s).add_stiffness(c, motion.displacement, scale(p), stiffness);
+  void add_tangent(int e, int q, const Eigen::Matrix3d& f, const Parameters& p, StressTangent& tangent) const override {
+    const double excess = excess_at(e, q, p);
+    for (std::size_t s = 0; excess != 0.0 && s < solids_.count(); ++s) {
+      if (solids_.holds(s, e)) tangent += excess * neo_hookean_tangent(solids_.moduli(s, p), f);
     }
+  }
+  Lame rest_moduli(int e, int q, const Parameters& p) const override {
+    const double excess = excess_at(e, q, p);
+    Lame sum{0.0, 0.0};
+    for (std::size_t s = 0; s < solids_.count(); ++s) {
+      if (!solids_.holds(s, e)) continue;
+      const Lame c = solids_.moduli(s, p);
+      sum = {sum.lambda + excess * c.lambda, sum.mu + excess * c.mu};
+    }
+    return sum;
   }
   bool has_strain_form() const override { return true; }
   void add_strain_force(const Eigen::VectorXd& u, const Eigen::Ref<const Eigen::VectorXd>& strains, const Parameters& p,
@@ -68,6 +81,16 @@ class StiffInclusion : public Effect, public FiniteStrainForm {
   }
 
  private:
+  bool is_absent(const Parameters& p) const override { return p[kExcess] == 0.0; }
+  double energy_density(int e, int q, const Eigen::Matrix3d& f, const Parameters& p) const override {
+    const double excess = excess_at(e, q, p);
+    double sum = 0.0;
+    for (std::size_t s = 0; excess != 0.0 && s < solids_.count(); ++s) {
+      if (solids_.holds(s, e)) sum += excess * neo_hookean_energy(solids_.moduli(s, p), f);
+    }
+    return sum;
+  }
+
   // Returns 1 inside, 0 outside, and a smooth step in between.
   double inside(int e, int q, const Parameters& p) const {
     const double distance = (fem_.position(e, q) - Eigen::Vector3d(p.segment<3>(kX))).norm();
@@ -76,10 +99,7 @@ class StiffInclusion : public Effect, public FiniteStrainForm {
   }
   double excess_at(int e, int q, const Parameters& p) const { return p[kExcess] * inside(e, q, p); }
 
-  // The results refer to p, because a copy would allocate memory at every force.
-  PointLaw scale(const Parameters& p) const {
-    return [this, &p](int e, int q, double) { return StressScale{excess_at(e, q, p), 0.0}; };
-  }
+  // The result refers to p, because a copy would allocate memory at every force.
   PointShare share(const Parameters& p) const {
     return [this, &p](int e, int q) { return excess_at(e, q, p); };
   }

@@ -2,8 +2,10 @@
 #include <Eigen/Cholesky>
 #include <functional>
 
+#include "effects/pointwise_effect.hpp"
 #include "effects/registry.hpp"
 #include "effects/solids.hpp"
+#include "fem/invariants.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness::effects {
@@ -11,20 +13,25 @@ namespace {
 
 constexpr double kMostExponent = 50.0;  // of the exponential: beyond it a step has diverged
 
-// Returns exp(b Q) - 1 with Q = 2 psi / E, and its derivative with respect to psi.
+// Factor of the elastic stress, and its derivative with respect to the energy density psi [1/Pa].
+struct StressScale {
+  double value, slope;
+};
+
+// Returns exp(b Q) - 1 with Q = 2 psi / E.
 StressScale excess(double b, double modulus, double psi) {
   const double exponent = 2.0 * b * psi / modulus;
   if (!(exponent < kMostExponent)) throw NumericalError("strain_stiffening: strain beyond every bound");
   return {std::expm1(exponent), 2.0 * b / modulus * std::exp(exponent)};
 }
 
-class StrainStiffening : public Effect, public FiniteStrainForm, public NonlinearForce {
+class StrainStiffening : public PointwiseEffect, public NonlinearForce {
  public:
-  explicit StrainStiffening(const EffectContext& context) : fem_(context.fem), solids_(context, 1) {}
+  explicit StrainStiffening(const EffectContext& context)
+      : PointwiseEffect(context.fem), fem_(context.fem), solids_(context, 1) {}
 
   bool needs_elasticity() const override { return true; }
   const NonlinearForce* nonlinear_force() const override { return this; }
-  const FiniteStrainForm* finite_strain() const override { return this; }
 
   // This and add_stiffness are the small-strain form.
   void add_force(const Motion& motion, const Parameters& p, Eigen::VectorXd& force) const override {
@@ -48,19 +55,36 @@ class StrainStiffening : public Effect, public FiniteStrainForm, public Nonlinea
     add_strain_stiffness(fem_, factor, 1.0 - motion.finite_share, stiffness);
   }
 
-  void add_finite_force(const Motion& motion, const Parameters& p, Eigen::VectorXd& force) const override {
-    for (std::size_t s = 0; p[0] != 0.0 && s < solids_.count(); ++s) {
-      solids_.finite(s).add_force(lame(solids_.modulus(s, p), solids_.ratio(s, p)), motion.displacement, law(s, p), force);
+  void add_stress(int e, int, const Eigen::Matrix3d& f, const Parameters& p, Eigen::Matrix3d& stress) const override {
+    for (std::size_t s = 0; s < solids_.count(); ++s) {
+      if (!solids_.holds(s, e)) continue;
+      const Lame c = solids_.moduli(s, p);
+      stress += excess(p[0], solids_.modulus(s, p), neo_hookean_energy(c, f)).value * neo_hookean_stress(c, f);
     }
   }
-  void add_finite_stiffness(const Motion& motion, const Parameters& p, SparseMatrix& stiffness) const override {
-    for (std::size_t s = 0; p[0] != 0.0 && s < solids_.count(); ++s) {
-      solids_.finite(s).add_stiffness(lame(solids_.modulus(s, p), solids_.ratio(s, p)), motion.displacement, law(s, p),
-                                      stiffness);
+  void add_tangent(int e, int, const Eigen::Matrix3d& f, const Parameters& p, StressTangent& tangent) const override {
+    for (std::size_t s = 0; s < solids_.count(); ++s) {
+      if (!solids_.holds(s, e)) continue;
+      const Lame c = solids_.moduli(s, p);
+      const StressScale scale = excess(p[0], solids_.modulus(s, p), neo_hookean_energy(c, f));
+      const Eigen::Matrix3d elastic = neo_hookean_stress(c, f);
+      tangent += scale.value * neo_hookean_tangent(c, f) + scale.slope * outer(elastic, elastic);
     }
   }
 
  private:
+  bool is_absent(const Parameters& p) const override { return p[0] == 0.0; }
+  // The integral of exp(b Q) - 1 over psi.
+  double energy_density(int e, int, const Eigen::Matrix3d& f, const Parameters& p) const override {
+    double sum = 0.0;
+    for (std::size_t s = 0; s < solids_.count(); ++s) {
+      if (!solids_.holds(s, e)) continue;
+      const double psi = neo_hookean_energy(solids_.moduli(s, p), f);
+      sum += excess(p[0], solids_.modulus(s, p), psi).value / (2.0 * p[0] / solids_.modulus(s, p)) - psi;
+    }
+    return sum;
+  }
+
   struct Point {
     Lame moduli;  ///< of the elasticity there
     Strain stress;
@@ -70,7 +94,7 @@ class StrainStiffening : public Effect, public FiniteStrainForm, public Nonlinea
     Point x{{0.0, 0.0}, Strain::Zero(), {0.0, 0.0}};
     for (std::size_t s = 0; s < solids_.count(); ++s) {
       if (!solids_.holds(s, e)) continue;
-      x.moduli = lame(solids_.modulus(s, p), solids_.ratio(s, p));
+      x.moduli = solids_.moduli(s, p);
       const Strain strain = strain_at(fem_, u, e, q);
       x.stress = 2.0 * x.moduli.mu * strain;
       x.stress.head<3>().array() += x.moduli.lambda * strain.head<3>().sum();
@@ -78,11 +102,6 @@ class StrainStiffening : public Effect, public FiniteStrainForm, public Nonlinea
     }
     return x;
   }
-  PointLaw law(std::size_t s, const Parameters& p) const {
-    const double b = p[0], modulus = solids_.modulus(s, p);
-    return [b, modulus](int, int, double psi) { return excess(b, modulus, psi); };
-  }
-
   const Discretisation& fem_;
   Solids solids_;
 };

@@ -73,31 +73,22 @@ void add_blocks(const Discretisation& fem, int e, const Eigen::Matrix<double, 3 
   }
 }
 
-struct Plain {
-  StressScale operator()(int, int, double) const { return {}; }
-};
-
-template <int N, typename Law>
+template <int N>
 void stiffness(const Discretisation& fem, const std::vector<int>& list, const Lame& c, const Eigen::VectorXd& u,
-               const Law& law, SparseMatrix& k) {
+               SparseMatrix& k) {
   for (const int e : list) {
     const Nodal<N> local = gather<N>(fem.elements(), e, u);
     Eigen::Matrix<double, 3 * N, 3 * N> block = Eigen::Matrix<double, 3 * N, 3 * N>::Zero();
     for (int q = 0; q < fem.points_per_element(); ++q) {
       const Eigen::Map<const Nodal<N>> g(fem.gradient(e, q).data());
       const Deformation d = deform<N>(local, g, e);
-      const StressScale scale = law(e, q, energy_density(c, d));
-      if (scale.value == 0.0 && scale.slope == 0.0) continue;
       const Nodal<N> h = d.inverse.transpose() * g;  // gradients in the deformed body
-      const Nodal<N> p = stress(c, d) * g;
-      const double w = scale.value * fem.weight(e, q), s = w * (c.mu - c.lambda * d.log_volume), l = w * c.lambda,
-                   m = w * c.mu, steeper = scale.slope * fem.weight(e, q);
+      const double w = fem.weight(e, q), s = w * (c.mu - c.lambda * d.log_volume), l = w * c.lambda, m = w * c.mu;
       for (int b = 0; b < N; ++b) {
         for (int a = 0; a < N; ++a) {
           auto part = block.template block<3, 3>(3 * a, 3 * b);
           part.noalias() += (s * h.col(b)) * h.col(a).transpose() + (l * h.col(a)) * h.col(b).transpose();
           part.diagonal().array() += m * g.col(a).dot(g.col(b));
-          if (steeper != 0.0) part.noalias() += (steeper * p.col(a)) * p.col(b).transpose();
         }
       }
     }
@@ -145,6 +136,10 @@ double stored(const Discretisation& fem, const std::vector<int>& list, const Lam
 
 }  // namespace
 
+double neo_hookean_energy(const Lame& c, const Eigen::Matrix3d& f) {
+  return energy_density(c, deform_point(f));
+}
+
 Eigen::Matrix3d neo_hookean_stress(const Lame& c, const Eigen::Matrix3d& f) {
   return stress(c, deform_point(f));
 }
@@ -179,16 +174,15 @@ NeoHookean::NeoHookean(const Discretisation& fem, std::vector<int> elements)
       corners_(fem.elements(), elements_, fem.node_count()),
       scratch_(std::make_unique<VectorPool>()) {}
 
-template <int N, typename Law>
-void NeoHookean::force(const Lame& c, const Eigen::VectorXd& u, const Law& law, Eigen::VectorXd& f) const {
+template <int N>
+void NeoHookean::force(const Lame& c, const Eigen::VectorXd& u, Eigen::VectorXd& f) const {
   const auto internal = [&](int e) {
     const Nodal<N> local = gather<N>(fem_.elements(), e, u);
     Nodal<N> out = Nodal<N>::Zero();
     for (int q = 0; q < fem_.points_per_element(); ++q) {
       const Eigen::Map<const Nodal<N>> g(fem_.gradient(e, q).data());
       const Deformation d = deform<N>(local, g, e);
-      const double scale = law(e, q, energy_density(c, d)).value;
-      if (scale != 0.0) out.noalias() += (scale * fem_.weight(e, q) * stress(c, d)) * g;
+      out.noalias() += (fem_.weight(e, q) * stress(c, d)) * g;
     }
     return out;
   };
@@ -196,21 +190,11 @@ void NeoHookean::force(const Lame& c, const Eigen::VectorXd& u, const Law& law, 
 }
 
 void NeoHookean::add_force(const Lame& lame, const Eigen::VectorXd& u, Eigen::VectorXd& f) const {
-  fem_.nodes_per_element() == 10 ? force<10>(lame, u, Plain(), f) : force<4>(lame, u, Plain(), f);
+  fem_.nodes_per_element() == 10 ? force<10>(lame, u, f) : force<4>(lame, u, f);
 }
 
 void NeoHookean::add_stiffness(const Lame& lame, const Eigen::VectorXd& u, SparseMatrix& k) const {
-  fem_.nodes_per_element() == 10 ? stiffness<10>(fem_, elements_, lame, u, Plain(), k)
-                                 : stiffness<4>(fem_, elements_, lame, u, Plain(), k);
-}
-
-void NeoHookean::add_force(const Lame& lame, const Eigen::VectorXd& u, const PointLaw& scale, Eigen::VectorXd& f) const {
-  fem_.nodes_per_element() == 10 ? force<10>(lame, u, scale, f) : force<4>(lame, u, scale, f);
-}
-
-void NeoHookean::add_stiffness(const Lame& lame, const Eigen::VectorXd& u, const PointLaw& scale, SparseMatrix& k) const {
-  fem_.nodes_per_element() == 10 ? stiffness<10>(fem_, elements_, lame, u, scale, k)
-                                 : stiffness<4>(fem_, elements_, lame, u, scale, k);
+  fem_.nodes_per_element() == 10 ? stiffness<10>(fem_, elements_, lame, u, k) : stiffness<4>(fem_, elements_, lame, u, k);
 }
 
 template <int N>

@@ -26,20 +26,16 @@ inline Lame lame(double young_modulus, double poisson_ratio) {
 /// Derivative of a stress P with respect to F, both by columns: entry (i + 3 J, k + 3 L) is dP_iJ / dF_kL [Pa].
 using StressTangent = Eigen::Matrix<double, 9, 9>;
 
-/// Returns the first Piola-Kirchhoff stress P = mu (F - F^-T) + lambda ln J F^-T of the solid below at one point [Pa], and
-/// its derivative (Bonet & Wood 2008, eq. 6.29, 6.30). Both throw NumericalError unless det F is positive.
+/// Returns the energy density of the solid below at one point [Pa], its first Piola-Kirchhoff stress P = mu (F - F^-T) +
+/// lambda ln J F^-T, and the stress's derivative (Bonet & Wood 2008, eq. 6.28, 6.29, 6.30). All throw NumericalError unless
+/// det F is positive.
+double neo_hookean_energy(const Lame& lame, const Eigen::Matrix3d& f);
 Eigen::Matrix3d neo_hookean_stress(const Lame& lame, const Eigen::Matrix3d& f);
 StressTangent neo_hookean_tangent(const Lame& lame, const Eigen::Matrix3d& f);
 /// Returns P = F (lambda tr(E') I + 2 mu E') of the strain rate E' = sym(F^T F') at one point, and dP / dF'.
 Eigen::Matrix3d viscous_stress(const Lame& viscosity, const Eigen::Matrix3d& f, const Eigen::Matrix3d& rate);
 StressTangent viscous_tangent(const Lame& viscosity, const Eigen::Matrix3d& f);
 
-/// Factor of the stress at a quadrature point, and its derivative with respect to the energy density psi [1/Pa].
-struct StressScale {
-  double value = 1.0;
-  double slope = 0.0;
-};
-using PointLaw = std::function<StressScale(int e, int q, double psi)>;
 /// Factor of the moduli at a quadrature point.
 using PointShare = std::function<double(int e, int q)>;
 
@@ -53,9 +49,6 @@ class NeoHookean {
   void add_force(const Lame& lame, const Eigen::VectorXd& u, Eigen::VectorXd& force) const;
   /// Adds the tangent stiffness [N/m].
   void add_stiffness(const Lame& lame, const Eigen::VectorXd& u, SparseMatrix& stiffness) const;
-  /// These do so with the stress P(F) scaled at each point: scale(e, q, psi).value P.
-  void add_force(const Lame& lame, const Eigen::VectorXd& u, const PointLaw& scale, Eigen::VectorXd& force) const;
-  void add_stiffness(const Lame& lame, const Eigen::VectorXd& u, const PointLaw& scale, SparseMatrix& stiffness) const;
   /// Returns the stored energy [J].
   double energy(const Lame& lame, const Eigen::VectorXd& u) const;
 
@@ -70,8 +63,8 @@ class NeoHookean {
                           SparseMatrix& stiffness) const;
 
  private:
-  template <int N, typename Law>
-  void force(const Lame& lame, const Eigen::VectorXd& u, const Law& law, Eigen::VectorXd& f) const;
+  template <int N>
+  void force(const Lame& lame, const Eigen::VectorXd& u, Eigen::VectorXd& f) const;
   template <int N>
   void strain_force(const Lame& lame, const Eigen::VectorXd& u, const Eigen::Ref<const Eigen::VectorXd>& strains,
                     const PointShare& share, Eigen::VectorXd& f) const;

@@ -23,7 +23,10 @@ Eigen::VectorXd without_extra_force(const Model& model, Eigen::VectorXd theta) {
 }  // namespace
 
 bool adds_extra_force(const Model::Part& part) {
-  return part.effect->nonlinear_force() != nullptr || !part.terms.finite_share.empty();
+  const LinearTerms& terms = part.terms;
+  const bool only_finite = part.effect->finite_strain() != nullptr && terms.stiffness.empty() &&
+                           terms.strain_stiffness.empty() && terms.loads.empty();
+  return only_finite || part.effect->nonlinear_force() != nullptr || !terms.finite_share.empty();
 }
 
 bool has_linear_form(const Model::Part& part) {

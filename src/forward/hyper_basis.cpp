@@ -221,11 +221,10 @@ class Chooser {
   }
 
   Eigen::MatrixXd rest_stiffness(const Law& law) const {
-    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(out_.vectors.cols(), out_.vectors.cols());
-    for (const MatrixTerm& term : model_.parts()[law.part].terms.stiffness) {
-      sum += term.coefficient(parameters(law, 0)) * project_matrix(*term.matrix, out_.vectors);
-    }
-    return sum;
+    const Eigen::VectorXd still = Eigen::VectorXd::Zero(out_.vectors.rows());
+    SparseMatrix stiffness = model_.fem().pattern();
+    law.form->add_finite_stiffness({0.0, still, still, 1.0}, parameters(law, 0), stiffness);
+    return project_matrix(stiffness, out_.vectors);
   }
   Eigen::MatrixXd scaled(const Eigen::MatrixXd& stiffness) const {
     return kAtRest * compliance_.asDiagonal() * stiffness * compliance_.asDiagonal();
@@ -273,15 +272,28 @@ HyperBasis choose_hyper_basis(const Model& model, const FullMotions& motions, co
   return Chooser(model, motions, options).choose();
 }
 
+namespace {
+
+// A law at points has forms for small strain, too. They count where the model is not finite throughout, and where damping
+// acts through them.
+bool has_more_than_points(const Model& model, const ModelPart& part) {
+  const FiniteStrainForm* form = part.effect->finite_strain();
+  const bool strain_terms = !part.terms.strain_stiffness.empty();
+  if (form == nullptr || form->point_form() == nullptr) {
+    return form != nullptr || strain_terms || part.effect->nonlinear_force() != nullptr;
+  }
+  if (!model.always_finite()) return strain_terms || part.effect->nonlinear_force() != nullptr;
+  return strain_terms && !form->has_strain_form() && model.may_damp_by_stiffness();
+}
+
+}  // namespace
+
 std::string why_not_hyper_reduced(const Model& model) {
   if (!model.may_be_finite()) return "no law of finite strain";
   if (model.starts_in_motion()) return "the body starts in motion";
   if (!model.reactions().empty()) return "reactions to a prescribed motion";
   for (const Model::Part& part : model.parts()) {
-    const FiniteStrainForm* form = part.effect->finite_strain();
-    const bool at_points = form != nullptr && form->point_form() != nullptr;
-    if (part.effect->nonlinear_force() != nullptr || (form != nullptr && !at_points) ||
-        !part.terms.strain_stiffness.empty() || !part.terms.relaxation.empty() || !part.compliant_nodes().empty()) {
+    if (has_more_than_points(model, part) || !part.terms.relaxation.empty() || !part.compliant_nodes().empty()) {
       return part.label + " has no form at sampled points";
     }
   }

@@ -22,7 +22,7 @@ const EffectSettings& require_effect(const ModelSettings& settings, const std::s
   return *effect;
 }
 
-bool always_finite(const ModelPart& part) {
+bool requires_finite_strain(const ModelPart& part) {
   const FiniteStrainForm* finite = part.effect->finite_strain();
   return finite != nullptr && finite->always_finite();
 }
@@ -47,7 +47,7 @@ Model::Model(const ModelSettings& settings, std::shared_ptr<const Body> body, co
   for (Part& part : parts_) {
     part.effect->linear_terms(part.terms);
     settle_terms(part);
-    finite_law_ = finite_law_ || always_finite(part);
+    finite_law_ = finite_law_ || requires_finite_strain(part);
     nonlinear_ = nonlinear_ || part.effect->nonlinear_force() != nullptr || !part.terms.finite_share.empty();
   }
   nonlinear_ = nonlinear_ || finite_law_;
@@ -130,13 +130,19 @@ void Model::link_elasticities() {
 void Model::check_laws() const {
   bool linear = false, blended = false;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
-    linear = linear || (settings_.effects[i].name == "elasticity" && !always_finite(parts_[i]));
+    linear = linear || (settings_.effects[i].name == "elasticity" && !requires_finite_strain(parts_[i]));
     blended = blended || !parts_[i].terms.finite_share.empty();
   }
   if (finite_law_ && (linear || blended)) {
     throw InputError(settings_.name + ": effects",
                      linear ? "elasticities of small and of finite strain" : "finite strain twice",
                      "one law for all; geometric_nonlinearity only with law: linear");
+  }
+  if (may_be_finite()) return;
+  for (const EffectSettings& effect : settings_.effects) {
+    if (!effect_spec(effect).of_finite_strain) continue;
+    throw InputError(settings_.name + ": effects", effect.name + " at small strain",
+                     "it beside elasticity with law: neo_hookean, or beside geometric_nonlinearity");
   }
 }
 

@@ -117,6 +117,9 @@ class Model {
   bool has_finite_damping(const Point& at) const;
   /// Returns whether some law has its stress in finite strain at some theta.
   bool may_be_finite() const;
+  bool always_finite() const { return finite_law_; }
+  /// Returns whether an effect makes damping or mass in proportion to the stiffness at rest.
+  bool may_damp_by_stiffness() const;
   /// Adds the force [N] of a stress linear in `strains`, of all laws under finite strain, times their share of it.
   void add_strain_force(const Point& at, const Eigen::VectorXd& u, const Eigen::Ref<const Eigen::VectorXd>& strains,
                         Eigen::VectorXd& force) const;

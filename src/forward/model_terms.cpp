@@ -286,6 +286,12 @@ bool Model::may_be_finite() const {
          std::any_of(parts_.begin(), parts_.end(), [](const Part& p) { return !p.terms.finite_share.empty(); });
 }
 
+bool Model::may_damp_by_stiffness() const {
+  return std::any_of(parts_.begin(), parts_.end(), [](const Part& p) {
+    return !p.terms.stiffness_damping.empty() || !p.terms.stiffness_inertia.empty();
+  });
+}
+
 bool Model::has_friction(const Point& at) const {
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const NonlinearForce* force = parts_[i].effect->nonlinear_force();

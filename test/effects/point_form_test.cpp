@@ -116,10 +116,18 @@ TEST_P(PointFormOf, DampsAsTheElementsDo) {
   EXPECT_LT((sum - whole).norm(), 1e-12 * whole.norm());
 }
 
-INSTANTIATE_TEST_SUITE_P(Effects, PointFormOf,
-                         testing::Values(Case{"elasticity",
-                                              "elasticity: {law: neo_hookean, young_modulus: 3e4, poisson_ratio: 0.4}"}),
-                         [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Effects, PointFormOf,
+    testing::Values(Case{"elasticity", "elasticity: {law: neo_hookean, young_modulus: 3e4, poisson_ratio: 0.4}"},
+                    Case{"strain_stiffening", "strain_stiffening: {exponent: 5}"},
+                    Case{"stiff_inclusion", "stiff_inclusion: {center: [0.05, 0.01, 0.01], radius: 0.03, excess: 2}"},
+                    Case{"compressibility", "compressibility: {shift: 0.05}"},
+                    Case{"fibre_reinforcement", "fibre_reinforcement: {direction: [1, 0.2, 0.1], modulus: 1e4}"},
+                    Case{"mooney_rivlin", "mooney_rivlin: {share: 0.4}"}, Case{"ogden", "ogden: {exponent: -4.7}"},
+                    Case{"holzapfel_gasser_ogden",
+                         "holzapfel_gasser_ogden: {direction: [1, 0.2, 0.1], stiffness: 1e4, "
+                         "exponent: 2, dispersion: 0.1}"}),
+    [](const auto& info) { return info.param.name; });
 
 // A point that is turned inside out has no stress.
 TEST(PointForm, RefusesWhatIsTurnedInsideOut) {

@@ -101,6 +101,19 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"half_finite",
              {elasticity("linear"), kGravity, "geometric_nonlinearity: {share: 0.5}", "viscous_damping: {beta: 4e-3}"}},
         Case{"pulled", {elasticity("neo_hookean"), "traction: {region: tip, topic: /push, scale: 2}"}},
+        Case{"stiffening", {elasticity("neo_hookean"), kGravity, "strain_stiffening: {exponent: 5}"}},
+        Case{"inclusion",
+             {elasticity("neo_hookean"), kGravity, "viscous_damping: {beta: 4e-3}",
+              "stiff_inclusion: {center: [0.03, 0.01, 0.01], radius: 0.015, excess: 3}"}},
+        Case{"compressible",
+             {elasticity("neo_hookean"), kGravity, "viscous_damping: {beta: 4e-3}", "compressibility: {shift: -0.1}"}},
+        Case{"fibres",
+             {elasticity("neo_hookean"), kGravity, "fibre_reinforcement: {direction: [1, 0.3, 0.2], modulus: 6e4}"}},
+        Case{"mooney_rivlin", {elasticity("neo_hookean"), kGravity, "mooney_rivlin: {share: 0.6}"}},
+        Case{"ogden", {elasticity("neo_hookean"), kGravity, "ogden: {exponent: 12}"}},
+        Case{"collagen",
+             {elasticity("neo_hookean"), kGravity,
+              "holzapfel_gasser_ogden: {direction: [1, 0.3, 0.2], stiffness: 2e4, exponent: 3, dispersion: 0.1}"}},
         Case{"two_tissues",
              {"elasticity: {law: neo_hookean, region: near, poisson_ratio: 0.45, young_modulus: {prior: 60e3, factor: 2}}",
               "elasticity: {law: neo_hookean, region: far, poisson_ratio: 0.4, young_modulus: 30e3}", kGravity}}),
@@ -183,11 +196,23 @@ TEST(HyperReducedModel, TellsWhatItCannotStandFor) {
   };
   EXPECT_EQ(why({elasticity("neo_hookean")}), "");
   EXPECT_EQ(why({elasticity("linear")}), "no law of finite strain");
-  for (const char* effect : {"pressure: {region: top, topic: /p}", "strain_stiffening: {exponent: 5}",
-                             "contact_plane: {point: [0, 0, -0.01], normal: [0, 0, 1]}",
-                             "viscoelasticity: {gamma: 0.3, tau: 0.05}", "initial_motion: {equilibrium: 0.5}"}) {
+  for (const char* effect :
+       {"pressure: {region: top, topic: /p}", "contact_plane: {point: [0, 0, -0.01], normal: [0, 0, 1]}",
+        "viscoelasticity: {gamma: 0.3, tau: 0.05}", "initial_motion: {equilibrium: 0.5}"}) {
     EXPECT_NE(why({elasticity("neo_hookean"), effect}), "") << effect;
   }
+}
+
+// Fibres damp through their linear stiffness, which has no form at points.
+TEST(HyperReducedModel, IsRefusedForFibresThatDamp) {
+  const auto why = [](const std::string& law, const std::string& damping) {
+    return why_not_hyper_reduced(Model(box_settings({"inertia: {density: 1000}", "fixed: {region: clamp}", elasticity(law),
+                                                     "fibre_reinforcement: {direction: [1, 0, 0], modulus: 1e4}", damping}),
+                                       bar_mesh(2)));
+  };
+  EXPECT_EQ(why("neo_hookean", "mass_damping: {alpha: 1}"), "");
+  EXPECT_NE(why("neo_hookean", "viscous_damping: {beta: 4e-3}"), "");
+  EXPECT_NE(why("linear", "geometric_nonlinearity: {share: 0.5}"), "") << "a part of the fibres is at small strain";
 }
 
 TEST(FullMotions, AreThinnedEvenly) {
