@@ -131,18 +131,19 @@ std::vector<KeySpec> observation_keys() {
                  "whether the images are rectified, so that P of the calibration counts and K and D do not"),
        plain_key(contour + ".region", Kind::text, "", "part of the surface that the outline belongs to; all when absent")});
   const std::string reaction = "observations[].reaction";
-  keys.insert(keys.end(),
-              {plain_key(reaction, Kind::map, "", "force on a region that an effect `moved` moves or a `tool_contact` touches"),
-               required_key(reaction + ".topic", Kind::text, "",
-                            "geometry_msgs/WrenchStamped; the force on the body, its torque is not used"),
-               required_key(reaction + ".region", Kind::text, "", "region of that effect"),
-               positive(reaction + ".noise", "N", "1 sigma of a component"),
-               number_key(reaction + ".gain", "", 0, 1, 0.1, "relative error of the sensor's scale, 1 sigma"),
-               number_key(reaction + ".bias", "N", 0, kInfinity, std::numeric_limits<double>::quiet_NaN(),
-                          "constant offset of each component, 1 sigma; 10 % of the largest force when absent"),
-               number_key(reaction + ".rotation_tolerance", "rad", 0, 1, 0.05, "of the sensor about each axis, 1 sigma"),
-               number_key(reaction + ".rate", "Hz", kPositive, kInfinity, 50,
-                          "most measurements a second; messages between them are left out")});
+  keys.insert(
+      keys.end(),
+      {plain_key(reaction, Kind::map, "", "force on a region that an effect `moved` moves or a `tool_contact` touches"),
+       required_key(reaction + ".topic", Kind::text, "",
+                    "geometry_msgs/WrenchStamped; the force on the body, its torque is not used"),
+       required_key(reaction + ".region", Kind::text, "", "region of that effect"),
+       positive(reaction + ".noise", "N", "1 sigma of a component"),
+       number_key(reaction + ".gain", "", 0, 1, 0.1, "relative error of the sensor's scale, 1 sigma"),
+       number_key(reaction + ".bias", "N", 0, kInfinity, std::numeric_limits<double>::quiet_NaN(),
+                  "constant offset of each component, 1 sigma; 10 % of the largest force when absent"),
+       number_key(reaction + ".rotation_tolerance", "rad", 0, 1, 0.05, "of the sensor about each axis, 1 sigma"),
+       number_key(reaction + ".rate", "Hz", kPositive, kInfinity, 50,
+                  "most measurements a second; messages between them are left out")});
   return keys;
 }
 
