@@ -16,7 +16,7 @@ SHEAR = YOUNG_MODULUS / 2 / (1 + POISSON_RATIO)
 BULK = YOUNG_MODULUS / 3 / (1 - 2 * POISSON_RATIO)
 LENGTH, WIDTH = 0.1, 0.02
 FORCE = np.array([1.6, 0.12, 0.08])  # [N] on the end face
-HOLD, STEPS = 2.0, 12                # [s] each, and how many
+HOLD, STEPS = 2.0, 24                # [s] each, and how many
 NOISE = 1e-4                         # [m]
 LAWS = {  # the tool's entry; energy of FEniCSx
     'neo_hookean': '',
@@ -48,7 +48,7 @@ def energy(ufl, law, f):
 
 
 def solve(simulate, law, nodes):
-    """Displacements of `nodes` after each step, STEPS x n x 3."""
+    """Displacements of `nodes` at rest and after each step, (STEPS + 1) x n x 3."""
     import dolfinx
     import dolfinx.nls.petsc
     import ufl
@@ -76,7 +76,7 @@ def solve(simulate, law, nodes):
     newton.krylov_solver.getPC().setType('lu')
     newton.krylov_solver.getPC().setFactorSolverType('mumps')
     to_nodes, _ = simulate.p2_interp_matrix(space.tabulate_dof_coordinates(), space.dofmap.list.array.reshape(-1, 10), nodes)
-    out = []
+    out = [np.zeros(nodes.shape)]
     for k in range(1, STEPS + 1):
         traction.value[:] = FORCE / WIDTH ** 2 * k / STEPS
         newton.solve(u)
@@ -101,10 +101,10 @@ def write_recording(folder, simulate, law, seed):
     moved = solve(simulate, law, nodes[surface])
     random = np.random.default_rng(seed)
     with open(os.path.join(folder, 'points.csv'), 'w') as out:
-        for k in range(STEPS):
+        for k in range(STEPS + 1):
             seen = nodes[surface] + moved[k] + NOISE * random.standard_normal(moved[k].shape)
             for vertex, x in zip(surface, seen):
-                out.write('%.9g,%d,%.9g,%.9g,%.9g\n' % ((k + 1) * HOLD - 1e-3, vertex, *x))
+                out.write('%.9g,%d,%.9g,%.9g,%.9g\n' % (max(0.0, k * HOLD - 1e-3), vertex, *x))
     with open(os.path.join(folder, 'force.csv'), 'w') as out:
         out.write('0,0,0,0\n')
         for k in range(STEPS):
