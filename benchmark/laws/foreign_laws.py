@@ -11,15 +11,15 @@ import sys
 
 import numpy as np
 
-YOUNG_MODULUS, POISSON_RATIO = 20e3, 0.45
-SHEAR = YOUNG_MODULUS / 2 / (1 + POISSON_RATIO)
-BULK = YOUNG_MODULUS / 3 / (1 - 2 * POISSON_RATIO)
+YOUNG_MODULUS = 20e3
 LENGTH, WIDTH = 0.1, 0.02
 FORCE = np.array([1.6, 0.12, 0.08])  # [N] on the end face
 HOLD, STEPS = 2.0, 24                # [s] each, and how many
 NOISE = 1e-4                         # [m]
-LAWS = {  # the tool's entry; energy of FEniCSx
+POISSON_RATIO = {'nearly_incompressible': 0.4999}  # of these; 0.45 of the others
+LAWS = {  # what the tool's model has beside neo-Hookean elasticity
     'neo_hookean': '',
+    'nearly_incompressible': '',
     'mooney_rivlin': 'mooney_rivlin: {share: 0.7}',
     'ogden': 'ogden: {exponent: -4}',
     'strain_stiffening': 'strain_stiffening: {exponent: 2}',
@@ -27,16 +27,26 @@ LAWS = {  # the tool's entry; energy of FEniCSx
 }
 
 
+def poisson_ratio(law):
+    return POISSON_RATIO.get(law, 0.45)
+
+
+def lame(law):
+    nu = poisson_ratio(law)
+    return YOUNG_MODULUS * nu / (1 + nu) / (1 - 2 * nu), YOUNG_MODULUS / 2 / (1 + nu)
+
+
 def energy(ufl, law, f):
     """psi(F) [Pa]. The tool's formulas, but UFL takes the derivatives."""
+    first_lame, shear = lame(law)
     c, j = f.T * f, ufl.det(f)
     first, second = ufl.tr(c), (ufl.tr(c) ** 2 - ufl.tr(c * c)) / 2
-    neo_hookean = SHEAR / 2 * (first - 3 - 2 * ufl.ln(j)) + (BULK - 2 * SHEAR / 3) / 2 * ufl.ln(j) ** 2
+    neo_hookean = shear / 2 * (first - 3 - 2 * ufl.ln(j)) + first_lame / 2 * ufl.ln(j) ** 2
     if law == 'mooney_rivlin':
-        return neo_hookean + 0.7 * SHEAR / 2 * (j ** (-4 / 3) * second - j ** (-2 / 3) * first)
+        return neo_hookean + 0.7 * shear / 2 * (j ** (-4 / 3) * second - j ** (-2 / 3) * first)
     if law == 'ogden':  # the sum of lambda^-4 is tr C^-2
         inverse = ufl.inv(c)
-        return neo_hookean + SHEAR / 8 * j ** (4 / 3) * ufl.tr(inverse * inverse) - SHEAR / 2 * j ** (-2 / 3) * first
+        return neo_hookean + shear / 8 * j ** (4 / 3) * ufl.tr(inverse * inverse) - shear / 2 * j ** (-2 / 3) * first
     if law == 'strain_stiffening':
         return YOUNG_MODULUS / 4 * (ufl.exp(4 * neo_hookean / YOUNG_MODULUS) - 1)
     if law == 'holzapfel_gasser_ogden':
@@ -45,6 +55,25 @@ def energy(ufl, law, f):
         x = 0.1 * (j ** (-2 / 3) * first - 3) + 0.7 * (j ** (-2 / 3) * ufl.inner(a, a) - 1)
         return neo_hookean + ufl.conditional(ufl.gt(x, 0), 4e3 / 3 * (ufl.exp(1.5 * x ** 2) - 1), 0 * x)
     return neo_hookean
+
+
+def elements(ufl, law, cell):
+    """Displacements of second order, and for nearly incompressible tissue a pressure of first order (Taylor and Hood)."""
+    displacement = ufl.VectorElement('CG', cell, 2)
+    if law != 'nearly_incompressible':
+        return displacement
+    return ufl.MixedElement(displacement, ufl.FiniteElement('CG', cell, 1))
+
+
+def potential(ufl, law, state):
+    """psi, and the displacement in it."""
+    if law != 'nearly_incompressible':
+        return energy(ufl, law, ufl.Identity(3) + ufl.grad(state)), state
+    first_lame, shear = lame(law)
+    u, pressure = ufl.split(state)
+    f = ufl.Identity(3) + ufl.grad(u)
+    logarithm = ufl.ln(ufl.det(f))
+    return shear / 2 * (ufl.inner(f, f) - 3 - 2 * logarithm) + pressure * logarithm - pressure ** 2 / (2 * first_lame), u
 
 
 def solve(simulate, law, nodes):
@@ -59,28 +88,33 @@ def solve(simulate, law, nodes):
     model = simulate.gmsh_mesh(bar(simulate), 0.006, 1, name='sim')
     mesh, _, _ = gmshio.model_to_mesh(model.model, MPI.COMM_SELF, 0, gdim=3)
     model.finalize()
-    space = fem.VectorFunctionSpace(mesh, ('CG', 2))
-    u, w = fem.Function(space), ufl.TestFunction(space)
+    space = fem.FunctionSpace(mesh, elements(ufl, law, mesh.ufl_cell()))
+    state, test = fem.Function(space), ufl.TestFunction(space)
+    psi, u = potential(ufl, law, state)
     end = dolfinx.mesh.locate_entities_boundary(mesh, 2, lambda x: np.abs(x[0] - LENGTH) < 1e-6)
     tags = dolfinx.mesh.meshtags(mesh, 2, np.sort(end), np.ones(len(end), np.int32))
     ds = ufl.Measure('ds', mesh, subdomain_data=tags)(1)
-    held = dolfinx.mesh.locate_entities_boundary(mesh, 2, lambda x: np.abs(x[0]) < 1e-6)
-    clamp = fem.dirichletbc(np.zeros(3), fem.locate_dofs_topological(space, 2, held), space)
-    traction = fem.Constant(mesh, np.zeros(3))
     dx = ufl.Measure('dx', mesh, metadata={'quadrature_degree': 4})
-    psi = energy(ufl, law, ufl.Identity(3) + ufl.grad(u))
-    problem = fem.petsc.NonlinearProblem(ufl.derivative(psi * dx, u, w) - ufl.inner(traction, w) * ds, u, [clamp])
+    held = dolfinx.mesh.locate_entities_boundary(mesh, 2, lambda x: np.abs(x[0]) < 1e-6)
+    if law == 'nearly_incompressible':
+        own, dofs = space.sub(0).collapse()
+        clamp = fem.dirichletbc(fem.Function(own), fem.locate_dofs_topological((space.sub(0), own), 2, held), space.sub(0))
+    else:
+        own, dofs = space, slice(None)
+        clamp = fem.dirichletbc(np.zeros(3), fem.locate_dofs_topological(space, 2, held), space)
+    traction = fem.Constant(mesh, np.zeros(3))
+    problem = fem.petsc.NonlinearProblem(ufl.derivative(psi * dx - ufl.inner(traction, u) * ds, state, test), state, [clamp])
     newton = dolfinx.nls.petsc.NewtonSolver(MPI.COMM_SELF, problem)
     newton.rtol = 1e-9
     newton.krylov_solver.setType('preonly')
     newton.krylov_solver.getPC().setType('lu')
     newton.krylov_solver.getPC().setFactorSolverType('mumps')
-    to_nodes, _ = simulate.p2_interp_matrix(space.tabulate_dof_coordinates(), space.dofmap.list.array.reshape(-1, 10), nodes)
+    to_nodes, _ = simulate.p2_interp_matrix(own.tabulate_dof_coordinates(), own.dofmap.list.array.reshape(-1, 10), nodes)
     out = [np.zeros(nodes.shape)]
     for k in range(1, STEPS + 1):
         traction.value[:] = FORCE / WIDTH ** 2 * k / STEPS
-        newton.solve(u)
-        out.append(to_nodes @ u.x.array.reshape(-1, 3))
+        newton.solve(state)
+        out.append(to_nodes @ state.x.array[dofs].reshape(-1, 3))
     return np.array(out)
 
 
@@ -113,7 +147,7 @@ def write_recording(folder, simulate, law, seed):
     return np.abs(moved).max()
 
 
-def model_text(entry):
+def model_text(law, entry):
     return '\n'.join([
         'mesh: {file: mesh.vtk}',
         'regions:',
@@ -121,7 +155,7 @@ def model_text(entry):
         '  end: {box: {min: [%.9g, -1, -1], max: [1, 1, 1]}}' % (LENGTH - 1e-6),
         'effects:',
         '  - inertia: {density: 1000}',
-        '  - elasticity: {law: neo_hookean, poisson_ratio: %g, young_modulus: {prior: 30e3, factor: 2}}' % POISSON_RATIO,
+        '  - elasticity: {law: neo_hookean, poisson_ratio: %g, young_modulus: {prior: 30e3, factor: 2}}' % poisson_ratio(law),
         '  - fixed: {region: clamp}',
         '  - mass_damping: {alpha: 20}',
         '  - traction: {region: end, topic: /tool/wrench}'] + (['  - ' + entry] if entry else []) + [
@@ -130,10 +164,10 @@ def model_text(entry):
         'inputs: exact', 'time: {step: 0.05}', ''])
 
 
-def estimate(program, folder, name, entry):
+def estimate(program, folder, name, law, entry):
     model = os.path.join(folder, name + '.yaml')
     with open(model, 'w') as out:
-        out.write(model_text(entry))
+        out.write(model_text(law, entry))
     output = os.path.join(folder, name)
     done = subprocess.run([program, model, '--data', '/tissue/vertices=' + os.path.join(folder, 'points.csv'),
                            '/tool/wrench=' + os.path.join(folder, 'force.csv'), '--output', output, '--quiet'],
@@ -149,16 +183,18 @@ def words(result):
     return '%+.1f %% (%+.1f to %+.1f), `%s`' % (*off, result['state'])
 
 
-def main(root, output, program):
+def main(root, output, program, *laws):
     sys.path.insert(0, os.path.join(root, '..', 'shared', 'simulator'))
     import simulate
     print('| law | largest displacement | E off, with the law | E off, with neo-Hookean alone |\n|---|---|---|---|')
     for law, entry in LAWS.items():
+        if laws and law not in laws:
+            continue
         folder = os.path.join(output, law)
         os.makedirs(folder, exist_ok=True)
         most = write_recording(folder, simulate, law, 1)
-        alone = words(estimate(program, folder, 'alone', '')) if entry else ''
-        print('| %s | %.0f mm | %s | %s |' % (law, 1e3 * most, words(estimate(program, folder, 'with', entry)), alone), flush=True)
+        alone = words(estimate(program, folder, 'alone', law, '')) if entry else ''
+        print('| %s | %.0f mm | %s | %s |' % (law, 1e3 * most, words(estimate(program, folder, 'with', law, entry)), alone), flush=True)
 
 
 if __name__ == '__main__':

@@ -136,6 +136,19 @@ class PointForm {
   ~PointForm() = default;
 };
 
+/// A load whose force is size(time) times a polynomial of second degree in the displacement, as that of a pressure that
+/// follows the surface.
+class FollowerLoad {
+ public:
+  /// Returns the size, with the factor of every measured load.
+  virtual double size(double time, double load_factor, const Parameters&) const = 0;
+  /// Adds the force of a unit size at the displacement u (3n).
+  virtual void add_unit_force(const Eigen::VectorXd& u, Eigen::VectorXd& force) const = 0;
+
+ protected:
+  ~FollowerLoad() = default;
+};
+
 /// What replaces an effect's linear stiffness and loads under finite strain.
 class FiniteStrainForm {
  public:
@@ -153,8 +166,10 @@ class FiniteStrainForm {
                                 const Parameters&, double /*scale*/, Eigen::VectorXd&) const {}
   virtual void add_strain_tangent(const Eigen::VectorXd& /*u*/, const Parameters&, double /*scale*/, SparseMatrix&) const {}
 
-  /// Returns the same force point by point; null: it has no such form, and its models are never reduced.
+  /// Returns the same force point by point, or as that of a load; null: it has no such form. Models with a form that has
+  /// neither are never reduced.
   virtual const PointForm* point_form() const { return nullptr; }
+  virtual const FollowerLoad* follower_load() const { return nullptr; }
 
  protected:
   ~FiniteStrainForm() = default;

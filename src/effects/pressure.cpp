@@ -5,7 +5,7 @@
 namespace tissue_stiffness::effects {
 namespace {
 
-class Pressure : public Effect, public FiniteStrainForm {
+class Pressure : public Effect, public FiniteStrainForm, public FollowerLoad {
  public:
   Pressure(const Value& arguments, const EffectContext& context)
       : surface_(arguments.at("region"), context), course_(load_course(arguments, LoadInput::Kind::pressure, context)) {}
@@ -20,17 +20,20 @@ class Pressure : public Effect, public FiniteStrainForm {
   const FiniteStrainForm* finite_strain() const override { return this; }
 
   void add_finite_force(const Motion& motion, const Parameters& p, Eigen::VectorXd& force) const override {
-    surface_.add_force(&motion.displacement, pressure(motion, p), force);
+    surface_.add_force(&motion.displacement, size(motion.time, motion.load_factor, p), force);
   }
   void add_finite_stiffness(const Motion& motion, const Parameters& p, SparseMatrix& stiffness) const override {
-    surface_.add_stiffness(motion.displacement, pressure(motion, p), stiffness);
+    surface_.add_stiffness(motion.displacement, size(motion.time, motion.load_factor, p), stiffness);
+  }
+  const FollowerLoad* follower_load() const override { return this; }
+  double size(double time, double load_factor, const Parameters& p) const override {
+    return load_factor * p[0] * course_->value(time, 0);
+  }
+  void add_unit_force(const Eigen::VectorXd& u, Eigen::VectorXd& force) const override {
+    surface_.add_force(&u, 1.0, force);
   }
 
  private:
-  double pressure(const Motion& motion, const Parameters& p) const {
-    return motion.load_factor * p[0] * course_->value(motion.time, 0);
-  }
-
   PressedSurface surface_;
   std::shared_ptr<Course> course_;
 };

@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kScale = 5e-3;  // of Young's modulus: strains of a few per cent in a wall that is a tenth of its radius
 
-class PressureOffset : public Effect, public FiniteStrainForm {
+class PressureOffset : public Effect, public FiniteStrainForm, public FollowerLoad {
  public:
   PressureOffset(const Value& arguments, const EffectContext& context) : surface_(arguments.at("region"), context) {}
 
@@ -25,6 +25,11 @@ class PressureOffset : public Effect, public FiniteStrainForm {
   }
   void add_finite_stiffness(const Motion& motion, const Parameters& p, SparseMatrix& stiffness) const override {
     surface_.add_stiffness(motion.displacement, p[0], stiffness);
+  }
+  const FollowerLoad* follower_load() const override { return this; }
+  double size(double, double, const Parameters& p) const override { return p[0]; }
+  void add_unit_force(const Eigen::VectorXd& u, Eigen::VectorXd& force) const override {
+    surface_.add_force(&u, 1.0, force);
   }
 
  private:

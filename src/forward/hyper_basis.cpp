@@ -280,7 +280,8 @@ bool has_more_than_points(const Model& model, const ModelPart& part) {
   const FiniteStrainForm* form = part.effect->finite_strain();
   const bool strain_terms = !part.terms.strain_stiffness.empty();
   if (form == nullptr || form->point_form() == nullptr) {
-    return form != nullptr || strain_terms || part.effect->nonlinear_force() != nullptr;
+    const bool unknown = form != nullptr && form->follower_load() == nullptr;
+    return unknown || strain_terms || part.effect->nonlinear_force() != nullptr;
   }
   if (!model.always_finite()) return strain_terms || part.effect->nonlinear_force() != nullptr;
   return strain_terms && !form->has_strain_form() && model.may_damp_by_stiffness();

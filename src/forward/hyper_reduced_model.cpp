@@ -12,6 +12,7 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr double kTolerance = 3e-7;  // of the body's size, root mean square over the body
+constexpr double kStep = 0.02;       // likewise: displacements at which a follower's polynomial is found
 
 // Runs whose displacements are recovered together.
 class HyperReducedTrajectories : public SeparateTrajectories {
@@ -44,10 +45,23 @@ HyperReducedModel::HyperReducedModel(const Model& model, FullMotions motions, co
     throw InputError(model.settings().name, why, "a model of finite strain with a form at sampled points");
   }
   basis_ = choose_hyper_basis(model, motions_, options_);
-  project();
+  project_motion();
+  project_parts();
 }
 
-void HyperReducedModel::project() {
+void HyperReducedModel::project_motion() {
+  const Eigen::MatrixX3d unit = unit_motion(basis_.vectors.rows());
+  SparseMatrix mass = model_.mass(motions_.thetas.front());
+  Eigen::MatrixX3d free = unit;
+  for (Eigen::Index i = 0; i < free.rows(); ++i) {
+    if (model_.fixed()[static_cast<std::size_t>(i)] != 0) free.row(i).setZero();
+  }
+  unit_velocity_ = basis_.vectors.transpose() * (mass * free);
+  const double whole = (unit.col(0).transpose() * (mass * unit.col(0))).value();
+  size_ = body_size(model_.mesh().nodes) * std::sqrt(whole);
+}
+
+void HyperReducedModel::project_parts() {
   const Eigen::MatrixXd& v = basis_.vectors;
   const Eigen::MatrixX3d unit = unit_motion(v.rows());
   for (const ModelPart& part : model_.parts()) {
@@ -58,16 +72,24 @@ void HyperReducedModel::project() {
     }
     for (const MatrixTerm& term : part.terms.stiffness) own.stiffness.push_back(project_matrix(*term.matrix, v));
     for (const LoadTerm& term : part.terms.loads) own.loads.emplace_back(v.transpose() * term.pattern);
+    const FiniteStrainForm* form = part.effect->finite_strain();
+    if (form != nullptr && form->follower_load() != nullptr) own.follower = project(*form->follower_load());
     projected_.push_back(std::move(own));
   }
-  SparseMatrix mass = model_.mass(motions_.thetas.front());
-  Eigen::MatrixX3d free = unit;
-  for (Eigen::Index i = 0; i < free.rows(); ++i) {
-    if (model_.fixed()[static_cast<std::size_t>(i)] != 0) free.row(i).setZero();
-  }
-  unit_velocity_ = v.transpose() * (mass * free);
-  const double whole = (unit.col(0).transpose() * (mass * unit.col(0))).value();
-  tolerance_ = kTolerance * body_size(model_.mesh().nodes) * std::sqrt(whole);
+}
+
+QuadraticForce HyperReducedModel::project(const FollowerLoad& load) const {
+  const auto force = [&](const Eigen::VectorXd& q) -> Eigen::VectorXd {
+    Eigen::VectorXd u(basis_.vectors.rows()), nodal = Eigen::VectorXd::Zero(u.size());
+    recover(q, u);
+    load.add_unit_force(u, nodal);
+    return basis_.vectors.transpose() * nodal;
+  };
+  return {force, Eigen::VectorXd::Constant(basis_.vectors.cols(), kStep * size_)};
+}
+
+double HyperReducedModel::tolerance() const {
+  return kTolerance * size_;
 }
 
 std::unique_ptr<Trajectory> HyperReducedModel::start(const Eigen::VectorXd& theta, double start) const {

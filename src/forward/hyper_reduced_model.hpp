@@ -2,12 +2,14 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "forward/forward_model.hpp"
 #include "forward/hyper_basis.hpp"
 #include "forward/output_rows.hpp"
+#include "forward/quadratic_force.hpp"
 
 namespace tissue_stiffness {
 
@@ -40,11 +42,12 @@ class HyperReducedModel : public ForwardModel {
     output_.displacements(basis_.vectors, coordinates, out);
   }
 
-  /// One part's linear terms in the basis.
+  /// One part's linear terms in the basis, and its load that follows the surface.
   struct Projected {
     std::vector<Eigen::MatrixXd> mass, stiffness;
     std::vector<Eigen::VectorXd> loads;
     std::vector<Eigen::MatrixX3d> weight;  ///< each mass term times a unit acceleration along each axis
+    std::optional<QuadraticForce> follower;
   };
   const std::vector<Projected>& projected() const { return projected_; }
   /// Returns the coordinates of a unit velocity along each axis of all nodes that are not held, m x 3.
@@ -52,10 +55,12 @@ class HyperReducedModel : public ForwardModel {
   /// Returns the number of steps over a span between frames [s].
   int steps(double span) const;
   /// Returns the least correction of coordinates that a step takes.
-  double tolerance() const { return tolerance_; }
+  double tolerance() const;
 
  private:
-  void project();
+  void project_motion();
+  void project_parts();
+  QuadraticForce project(const FollowerLoad& load) const;
 
   const Model& model_;
   HyperOptions options_;
@@ -63,7 +68,7 @@ class HyperReducedModel : public ForwardModel {
   HyperBasis basis_;
   std::vector<Projected> projected_;
   Eigen::MatrixX3d unit_velocity_;
-  double tolerance_ = 0.0;
+  double size_ = 0.0;  ///< coordinates of a motion by the body's size, root mean square
   OutputRows output_;
 };
 

@@ -54,6 +54,10 @@ void HyperReducedSystem::add_part(std::size_t i, const Eigen::VectorXd& theta) {
     mass_ += inertia * c * own.stiffness[k];
   }
   if (form == nullptr || share == 0.0) return;
+  if (form->follower_load() != nullptr) {
+    followers_.push_back({&*own.follower, form->follower_load(), p, share, 0.0});
+    return;
+  }
   laws_.push_back({form->point_form(), p, share, turns ? share * beta_ : 0.0});
   viscous_ = viscous_ || laws_.back().viscosity > 0.0;
 }
@@ -89,6 +93,10 @@ void HyperReducedSystem::force(double time, const Eigen::VectorXd& q, const Eige
   for (const Load& load : loads_) {
     const Eigen::VectorXd& p = at_.parts[load.part].parameters;
     out += load.factor * reduced_.model().loads().value(*load.term, p, at_.load_factor, time) * load.pattern;
+  }
+  for (Follower& follower : followers_) {
+    follower.now = follower.share * follower.load->size(time, at_.load_factor, follower.parameters);
+    follower.force->add_force(follower.now, q, out);
   }
   deform(q);
   if (viscous_) rates_.noalias() = basis.gradients * rate;
@@ -126,6 +134,7 @@ void HyperReducedSystem::tangents(const Eigen::VectorXd& q, Eigen::MatrixXd& sti
       weighted_rates_.middleRows<9>(row).noalias() = (point.weight * viscous) * basis.gradients.middleRows<9>(row);
   }
   stiffness = stiffness_ + inner_products(basis.gradients, weighted_);
+  for (const Follower& follower : followers_) follower.force->add_stiffness(follower.now, q, stiffness);
   damping = damping_;
   if (viscous_) damping += inner_products(basis.gradients, weighted_rates_);
 }

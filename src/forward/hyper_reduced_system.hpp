@@ -15,7 +15,7 @@ class HyperReducedSystem {
   const Eigen::MatrixXd& mass() const { return mass_; }
   /// Computes external minus internal and damping force at coordinates q and their rates.
   void force(double time, const Eigen::VectorXd& q, const Eigen::VectorXd& rate, Eigen::VectorXd& out);
-  /// Computes -d force / d q without the damping's share, and -d force / d rate.
+  /// Computes -d force / d q without the damping's share, and -d force / d rate, at the time of the last force.
   void tangents(const Eigen::VectorXd& q, Eigen::MatrixXd& stiffness, Eigen::MatrixXd& damping);
 
  private:
@@ -30,6 +30,12 @@ class HyperReducedSystem {
     double factor;
     Eigen::VectorXd pattern;
   };
+  struct Follower {
+    const QuadraticForce* force;
+    const FollowerLoad* load;
+    Eigen::VectorXd parameters;
+    double share, now;  ///< of finite strain; size at the time of the last force
+  };
   void add_part(std::size_t part, const Eigen::VectorXd& theta);
   void add_loads(std::size_t part);
   void deform(const Eigen::VectorXd& q);
@@ -41,6 +47,7 @@ class HyperReducedSystem {
   Eigen::VectorXd gravity_;
   std::vector<Law> laws_;
   std::vector<Load> loads_;
+  std::vector<Follower> followers_;
   double beta_ = 0.0;
   bool viscous_ = false;                            ///< some law has viscous stress
   Eigen::VectorXd deformation_, rates_, stresses_;  ///< nine numbers for each point

@@ -65,7 +65,8 @@ class Model {
   void know(const Eigen::VectorXd& theta);
 
   Eigen::Vector3d initial_velocity(const Eigen::VectorXd& theta) const { return theta.tail<3>(); }
-  /// Returns whether the body starts, or may start, loaded or in motion, and the sum of what the effects say of it at theta.
+  /// Returns whether the body starts, or may start, loaded or in motion, and the sum of what the effects say of it at
+  /// theta.
   bool starts_in_motion() const;
   InitialMotion initial_motion(const Eigen::VectorXd& theta) const;
   /// Returns theta at the prior of the model file. It stays the same where `know` changes what is known.

@@ -109,6 +109,12 @@ INSTANTIATE_TEST_SUITE_P(
              {elasticity("neo_hookean"), kGravity, "viscous_damping: {beta: 4e-3}", "compressibility: {shift: -0.1}"}},
         Case{"fibres",
              {elasticity("neo_hookean"), kGravity, "fibre_reinforcement: {direction: [1, 0.3, 0.2], modulus: 6e4}"}},
+        Case{"pressed",
+             {elasticity("neo_hookean"), "pressure: {region: top, topic: /p, scale: 1000}",
+              "pressure_offset: {region: top, pressure: 20}"}},
+        Case{"half_pressed",
+             {elasticity("linear"), kGravity, "geometric_nonlinearity: {share: 0.5}",
+              "pressure: {region: top, topic: /p, scale: 1000}"}},
         Case{"mooney_rivlin", {elasticity("neo_hookean"), kGravity, "mooney_rivlin: {share: 0.6}"}},
         Case{"ogden", {elasticity("neo_hookean"), kGravity, "ogden: {exponent: 12}"}},
         Case{"collagen",
@@ -196,11 +202,32 @@ TEST(HyperReducedModel, TellsWhatItCannotStandFor) {
   };
   EXPECT_EQ(why({elasticity("neo_hookean")}), "");
   EXPECT_EQ(why({elasticity("linear")}), "no law of finite strain");
-  for (const char* effect :
-       {"pressure: {region: top, topic: /p}", "contact_plane: {point: [0, 0, -0.01], normal: [0, 0, 1]}",
-        "viscoelasticity: {gamma: 0.3, tau: 0.05}", "initial_motion: {equilibrium: 0.5}"}) {
+  for (const char* effect : {"contact_plane: {point: [0, 0, -0.01], normal: [0, 0, 1]}",
+                             "viscoelasticity: {gamma: 0.3, tau: 0.05}", "initial_motion: {equilibrium: 0.5}"}) {
     EXPECT_NE(why({elasticity("neo_hookean"), effect}), "") << effect;
   }
+}
+
+TEST(QuadraticForce, IsThePolynomialItWasMadeFrom) {
+  Eigen::MatrixXd linear(3, 3), first(3, 3), second(3, 3);
+  linear << 1, 2, 3, 4, 5, 6, 7, 8, 10;
+  first << 2, -1, 0, 1, 3, 1, 0, 2, 1;
+  second << 1, 1, -2, 0, 1, 1, 3, 0, -1;
+  const auto polynomial = [&](const Eigen::VectorXd& q) -> Eigen::VectorXd {
+    return Eigen::Vector3d(0.5, -1.0, 2.0) + linear * q + (first * q).cwiseProduct(second * q);
+  };
+  const QuadraticForce force(polynomial, Eigen::Vector3d(1e-2, 1.0, 30.0));
+  const Eigen::Vector3d q(0.3, -2.0, 5.0);
+  Eigen::VectorXd out = Eigen::Vector3d::Ones();
+  force.add_force(2.0, q, out);
+  EXPECT_LT((out - Eigen::Vector3d::Ones() - 2.0 * polynomial(q)).norm(), 1e-8);
+  Eigen::MatrixXd tangent = Eigen::MatrixXd::Zero(3, 3), slopes(3, 3);
+  force.add_stiffness(2.0, q, tangent);
+  for (int j = 0; j < 3; ++j) {
+    const Eigen::Vector3d step = 1e-4 * Eigen::Vector3d::Unit(j);
+    slopes.col(j) = (polynomial(q + step) - polynomial(q - step)) / 2e-4;
+  }
+  EXPECT_LT((tangent + slopes + slopes.transpose()).norm(), 1e-6 * slopes.norm());
 }
 
 // Fibres damp through their linear stiffness, which has no form at points.
