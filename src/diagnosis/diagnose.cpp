@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
 
 #include "diagnosis/belief_map.hpp"
 #include "diagnosis/describe.hpp"
+#include "diagnosis/estimate_at_last.hpp"
 #include "diagnosis/finding.hpp"
 #include "diagnosis/fit_entries.hpp"
 #include "diagnosis/missing_force.hpp"
@@ -20,6 +22,7 @@
 #include "estimation/mesh_error.hpp"
 #include "estimation/posterior.hpp"
 #include "forward/extra_force.hpp"
+#include "forward/hyper_basis.hpp"
 #include "settings/extend_model.hpp"
 #include "tissue_stiffness/types/error.hpp"
 #include "types/repeated_observation.hpp"
@@ -67,9 +70,24 @@ Eigen::VectorXd starting_point(const RecordingFit& recording_fit) {
   return w;
 }
 
+// A scan of finite strain runs only what is linear in it, which may be far from the recording. The estimator runs the model
+// itself, so the fit begins where the better of both is.
+Eigen::VectorXd starting_point_of_finite(const RecordingFit& recording_fit) {
+  const Model& model = recording_fit.model();
+  const Eigen::VectorXd scanned = starting_point(recording_fit);
+  std::map<std::string, double> values;
+  for (const ParameterEstimate& p :
+       estimate_by_filter(model.settings(), recording_fit, recording_fit.recording().training()).parameters)
+    values[p.name] = p.mean;
+  const Eigen::VectorXd estimated = model.parameters().coordinates(values, model.parameters().prior_mean());
+  return recording_fit.cost_in_full(estimated) < recording_fit.cost_in_full(scanned) ? estimated : scanned;
+}
+
 FittedModel fit_model(const ModelSettings& settings, const TetMesh& mesh, const Recording& recording) {
   auto recording_fit = std::make_unique<RecordingFit>(settings, mesh, recording);
-  const Eigen::VectorXd start = starting_point(*recording_fit);
+  const Model& model = recording_fit->model();
+  const Eigen::VectorXd start =
+      why_not_hyper_reduced(model).empty() ? starting_point_of_finite(*recording_fit) : starting_point(*recording_fit);
   return fit_recording(std::move(recording_fit), start, kBaseSpread);
 }
 

@@ -1,22 +1,33 @@
 #include "diagnosis/estimate_at_last.hpp"
 
-#include "estimation/reuse_sources.hpp"
+#include "forward/hyper_basis.hpp"
 #include "settings/extend_model.hpp"
 #include "tissue_stiffness/estimation/estimator.hpp"
 
 namespace tissue_stiffness {
 
-Estimate estimate_at_last(const Diagnosis& diagnosis, const FittedModel& given, const FittedModel& last,
-                          const RecordingFit* finer) {
-  if (last.recording_fit->model().nonlinear()) return diagnosis.estimate;
-  const Recording& recording = given.recording_fit->recording();
-  const Model& model = given.recording_fit->model();
-  const ReuseSources relatives{last.recording_fit->reduced().get(), finer != nullptr ? finer->reduced().get() : nullptr};
-  Estimator estimator(extend_model(model.settings(), diagnosis.entries), model.mesh(), relatives);
+Estimate estimate_by_filter(const ModelSettings& settings, const RecordingFit& recording_fit,
+                            const std::vector<Frame>& frames, const Estimate* near, const ReuseSources& relatives) {
+  const Recording& recording = recording_fit.recording();
+  Estimator estimator(settings, recording_fit.model().mesh(), relatives);
   estimator.set_first_stamp(recording.first_stamp);
   for (const LoadSample& load : recording.loads) estimator.add_load(load);
-  estimator.replay(recording.frames, &diagnosis.estimate, recording.checkpoint);
+  estimator.replay(frames, near, recording.checkpoint);
   return estimator.estimate();
+}
+
+Estimate estimate_at_last(const Diagnosis& diagnosis, const FittedModel& given, const FittedModel& last,
+                          const RecordingFit* finer) {
+  const Model& model = last.recording_fit->model();
+  const ModelSettings settings = extend_model(given.recording_fit->model().settings(), diagnosis.entries);
+  const std::vector<Frame>& frames = given.recording_fit->recording().frames;
+  if (model.nonlinear()) {
+    if (!why_not_hyper_reduced(model).empty()) return diagnosis.estimate;
+    return estimate_by_filter(settings, *given.recording_fit, frames, &diagnosis.estimate);
+  }
+  const auto own = last.recording_fit->reduced();
+  const auto finer_own = finer != nullptr ? finer->reduced() : nullptr;
+  return estimate_by_filter(settings, *given.recording_fit, frames, &diagnosis.estimate, {own.get(), finer_own.get()});
 }
 
 }  // namespace tissue_stiffness

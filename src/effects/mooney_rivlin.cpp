@@ -48,12 +48,6 @@ class MooneyRivlin : public PointwiseEffect {
   Solids solids_;
 };
 
-std::vector<Proposal> propose(const ProposalContext& context) {
-  if (!context.is_finite() || context.holds("mooney_rivlin")) return {};
-  const auto with = [](const Quantity& share) { return EffectEntry{"mooney_rivlin", {{"share", share}}}; };
-  return {{with(normal_prior(0.0, 0.5)), "share", with(normal_prior(0.5, 0.5))}};
-}
-
 }  // namespace
 
 EffectSpec mooney_rivlin_spec() {
@@ -64,7 +58,6 @@ EffectSpec mooney_rivlin_spec() {
   spec.source = "Mooney 1940; Rivlin 1948; Holzapfel 2000, eq. 6.127";
   spec.parameters = {{"share", "s", "-", 0.0, 1.0, ParameterSpec::Default::required, 0.0, 0.0, 1}};
   spec.of_finite_strain = true;
-  spec.proposals = propose;
   return spec;
 }
 

@@ -92,12 +92,6 @@ class Ogden : public PointwiseEffect {
   Solids solids_;
 };
 
-std::vector<Proposal> propose(const ProposalContext& context) {
-  if (!context.is_finite() || context.holds("ogden")) return {};
-  const auto with = [](const Quantity& exponent) { return EffectEntry{"ogden", {{"exponent", exponent}}}; };
-  return {{with(normal_prior(2.0, 5.0)), "exponent", with(normal_prior(8.0, 8.0))}};
-}
-
 }  // namespace
 
 EffectSpec ogden_spec() {
@@ -109,7 +103,6 @@ EffectSpec ogden_spec() {
   spec.source = "Ogden 1972; Holzapfel 2000, eq. 6.119, one term";
   spec.parameters = {{"exponent", "alpha", "-", -50.0, 50.0, ParameterSpec::Default::required, 0.0, 2.0, 1}};
   spec.of_finite_strain = true;
-  spec.proposals = propose;
   return spec;
 }
 

@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "fit/coordinate_scan.hpp"
 #include "forward/extra_force.hpp"
+#include "forward/hyper_reduced_model.hpp"
 #include "forward/study_model.hpp"
 #include "observation/frame_misfit.hpp"
 #include "tissue_stiffness/meshing/build_mesh.hpp"
+#include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -170,6 +173,14 @@ std::shared_ptr<const ReducedModel> RecordingFit::reduced() const {
   return std::make_shared<ReducedModel>(model_, BasisOptions().linear_form());
 }
 
+double RecordingFit::cost_in_full(const Eigen::VectorXd& w) const {
+  try {
+    return free_fit(problem(*forward_, training_), w).cost;
+  } catch (const NumericalError&) {
+    return std::numeric_limits<double>::infinity();
+  }
+}
+
 BatchFit RecordingFit::fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread, double rival) {
   return quick_ ? fit_from_run_to_run(start, spread, rival) : quick_fit(start, spread, 1.0, rival);
 }
@@ -188,43 +199,66 @@ BatchFit RecordingFit::quick_fit(const Eigen::VectorXd& start, const Eigen::Vect
   return fit_batch(problem(quick(), frames), start, spread, rival);
 }
 
-// Every full run tells by how much quick runs are off there. A fit with that correction tells where the next full run has
-// to be.
-BatchFit RecordingFit::fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd spread, double rival) {
+RecordingFit::Run RecordingFit::run_in_full(const Eigen::VectorXd& w, FullMotions* motions) const {
   const double start = problem(*forward_, training_).start.time;
+  const Eigen::VectorXd theta = model_.parameters().theta(w);
   std::vector<double> times;
   for (const Frame& frame : recording_.frames) times.push_back(frame.time);
-  const auto run = [&](const Eigen::VectorXd& w) {
-    auto runs = std::make_unique<CorrectedSurrogate>(*forward_, *quick_);
-    runs->anchor(model_.parameters().theta(w), start, times, recording_.checkpoint);
-    return runs;
-  };
-  surrogate_ = run(at);
-  double cost = free_fit(problem(*surrogate_, training_), at).cost;
+  Run out{quick_, nullptr};
+  if (motions != nullptr) {
+    HyperOptions options;
+    options.full.steps_per_frame = kSteps;
+    const auto run = FullModel(model_, options.full).start(theta, start);
+    for (const double time : times) {
+      recording_.checkpoint();
+      run->advance(time);
+      motions->add({run->displacement(), {theta}});
+    }
+    options.full.steps_per_frame = 2 * kSteps;
+    auto reduced = std::make_shared<HyperReducedModel>(model_, *motions, options);
+    reduced->restrict_output_to(observed_nodes(operators_, recording_.frames));
+    out.cheap = reduced;
+  }
+  out.corrected = std::make_unique<CorrectedSurrogate>(*forward_, *out.cheap);
+  out.corrected->anchor(theta, start, times, recording_.checkpoint);
+  return out;
+}
+
+// Every full run tells by how much quick runs are off there. A fit with that correction tells where the next full run has
+// to be. What is linear in finite strain is no guide, so such a model goes on in few vectors.
+BatchFit RecordingFit::fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd spread, double rival) {
+  FullMotions trained{Eigen::MatrixXd(model_.fem().dof_count(), 0), {}};
+  FullMotions* const motions = why_not_hyper_reduced(model_).empty() ? &trained : nullptr;
+  Run run = run_in_full(at, motions);
+  double cost = free_fit(problem(*run.corrected, training_), at).cost;
   BatchFit fit;
   for (int k = 0; k < kMostRuns; ++k) {
-    fit = fit_batch(problem(*surrogate_, training_), at, spread);
+    fit = fit_batch(problem(*run.corrected, training_), at, spread);
     const Eigen::VectorXd std = fit.covariance.diagonal().cwiseSqrt();
     Eigen::VectorXd move = fit.w - at;
     const bool settled = (move.array().abs() < kSettled * std.array()).all();
     if (settled || cost - fit.cost < kWorthwhile * cost || fit.cost > rival) break;
     double gain = 0.0;
     for (int cut = 0; cut < kMostCuts && !(gain > 0.0); ++cut, move *= 0.3) {
-      auto there = run(at + move);
-      const double now = free_fit(problem(*there, training_), at + move).cost;
+      Run there = run_in_full(at + move, motions);
+      const double now = free_fit(problem(*there.corrected, training_), at + move).cost;
       gain = cost - now;
       if (!(gain > 0.0)) continue;
-      there->follow(
-          *surrogate_,
-          (model_.parameters().theta(at + model_.parameters().prior_std()) - model_.parameters().theta(at)).cwiseAbs());
+      if (there.cheap == run.cheap) {
+        there.corrected->follow(
+            *run.corrected,
+            (model_.parameters().theta(at + model_.parameters().prior_std()) - model_.parameters().theta(at)).cwiseAbs());
+      }
       at += move;
       cost = now;
-      surrogate_ = std::move(there);
+      run = std::move(there);
     }
     if (!(gain > kGain * cost)) break;
     spread = spread.cwiseMin(kNarrower * std);
   }
   fit.w = at;
+  if (motions != nullptr) run = run_in_full(at, nullptr);  // others borrow the correction of what is linear
+  surrogate_ = std::move(run.corrected);
   return fit;
 }
 

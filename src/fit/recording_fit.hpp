@@ -9,13 +9,15 @@
 #include "fit/batch_fit.hpp"
 #include "fit/corrected_surrogate.hpp"
 #include "fit/free_run.hpp"
+#include "forward/hyper_basis.hpp"
 #include "forward/reduced_model.hpp"
 #include "tissue_stiffness/fit/recording.hpp"
 
 namespace tissue_stiffness {
 
 /// A recording fit runs and fits one model against one recording. Linear models run in their reduced basis, others in full.
-/// Between two full runs, fits of the others use quick runs of what is linear in them.
+/// Between two full runs, fits of the others use quick runs: hyper-reduced ones where the model has such a form, else those
+/// of what is linear in it.
 class RecordingFit {
  public:
   /// Throws as Model does.
@@ -57,6 +59,9 @@ class RecordingFit {
   /// Shows `visit` each frame of the free run at w, with the displacement of every node. A nonlinear model runs in full.
   /// Returns the misfit of each frame.
   std::vector<Misfit> show(const Eigen::VectorXd& w, const FreeFrameVisitor& visit);
+  /// Returns the cost over the training frames at w, sum of squared errors [sigma^2]; a nonlinear model runs in full.
+  /// Infinity where the run diverges.
+  double cost_in_full(const Eigen::VectorXd& w) const;
   /// Returns the problem that all frames pose, held-out ones too.
   FitProblem whole() const { return problem(*forward_, recording_.frames); }
   /// Takes an estimated error off a measured load, by its topic.
@@ -110,6 +115,14 @@ class RecordingFit {
   const std::vector<Frame>& first_of_training(double share, std::vector<Frame>& room) const;
   /// Returns the cost of a free run over the first `share` of the training frames.
   std::function<double(const Eigen::VectorXd&)> cost_of(double share) const;
+  /// A full run at one place, and what moves it to other places.
+  struct Run {
+    std::shared_ptr<const ForwardModel> cheap;
+    std::unique_ptr<CorrectedSurrogate> corrected;
+  };
+  /// Runs in full at w. Quick runs from there are hyper-reduced ones that `motions` have trained, to which this run is
+  /// added; null: what is linear in the model.
+  Run run_in_full(const Eigen::VectorXd& w, FullMotions* motions) const;
   BatchFit fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd spread, double rival);
   const ForwardModel& quick() const { return surrogate_ ? *surrogate_ : quick_ ? *quick_ : *forward_; }
 
@@ -117,7 +130,7 @@ class RecordingFit {
   std::vector<Frame> training_;
   Model model_;
   std::shared_ptr<ForwardModel> forward_;
-  std::unique_ptr<ForwardModel> quick_;            ///< null: forward_ is quick itself
+  std::shared_ptr<ForwardModel> quick_;            ///< null: forward_ is quick itself
   std::unique_ptr<CorrectedSurrogate> surrogate_;  ///< at the last full run; null: none yet
   std::vector<std::unique_ptr<ObservationOperator>> operators_;
 };

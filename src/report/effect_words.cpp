@@ -44,8 +44,6 @@ std::string effect_sign(const std::string& effect) {
       {"contour_bias", "the outline lies outside, or inside, the surface everywhere by the same distance"},
       {"geometric_nonlinearity", "large deflections turn the body, and a model for small strains does not follow"},
       {"strain_stiffening", "the tissue grows stiffer the further it is stretched"},
-      {"mooney_rivlin", "the tissue is stiffer when pressed, and softer when stretched, than a neo-Hookean one"},
-      {"ogden", "the tissue stiffens with another power of the stretch than a neo-Hookean one"},
   };
   const auto found = signs.find(effect);
   return found == signs.end() ? "the error has the shape that " + effect_title(effect) + " would give it" : found->second;
