@@ -16,7 +16,7 @@ LENGTH, WIDTH = 0.1, 0.02
 FORCE = np.array([1.6, 0.12, 0.08])  # [N] on the end face
 HOLD, STEPS = 2.0, 24                # [s] each, and how many
 NOISE = 1e-4                         # [m]
-POISSON_RATIO = {'nearly_incompressible': 0.4999}  # of these; 0.45 of the others
+POISSON_RATIO = {'nearly_incompressible': 0.499}  # of these; 0.45 of the others
 LAWS = {  # what the tool's model has beside neo-Hookean elasticity
     'neo_hookean': '',
     'nearly_incompressible': '',
