@@ -224,11 +224,21 @@ RecordingFit::Run RecordingFit::run_in_full(const Eigen::VectorXd& w, FullMotion
   return out;
 }
 
-// Every full run tells by how much quick runs are off there. A fit with that correction tells where the next full run has
-// to be. What is linear in finite strain is no guide, so such a model goes on in few vectors.
+// What is linear in finite strain is no guide from afar, so such a model is fitted in few vectors first. From near it is
+// one, and others borrow its correction.
 BatchFit RecordingFit::fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd spread, double rival) {
-  FullMotions trained{Eigen::MatrixXd(model_.fem().dof_count(), 0), {}};
-  FullMotions* const motions = why_not_hyper_reduced(model_).empty() ? &trained : nullptr;
+  if (why_not_hyper_reduced(model_).empty()) {
+    FullMotions motions{Eigen::MatrixXd(model_.fem().dof_count(), 0), {}};
+    const BatchFit near = fit_from_run_to_run(at, spread, rival, &motions);
+    at = near.w;
+    spread = spread.cwiseMin(kNarrower * near.covariance.diagonal().cwiseSqrt());
+  }
+  return fit_from_run_to_run(std::move(at), std::move(spread), rival, nullptr);
+}
+
+// Every full run tells by how much quick runs are off there. A fit with that correction tells where the next full run has
+// to be.
+BatchFit RecordingFit::fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd spread, double rival, FullMotions* motions) {
   Run run = run_in_full(at, motions);
   double cost = free_fit(problem(*run.corrected, training_), at).cost;
   BatchFit fit;
@@ -257,8 +267,7 @@ BatchFit RecordingFit::fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd s
     spread = spread.cwiseMin(kNarrower * std);
   }
   fit.w = at;
-  if (motions != nullptr) run = run_in_full(at, nullptr);  // others borrow the correction of what is linear
-  surrogate_ = std::move(run.corrected);
+  if (motions == nullptr) surrogate_ = std::move(run.corrected);
   return fit;
 }
 

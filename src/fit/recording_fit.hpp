@@ -124,6 +124,7 @@ class RecordingFit {
   /// added; null: what is linear in the model.
   Run run_in_full(const Eigen::VectorXd& w, FullMotions* motions) const;
   BatchFit fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd spread, double rival);
+  BatchFit fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd spread, double rival, FullMotions* motions);
   const ForwardModel& quick() const { return surrogate_ ? *surrogate_ : quick_ ? *quick_ : *forward_; }
 
   const Recording& recording_;
