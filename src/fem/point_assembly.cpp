@@ -92,15 +92,27 @@ std::vector<int> all_elements(const Discretisation& fem) {
 
 }  // namespace
 
-PointAssembly::PointAssembly(const Discretisation& fem)
-    : fem_(fem),
-      elements_(all_elements(fem)),
-      corners_(fem.elements(), elements_, fem.node_count()),
-      scratch_(std::make_unique<VectorPool>()) {}
+struct PointAssembly::Sums {
+  explicit Sums(const Discretisation& fem)
+      : elements(all_elements(fem)), corners(fem.elements(), elements, fem.node_count()) {}
+
+  std::vector<int> elements;
+  NodeCorners corners;  ///< of each node, for its parts of the elements' forces
+  VectorPool scratch;   ///< buffers for these parts, one for each concurrent sum
+};
+
+PointAssembly::PointAssembly(const Discretisation& fem) : fem_(fem) {}
+PointAssembly::~PointAssembly() = default;
+
+PointAssembly::Sums& PointAssembly::sums() const {
+  std::call_once(made_, [this] { sums_ = std::make_unique<Sums>(fem_); });
+  return *sums_;
+}
 
 void PointAssembly::add_force(const PointStress& stress, const Eigen::VectorXd& u, Eigen::VectorXd& force) const {
-  fem_.nodes_per_element() == 10 ? subtract_forces<10>(fem_, elements_, corners_, *scratch_, stress, u, force)
-                                 : subtract_forces<4>(fem_, elements_, corners_, *scratch_, stress, u, force);
+  Sums& s = sums();
+  fem_.nodes_per_element() == 10 ? subtract_forces<10>(fem_, s.elements, s.corners, s.scratch, stress, u, force)
+                                 : subtract_forces<4>(fem_, s.elements, s.corners, s.scratch, stress, u, force);
 }
 
 void PointAssembly::add_stiffness(const PointTangent& tangent, const Eigen::VectorXd& u, SparseMatrix& stiffness) const {

@@ -3,11 +3,10 @@
 #include <Eigen/Core>
 #include <functional>
 #include <memory>
+#include <mutex>
 
 #include "fem/discretisation.hpp"
 #include "fem/neo_hookean.hpp"
-#include "fem/node_corners.hpp"
-#include "fem/vector_pool.hpp"
 
 namespace tissue_stiffness {
 
@@ -22,6 +21,7 @@ using PointEnergy = std::function<double(int e, int q, const Eigen::Matrix3d& f)
 class PointAssembly {
  public:
   explicit PointAssembly(const Discretisation& fem);
+  ~PointAssembly();
 
   /// Subtracts the internal force int P grad N dV [N] at displacement u (3n) from `force`.
   void add_force(const PointStress& stress, const Eigen::VectorXd& u, Eigen::VectorXd& force) const;
@@ -31,10 +31,13 @@ class PointAssembly {
   double energy(const PointEnergy& density, const Eigen::VectorXd& u) const;
 
  private:
+  /// What sums of forces need. Effects of small strain never ask for one, so it is made with the first.
+  struct Sums;
+  Sums& sums() const;
+
   const Discretisation& fem_;
-  std::vector<int> elements_;            ///< all
-  NodeCorners corners_;                  ///< corners of each node, for its parts of the elements' forces
-  std::unique_ptr<VectorPool> scratch_;  ///< buffers for these parts, one for each concurrent sum
+  mutable std::once_flag made_;
+  mutable std::unique_ptr<Sums> sums_;
 };
 
 }  // namespace tissue_stiffness
