@@ -18,16 +18,13 @@ Estimate estimate_by_filter(const ModelSettings& settings, const RecordingFit& r
 
 Estimate estimate_at_last(const Diagnosis& diagnosis, const FittedModel& given, const FittedModel& last,
                           const RecordingFit* finer) {
-  const Model& model = last.recording_fit->model();
-  const ModelSettings settings = extend_model(given.recording_fit->model().settings(), diagnosis.entries);
-  const std::vector<Frame>& frames = given.recording_fit->recording().frames;
-  if (model.nonlinear()) {
-    if (!why_not_hyper_reduced(model).empty()) return diagnosis.estimate;
-    return estimate_by_filter(settings, *given.recording_fit, frames, &diagnosis.estimate);
-  }
-  const auto own = last.recording_fit->reduced();
-  const auto finer_own = finer != nullptr ? finer->reduced() : nullptr;
-  return estimate_by_filter(settings, *given.recording_fit, frames, &diagnosis.estimate, {own.get(), finer_own.get()});
+  const bool nonlinear = last.recording_fit->model().nonlinear();
+  if (nonlinear && !why_not_hyper_reduced(last.recording_fit->model()).empty()) return diagnosis.estimate;
+  const auto own = nonlinear ? nullptr : last.recording_fit->reduced();
+  const auto finer_own = nonlinear || finer == nullptr ? nullptr : finer->reduced();
+  const RecordingFit& recording_fit = *given.recording_fit;
+  return estimate_by_filter(extend_model(recording_fit.model().settings(), diagnosis.entries), recording_fit,
+                            recording_fit.recording().frames, &diagnosis.estimate, {own.get(), finer_own.get()});
 }
 
 }  // namespace tissue_stiffness

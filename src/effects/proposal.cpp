@@ -32,13 +32,6 @@ std::vector<std::string> ProposalContext::regions_of(const std::string& acting, 
   return regions;
 }
 
-bool ProposalContext::is_finite() const {
-  const auto solids = all("elasticity");
-  return holds("geometric_nonlinearity") || std::any_of(solids.begin(), solids.end(), [](const EffectSettings* entry) {
-           return entry->arguments.at("law").as_text() != "linear";
-         });
-}
-
 bool ProposalContext::estimates(const std::string& effect, const std::string& parameter) const {
   const auto found = all(effect);
   return std::any_of(found.begin(), found.end(), [&](const EffectSettings* entry) {

@@ -31,8 +31,6 @@ struct ProposalContext {
   bool names(const std::string& effect, const std::string& region) const;
   /// Returns the regions on which an effect `acting` acts but no effect `absent`, in the order of the model.
   std::vector<std::string> regions_of(const std::string& acting, const std::string& absent) const;
-  /// Returns whether the model has, or may have, finite strain.
-  bool is_finite() const;
   /// Returns whether an effect of this name has this parameter estimated.
   bool estimates(const std::string& effect, const std::string& parameter) const;
   /// These return the corners of the body's bounding box [m], and its diagonal.
