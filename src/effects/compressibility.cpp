@@ -29,14 +29,10 @@ class Compressibility : public PointwiseEffect {
     }
   }
   void add_stress(int e, int, const Eigen::Matrix3d& f, const Parameters& p, Eigen::Matrix3d& stress) const override {
-    for (std::size_t s = 0; s < solids_.count(); ++s) {
-      if (solids_.holds(s, e)) stress += neo_hookean_stress(shifted(s, p), f);
-    }
+    solids_.at(e, [&](std::size_t s) { stress += neo_hookean_stress(shifted(s, p), f); });
   }
   void add_tangent(int e, int, const Eigen::Matrix3d& f, const Parameters& p, StressTangent& tangent) const override {
-    for (std::size_t s = 0; s < solids_.count(); ++s) {
-      if (solids_.holds(s, e)) tangent += neo_hookean_tangent(shifted(s, p), f);
-    }
+    solids_.at(e, [&](std::size_t s) { tangent += neo_hookean_tangent(shifted(s, p), f); });
   }
   bool has_strain_form() const override { return true; }
   void add_strain_force(const Eigen::VectorXd& u, const Eigen::Ref<const Eigen::VectorXd>& strains, const Parameters& p,
@@ -53,9 +49,7 @@ class Compressibility : public PointwiseEffect {
   }
   Lame rest_moduli(int e, int, const Parameters& p) const override {
     Lame sum{0.0, 0.0};
-    for (std::size_t s = 0; s < solids_.count(); ++s) {
-      if (solids_.holds(s, e)) sum = {sum.lambda + shifted(s, p).lambda, sum.mu + shifted(s, p).mu};
-    }
+    solids_.at(e, [&](std::size_t s) { sum = {sum.lambda + shifted(s, p).lambda, sum.mu + shifted(s, p).mu}; });
     return sum;
   }
 
@@ -68,9 +62,7 @@ class Compressibility : public PointwiseEffect {
   bool is_absent(const Parameters& p) const override { return p[0] == 0.0; }
   double energy_density(int e, int, const Eigen::Matrix3d& f, const Parameters& p) const override {
     double sum = 0.0;
-    for (std::size_t s = 0; s < solids_.count(); ++s) {
-      if (solids_.holds(s, e)) sum += neo_hookean_energy(shifted(s, p), f);
-    }
+    solids_.at(e, [&](std::size_t s) { sum += neo_hookean_energy(shifted(s, p), f); });
     return sum;
   }
   void add(LinearTerms& out, std::size_t s, const StrainFactor& factor, Coefficient coefficient) const {

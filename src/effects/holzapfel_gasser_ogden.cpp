@@ -11,7 +11,6 @@ namespace tissue_stiffness::effects {
 namespace {
 
 enum Index { kStiffness, kExponent, kDispersion, kAngle, kTilt };
-constexpr double kVolume = -2.0 / 3.0;  // power of J that takes the volume out of I1 and I4
 constexpr double kMostExponent = 50.0;  // of the exponential: beyond it a step has diverged
 
 class HolzapfelGasserOgden : public PointwiseEffect {
@@ -42,9 +41,8 @@ class HolzapfelGasserOgden : public PointwiseEffect {
   // Returns kappa (I1 - 3) + (1 - 3 kappa) (I4 - 1) of the isochoric deformation.
   Invariant mean_strain(int e, int q, const Eigen::Matrix3d& f, const Parameters& p, Derivatives order) const {
     const double kappa = p[kDispersion];
-    Invariant out = isochoric(first_invariant(f, order), f, kVolume, order);
-    const Invariant along =
-        isochoric(fibre_invariant(f, fibres_.direction(e, q, p[kAngle], p[kTilt]), order), f, kVolume, order);
+    Invariant out = isochoric(first_invariant(f, order), f, order);
+    const Invariant along = isochoric(fibre_invariant(f, fibres_.direction(e, q, p[kAngle], p[kTilt]), order), f, order);
     out.value = kappa * (out.value - 3.0) + (1.0 - 3.0 * kappa) * (along.value - 1.0);
     out.gradient = kappa * out.gradient + (1.0 - 3.0 * kappa) * along.gradient;
     if (order == Derivatives::second) out.hessian = kappa * out.hessian + (1.0 - 3.0 * kappa) * along.hessian;

@@ -7,38 +7,30 @@
 namespace tissue_stiffness::effects {
 namespace {
 
-constexpr double kFirst = -2.0 / 3.0, kSecond = -4.0 / 3.0;  // powers of J that take the volume out of I1 and I2
-
 class MooneyRivlin : public PointwiseEffect {
  public:
   explicit MooneyRivlin(const EffectContext& context) : PointwiseEffect(context.fem), solids_(context, 1) {}
 
   bool needs_elasticity() const override { return true; }
   void add_stress(int e, int, const Eigen::Matrix3d& f, const Parameters& p, Eigen::Matrix3d& stress) const override {
-    for (std::size_t s = 0; s < solids_.count(); ++s) {
-      if (solids_.holds(s, e)) stress += factor(s, p) * difference(f, Derivatives::first).gradient;
-    }
+    solids_.at(e, [&](std::size_t s) { stress += factor(s, p) * difference(f, Derivatives::first).gradient; });
   }
   void add_tangent(int e, int, const Eigen::Matrix3d& f, const Parameters& p, StressTangent& tangent) const override {
-    for (std::size_t s = 0; s < solids_.count(); ++s) {
-      if (solids_.holds(s, e)) tangent += factor(s, p) * difference(f, Derivatives::second).hessian;
-    }
+    solids_.at(e, [&](std::size_t s) { tangent += factor(s, p) * difference(f, Derivatives::second).hessian; });
   }
 
  private:
   bool is_absent(const Parameters& p) const override { return p[0] == 0.0; }
   double energy_density(int e, int, const Eigen::Matrix3d& f, const Parameters& p) const override {
     double sum = 0.0;
-    for (std::size_t s = 0; s < solids_.count(); ++s) {
-      if (solids_.holds(s, e)) sum += factor(s, p) * difference(f, Derivatives::first).value;
-    }
+    solids_.at(e, [&](std::size_t s) { sum += factor(s, p) * difference(f, Derivatives::first).value; });
     return sum;
   }
 
   double factor(std::size_t s, const Parameters& p) const { return 0.5 * p[0] * solids_.moduli(s, p).mu; }
   static Invariant difference(const Eigen::Matrix3d& f, Derivatives order) {
-    Invariant out = isochoric(second_invariant(f, order), f, kSecond, order);
-    const Invariant first = isochoric(first_invariant(f, order), f, kFirst, order);
+    Invariant out = isochoric(second_invariant(f, order), f, order);
+    const Invariant first = isochoric(first_invariant(f, order), f, order);
     out.value -= first.value;
     out.gradient -= first.gradient;
     if (order == Derivatives::second) out.hessian -= first.hessian;

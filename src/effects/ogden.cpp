@@ -10,8 +10,7 @@
 namespace tissue_stiffness::effects {
 namespace {
 
-constexpr double kVolume = -2.0 / 3.0;  // power of J that takes the volume out of I1
-constexpr double kNoExponent = 1e-4;    // smaller exponents count as this one: the law has a limit at zero
+constexpr double kNoExponent = 1e-4;  // smaller exponents count as this one: the law has a limit at zero
 
 // Powers of the isochoric stretches, less one, and what is left of them without their mean.
 struct Powers {
@@ -32,35 +31,32 @@ class Ogden : public PointwiseEffect {
 
   bool needs_elasticity() const override { return true; }
   void add_stress(int e, int, const Eigen::Matrix3d& f, const Parameters& p, Eigen::Matrix3d& stress) const override {
-    for (std::size_t s = 0; s < solids_.count(); ++s) {
-      if (!solids_.holds(s, e)) continue;
+    solids_.at(e, [&](std::size_t s) {
       const PrincipalStretches at = principal_stretches(f);
       const double mu = solids_.moduli(s, p).mu;
       stress += principal_stress(at, slopes(at, mu, Powers(at, p[0]))) - neo_hookean(f, mu, Derivatives::first).gradient;
-    }
+    });
   }
   void add_tangent(int e, int, const Eigen::Matrix3d& f, const Parameters& p, StressTangent& tangent) const override {
-    for (std::size_t s = 0; s < solids_.count(); ++s) {
-      if (!solids_.holds(s, e)) continue;
+    solids_.at(e, [&](std::size_t s) {
       const PrincipalStretches at = principal_stretches(f);
       const double mu = solids_.moduli(s, p).mu;
       const Powers powers(at, p[0]);
       tangent += principal_tangent(at, slopes(at, mu, powers), curvatures(at, mu, powers)) -
                  neo_hookean(f, mu, Derivatives::second).hessian;
-    }
+    });
   }
 
  private:
   bool is_absent(const Parameters& p) const override { return p[0] == 2.0; }
   double energy_density(int e, int, const Eigen::Matrix3d& f, const Parameters& p) const override {
     double sum = 0.0;
-    for (std::size_t s = 0; s < solids_.count(); ++s) {
-      if (!solids_.holds(s, e)) continue;
+    solids_.at(e, [&](std::size_t s) {
       const double mu = solids_.moduli(s, p).mu;
       const Powers powers(principal_stretches(f), p[0]);
       sum += 2.0 * mu / (powers.alpha * powers.alpha) * powers.less_one.sum();
       sum -= neo_hookean(f, mu, Derivatives::first).value - 1.5 * mu;
-    }
+    });
     return sum;
   }
 
@@ -82,7 +78,7 @@ class Ogden : public PointwiseEffect {
   }
   // Returns mu/2 J^-2/3 I1, which this law replaces.
   static Invariant neo_hookean(const Eigen::Matrix3d& f, double mu, Derivatives order) {
-    Invariant out = isochoric(first_invariant(f, order), f, kVolume, order);
+    Invariant out = isochoric(first_invariant(f, order), f, order);
     out.value *= 0.5 * mu;
     out.gradient *= 0.5 * mu;
     if (order == Derivatives::second) out.hessian *= 0.5 * mu;

@@ -22,6 +22,13 @@ class Solids {
   double modulus(std::size_t solid, const Parameters& p) const { return p[modulus_index(solid)]; }
   double ratio(std::size_t solid, const Parameters& p) const { return p[ratio_index(solid)]; }
   Lame moduli(std::size_t solid, const Parameters& p) const { return lame(modulus(solid, p), ratio(solid, p)); }
+  /// Calls act(solid) for each elasticity that holds the element.
+  template <typename Act>
+  void at(int element, const Act& act) const {
+    for (std::size_t s = 0; s < count(); ++s) {
+      if (holds(s, element)) act(s);
+    }
+  }
 
  private:
   int own_;

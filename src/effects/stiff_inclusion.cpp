@@ -44,24 +44,21 @@ class StiffInclusion : public PointwiseEffect {
   }
   void add_stress(int e, int q, const Eigen::Matrix3d& f, const Parameters& p, Eigen::Matrix3d& stress) const override {
     const double excess = excess_at(e, q, p);
-    for (std::size_t s = 0; excess != 0.0 && s < solids_.count(); ++s) {
-      if (solids_.holds(s, e)) stress += excess * neo_hookean_stress(solids_.moduli(s, p), f);
-    }
+    if (excess == 0.0) return;
+    solids_.at(e, [&](std::size_t s) { stress += excess * neo_hookean_stress(solids_.moduli(s, p), f); });
   }
   void add_tangent(int e, int q, const Eigen::Matrix3d& f, const Parameters& p, StressTangent& tangent) const override {
     const double excess = excess_at(e, q, p);
-    for (std::size_t s = 0; excess != 0.0 && s < solids_.count(); ++s) {
-      if (solids_.holds(s, e)) tangent += excess * neo_hookean_tangent(solids_.moduli(s, p), f);
-    }
+    if (excess == 0.0) return;
+    solids_.at(e, [&](std::size_t s) { tangent += excess * neo_hookean_tangent(solids_.moduli(s, p), f); });
   }
   Lame rest_moduli(int e, int q, const Parameters& p) const override {
     const double excess = excess_at(e, q, p);
     Lame sum{0.0, 0.0};
-    for (std::size_t s = 0; s < solids_.count(); ++s) {
-      if (!solids_.holds(s, e)) continue;
+    solids_.at(e, [&](std::size_t s) {
       const Lame c = solids_.moduli(s, p);
       sum = {sum.lambda + excess * c.lambda, sum.mu + excess * c.mu};
-    }
+    });
     return sum;
   }
   bool has_strain_form() const override { return true; }
@@ -84,10 +81,9 @@ class StiffInclusion : public PointwiseEffect {
   bool is_absent(const Parameters& p) const override { return p[kExcess] == 0.0; }
   double energy_density(int e, int q, const Eigen::Matrix3d& f, const Parameters& p) const override {
     const double excess = excess_at(e, q, p);
+    if (excess == 0.0) return 0.0;
     double sum = 0.0;
-    for (std::size_t s = 0; excess != 0.0 && s < solids_.count(); ++s) {
-      if (solids_.holds(s, e)) sum += excess * neo_hookean_energy(solids_.moduli(s, p), f);
-    }
+    solids_.at(e, [&](std::size_t s) { sum += excess * neo_hookean_energy(solids_.moduli(s, p), f); });
     return sum;
   }
 

@@ -56,20 +56,18 @@ class StrainStiffening : public PointwiseEffect, public NonlinearForce {
   }
 
   void add_stress(int e, int, const Eigen::Matrix3d& f, const Parameters& p, Eigen::Matrix3d& stress) const override {
-    for (std::size_t s = 0; s < solids_.count(); ++s) {
-      if (!solids_.holds(s, e)) continue;
+    solids_.at(e, [&](std::size_t s) {
       const Lame c = solids_.moduli(s, p);
       stress += excess(p[0], solids_.modulus(s, p), neo_hookean_energy(c, f)).value * neo_hookean_stress(c, f);
-    }
+    });
   }
   void add_tangent(int e, int, const Eigen::Matrix3d& f, const Parameters& p, StressTangent& tangent) const override {
-    for (std::size_t s = 0; s < solids_.count(); ++s) {
-      if (!solids_.holds(s, e)) continue;
+    solids_.at(e, [&](std::size_t s) {
       const Lame c = solids_.moduli(s, p);
       const StressScale scale = excess(p[0], solids_.modulus(s, p), neo_hookean_energy(c, f));
       const Eigen::Matrix3d elastic = neo_hookean_stress(c, f);
       tangent += scale.value * neo_hookean_tangent(c, f) + scale.slope * outer(elastic, elastic);
-    }
+    });
   }
 
  private:
@@ -77,11 +75,10 @@ class StrainStiffening : public PointwiseEffect, public NonlinearForce {
   // The integral of exp(b Q) - 1 over psi.
   double energy_density(int e, int, const Eigen::Matrix3d& f, const Parameters& p) const override {
     double sum = 0.0;
-    for (std::size_t s = 0; s < solids_.count(); ++s) {
-      if (!solids_.holds(s, e)) continue;
+    solids_.at(e, [&](std::size_t s) {
       const double psi = neo_hookean_energy(solids_.moduli(s, p), f);
       sum += excess(p[0], solids_.modulus(s, p), psi).value / (2.0 * p[0] / solids_.modulus(s, p)) - psi;
-    }
+    });
     return sum;
   }
 
@@ -92,14 +89,13 @@ class StrainStiffening : public PointwiseEffect, public NonlinearForce {
   };
   Point evaluate(const Eigen::VectorXd& u, int e, int q, const Parameters& p) const {
     Point x{{0.0, 0.0}, Strain::Zero(), {0.0, 0.0}};
-    for (std::size_t s = 0; s < solids_.count(); ++s) {
-      if (!solids_.holds(s, e)) continue;
+    solids_.at(e, [&](std::size_t s) {
       x.moduli = solids_.moduli(s, p);
       const Strain strain = strain_at(fem_, u, e, q);
       x.stress = 2.0 * x.moduli.mu * strain;
       x.stress.head<3>().array() += x.moduli.lambda * strain.head<3>().sum();
       x.excess = excess(p[0], solids_.modulus(s, p), 0.5 * strain.dot(x.stress));
-    }
+    });
     return x;
   }
   const Discretisation& fem_;

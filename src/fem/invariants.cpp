@@ -22,6 +22,7 @@ StressTangent outer(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
 
 Invariant first_invariant(const Eigen::Matrix3d& f, Derivatives order) {
   Invariant out;
+  out.degree = 2.0;
   out.value = f.squaredNorm();
   out.gradient = 2.0 * f;
   if (order == Derivatives::second) out.hessian = 2.0 * StressTangent::Identity();
@@ -32,6 +33,7 @@ Invariant second_invariant(const Eigen::Matrix3d& f, Derivatives order) {
   const Eigen::Matrix3d right = f.transpose() * f;
   const double trace = right.trace();
   Invariant out;
+  out.degree = 4.0;
   out.value = 0.5 * (trace * trace - right.squaredNorm());
   out.gradient = 2.0 * (trace * f - f * right);
   if (order == Derivatives::first) return out;
@@ -53,6 +55,7 @@ Invariant second_invariant(const Eigen::Matrix3d& f, Derivatives order) {
 Invariant fibre_invariant(const Eigen::Matrix3d& f, const Eigen::Vector3d& direction, Derivatives order) {
   const Eigen::Vector3d stretched = f * direction;
   Invariant out;
+  out.degree = 2.0;
   out.value = stretched.squaredNorm();
   out.gradient = 2.0 * stretched * direction.transpose();
   if (order == Derivatives::first) return out;
@@ -65,12 +68,13 @@ Invariant fibre_invariant(const Eigen::Matrix3d& f, const Eigen::Vector3d& direc
   return out;
 }
 
-Invariant isochoric(const Invariant& of, const Eigen::Matrix3d& f, double power, Derivatives order) {
+Invariant isochoric(const Invariant& of, const Eigen::Matrix3d& f, Derivatives order) {
   const double volume = f.determinant();
   if (!(volume > 0.0)) throw NumericalError("a sampled point turned inside out");
-  const double scale = std::pow(volume, power);
+  const double power = -of.degree / 3.0, scale = std::pow(volume, power);
   const Eigen::Matrix3d h = f.inverse().transpose();  // d ln J / dF
   Invariant out;
+  out.degree = 0.0;
   out.value = scale * of.value;
   out.gradient = scale * (of.gradient + power * of.value * h);
   if (order == Derivatives::first) return out;

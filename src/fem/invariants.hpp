@@ -8,6 +8,7 @@ namespace tissue_stiffness {
 
 /// A scalar of the deformation gradient F with its first and second derivative, in the layout of a StressTangent.
 struct Invariant {
+  double degree;  ///< as a polynomial of F
   double value;
   Eigen::Matrix3d gradient;
   StressTangent hessian;
@@ -21,9 +22,9 @@ Invariant first_invariant(const Eigen::Matrix3d& f, Derivatives order);
 Invariant second_invariant(const Eigen::Matrix3d& f, Derivatives order);
 Invariant fibre_invariant(const Eigen::Matrix3d& f, const Eigen::Vector3d& direction, Derivatives order);
 
-/// Returns J^power times an invariant, J = det F: with power -2/3 for I1 and I4 and -4/3 for I2 it is the same for every
-/// change of volume (Holzapfel 2000, eq. 6.79, 6.109). Throws NumericalError unless J is positive.
-Invariant isochoric(const Invariant& of, const Eigen::Matrix3d& f, double power, Derivatives order);
+/// Returns J^(-degree/3) times an invariant, J = det F, which is the same for every change of volume (Holzapfel 2000, eq.
+/// 6.79, 6.109). Throws NumericalError unless J is positive.
+Invariant isochoric(const Invariant& of, const Eigen::Matrix3d& f, Derivatives order);
 
 /// Returns the outer product of two tensors as a StressTangent: entry (i + 3 J, k + 3 L) is a_iJ b_kL.
 StressTangent outer(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b);
