@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <mutex>
-#include <set>
+#include <optional>
 
 #include "effects/registry.hpp"
 #include "forward/extra_force.hpp"
 #include "forward/for_each_index.hpp"
+#include "forward/linearised_model.hpp"
 #include "settings/extend_model.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
@@ -61,6 +63,15 @@ double motion(const RecordingFit::Rows& rows) {
   return motion_of(rows).norm() / std::sqrt(static_cast<double>(rows.predicted.size()));
 }
 
+// Returns nothing where the run diverges.
+std::optional<Eigen::VectorXd> prediction(const RecordingFit& recording_fit, const Eigen::VectorXd& w) {
+  try {
+    return recording_fit.predicted(w);
+  } catch (const NumericalError&) {
+    return std::nullopt;
+  }
+}
+
 // Returns d rows / d w_j. A slender body answers to what leaves a stout one alone. So the step is cut until the answer is
 // small compared with `moves`, the motion of `rest`.
 Eigen::VectorXd tangent(const RecordingFit& recording_fit, const RecordingFit::Rows& rest, double moves,
@@ -109,6 +120,7 @@ void read_added_tangents(const RecordingFit& recording_fit, const RecordingFit& 
     counts.push_back(components);
   }
   for (std::size_t c = 0; c < candidates.size(); ++c) {
+    candidates[c]->parameter = added[static_cast<std::size_t>(at)];
     Tangent& tangent = candidates[c]->tangent;
     tangent.columns = columns.middleCols(at, counts[c]);
     tangent.prior_std.resize(counts[c]);
@@ -119,8 +131,11 @@ void read_added_tangents(const RecordingFit& recording_fit, const RecordingFit& 
   }
 }
 
-// Returns the effects among the candidates that a reduced basis holds whole, by one model of them all.
-std::set<std::string> linear_effects(const RecordingFit& base, const std::vector<Candidate>& candidates) {
+/// What a candidate's tangent is read from.
+enum class Reading { linear_form, first_order, about_run };
+
+// Returns how the tangents of each effect among the candidates are read, by one model of them all.
+std::map<std::string, Reading> readings(const RecordingFit& base, const std::vector<Candidate>& candidates) {
   ModelSettings settings = base.model().settings();
   const std::size_t before = settings.effects.size();
   std::vector<std::string> names;
@@ -130,11 +145,14 @@ std::set<std::string> linear_effects(const RecordingFit& base, const std::vector
     add_effect(settings, candidate.proposal.entry);
   }
   const Model model(settings, base.model());
-  std::set<std::string> linear;
+  const bool about_run = base.may_be_linearised();
+  std::map<std::string, Reading> out;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    if (!adds_extra_force(model.parts()[before + i])) linear.insert(names[i]);
+    const Model::Part& part = model.parts()[before + i];
+    const Reading of_rest = adds_extra_force(part) ? Reading::first_order : Reading::linear_form;
+    out[names[i]] = about_run && why_not_linearised(part).empty() ? Reading::about_run : of_rest;
   }
-  return linear;
+  return out;
 }
 
 }  // namespace
@@ -165,11 +183,16 @@ std::vector<Candidate> propose_candidates(const RecordingFit& base, const Eigen:
 
 void read_tangents(const RecordingFit& base, const Eigen::VectorXd& w, std::vector<Candidate>& all,
                    const CountProgress& progress, Library& library) {
-  const std::set<std::string> linear = linear_effects(base, all);
-  std::vector<std::size_t> linear_ones, others;
-  for (std::size_t c = 0; c < all.size(); ++c) {
-    all[c].linear = linear.count(all[c].effect) > 0;
-    (all[c].linear ? linear_ones : others).push_back(c);
+  const std::map<std::string, Reading> how = readings(base, all);
+  const auto are_read = [&](Reading wanted) {
+    std::vector<std::size_t> members;
+    for (std::size_t c = 0; c < all.size(); ++c) {
+      if (how.at(all[c].effect) == wanted) members.push_back(c);
+    }
+    return members;
+  };
+  for (Candidate& candidate : all) {
+    candidate.linear = !base.may_be_linearised() && how.at(candidate.effect) == Reading::linear_form;
   }
   std::mutex telling;
   double done = 0.0;
@@ -178,15 +201,19 @@ void read_tangents(const RecordingFit& base, const Eigen::VectorXd& w, std::vect
     done += candidates;
     progress(static_cast<std::size_t>(done + 1e-6), all.size());
   };
-  const auto read = [&](const std::vector<std::size_t>& members, int per_part, BasisOptions::Nonlinear nonlinear,
-                        std::shared_ptr<const RecordingFit>& recording_fit) {
-    if (members.empty()) return;
+  const auto with = [&](const std::vector<std::size_t>& members, std::vector<Candidate*>& candidates) {
     ModelSettings settings = base.model().settings();
-    std::vector<Candidate*> candidates;
     for (const std::size_t c : members) {
       add_effect(settings, all[c].proposal.entry);
       candidates.push_back(&all[c]);
     }
+    return settings;
+  };
+  const auto read = [&](const std::vector<std::size_t>& members, int per_part, BasisOptions::Nonlinear nonlinear,
+                        std::shared_ptr<const RecordingFit>& recording_fit) {
+    if (members.empty()) return;
+    std::vector<Candidate*> candidates;
+    const ModelSettings settings = with(members, candidates);
     BasisOptions options;
     options.per_part = per_part;
     options.nonlinear = nonlinear;
@@ -194,8 +221,16 @@ void read_tangents(const RecordingFit& base, const Eigen::VectorXd& w, std::vect
     recording_fit = std::make_shared<const RecordingFit>(settings, recording_fit ? *recording_fit : base, options);
     read_added_tangents(*recording_fit, base, w, candidates, over);
   };
-  run_side_by_side([&] { read(linear_ones, 4, BasisOptions::Nonlinear::left_out, library.linear); },
-                   [&] { read(others, 16, BasisOptions::Nonlinear::first_order, library.others); });
+  const auto read_about_run = [&](const std::vector<std::size_t>& members) {
+    if (members.empty()) return;
+    std::vector<Candidate*> candidates;
+    const std::shared_ptr<const RecordingFit> linearised = base.linearised(with(members, candidates), w);
+    read_added_tangents(*linearised, base, w, candidates, over);
+    for (Candidate* candidate : candidates) candidate->linearised = linearised;
+  };
+  run_side_by_side([&] { read(are_read(Reading::linear_form), 4, BasisOptions::Nonlinear::left_out, library.linear); },
+                   [&] { read(are_read(Reading::first_order), 16, BasisOptions::Nonlinear::first_order, library.others); },
+                   [&] { read_about_run(are_read(Reading::about_run)); });
 }
 
 std::vector<EffectEntry> entries_of_time_steps(const RecordingFit& recording_fit, const Eigen::VectorXd& w) {
@@ -212,11 +247,14 @@ Eigen::MatrixXd tangents_of_time_steps(const RecordingFit& recording_fit, const 
                                        const RecordingFit::Rows& rows) {
   const std::vector<EffectEntry> entries = entries_of_time_steps(recording_fit, w);
   if (entries.empty()) return Eigen::MatrixXd(rows.error.size(), 0);
-  const RecordingFit extended(extend_model(recording_fit.model().settings(), entries), recording_fit, {});
+  RecordingFit extended(extend_model(recording_fit.model().settings(), entries), recording_fit, BasisOptions());
+  extended.borrow(recording_fit);
   const Eigen::VectorXd start = extended.extend(recording_fit, w), std = extended.model().parameters().prior_std();
   const std::vector<Eigen::Index> added = added_parameters(extended, recording_fit);
+  const std::optional<Eigen::VectorXd> predicted = prediction(extended, start);
+  if (!predicted) return Eigen::MatrixXd(rows.error.size(), 0);
   RecordingFit::Rows rest = rows;
-  rest.predicted = extended.predicted(start);
+  rest.predicted = *predicted;
   const double moves = motion(rest);
   Eigen::MatrixXd out(rows.error.size(), static_cast<Eigen::Index>(added.size()));
   for (std::size_t j = 0; j < added.size(); ++j) {
@@ -230,11 +268,11 @@ Eigen::MatrixXd base_tangents(const RecordingFit& base, const Eigen::VectorXd& w
   Eigen::MatrixXd out(rows.error.size(), w.size());
   for_each_index(static_cast<std::size_t>(w.size()), [&](std::size_t k) {
     const auto i = static_cast<Eigen::Index>(k);
-    const double step = std::max(0.5 * std[i], 1e-6);
-    Eigen::VectorXd up = w, down = w;
-    up[i] += step;
-    down[i] -= step;
-    out.col(i) = rows.used.cwiseProduct(base.predicted(up) - base.predicted(down)) / (2.0 * step);
+    const Eigen::VectorXd step = std::max(0.5 * std[i], 1e-6) * Eigen::VectorXd::Unit(w.size(), i);
+    const std::optional<Eigen::VectorXd> up = prediction(base, w + step), down = prediction(base, w - step);
+    const Eigen::VectorXd middle = up && down ? Eigen::VectorXd() : base.predicted(w);
+    const double width = (up ? step[i] : 0.0) + (down ? step[i] : 0.0);
+    out.col(i) = rows.used.cwiseProduct((up ? *up : middle) - (down ? *down : middle)) / std::max(width, step[i]);
   });
   return out;
 }

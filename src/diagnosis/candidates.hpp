@@ -22,6 +22,10 @@ struct Candidate {
   double lower = -std::numeric_limits<double>::infinity();  ///< bounds of the amplitude
   double upper = std::numeric_limits<double>::infinity();
   bool linear = true;  ///< true: quick to refit
+  /// The base at first order about its run in full, with all candidates, which the tangent was read from, and the index of
+  /// its first parameter there; null: the tangent is that of the linear form.
+  std::shared_ptr<const RecordingFit> linearised = {};
+  Eigen::Index parameter = 0;
 
   /// Returns whether the amplitude is within its bounds: nothing is explained by a negative damping.
   bool allows(const Eigen::VectorXd& amplitude) const;
@@ -39,9 +43,10 @@ std::vector<Candidate> propose_candidates(const RecordingFit& base, const Eigen:
                                           const std::vector<std::string>& ignore);
 
 /// Reads the candidates' tangents. Those of all linear ones come from one reduced model that holds them all at their absent
-/// values. Those of the others come from one at first order. What is not linear in the base is left out of it. `library` is
-/// that of an earlier round, or empty; it is replaced by that of this round. Its vectors are taken over; since then the
-/// base may only have gained effects that leave the body's own mass and stiffness alone. `progress` hears how many
+/// values. Those of the others come from one at first order. A base that is not linear is linearised about its run in full
+/// instead, and gives the tangents of all candidates that this suits; for the rest, what is not linear in it is left out.
+/// `library` is that of an earlier round, or empty; it is replaced by that of this round. Its vectors are taken over; since
+/// then the base may only have gained effects that leave the body's own mass and stiffness alone. `progress` hears how many
 /// candidates are done, from any thread.
 void read_tangents(const RecordingFit& base, const Eigen::VectorXd& w, std::vector<Candidate>& candidates,
                    const CountProgress& progress, Library& library);

@@ -12,8 +12,6 @@
 
 namespace tissue_stiffness {
 
-constexpr double kConfusable = 0.9;  ///< cosine between what two effects explain, above which they are indistinguishable
-
 /// A finding is what one round finds missing in a fitted model.
 struct Finding {
   Verdict verdict = Verdict::unexplained;

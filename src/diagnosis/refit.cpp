@@ -92,14 +92,30 @@ Start grown(const RecordingFit& recording_fit, Start start, double rival) {
   return start;
 }
 
-// Returns where the quick runs of a model fit best.
+// Returns where the quick runs of a model fit best. What was linearised about the run itself is near already.
 Start quick_fit_of(const RecordingFit& quick, const FittedModel& base, const RefitTask& task, double rival) {
   if (task.warm_started) return grown(quick, start_of(quick, task.scanned), rival);
   const RecordingFit& known = *base.recording_fit;
+  if (task.candidate->linearised) {
+    Start start = starts(quick, known, base.fit.w, task).front();
+    start.fit = quick.quick_fit(start.w, start.spread, 1.0, rival);
+    return start;
+  }
   std::string reason;
   std::optional<Start> start = quick_start(quick, known, starts(quick, known, base.fit.w, task), rival, reason);
   if (!start) throw NumericalError(task.effect() + " cannot be refitted: " + reason);
   return *start;
+}
+
+// Corrects the quick runs of a model by those of the base, and trains them with what the tangent says of its motion.
+void borrow(RecordingFit& recording_fit, const FittedModel& base, const RefitTask& task) {
+  const Candidate& candidate = *task.candidate;
+  const RecordingFit& known = *base.recording_fit;
+  if (!candidate.linearised) return recording_fit.borrow(known);
+  const Eigen::VectorXd w = starts(recording_fit, known, base.fit.w, task).front().w;
+  Eigen::VectorXd seen = candidate.linearised->extend(known, base.fit.w);
+  seen.segment(candidate.parameter, task.amplitude.size()) += task.amplitude;
+  recording_fit.borrow(known, w, candidate.linearised.get(), seen);
 }
 
 // Fits the base with the task's proposal. `in_full` says whether a nonlinear model was run in full.
@@ -112,7 +128,7 @@ FittedModel fit_extended(const FittedModel& base, const RefitTask& task, double 
   if (at_first_order) basis.nonlinear = BasisOptions::Nonlinear::first_order;
   FittedModel out;
   out.recording_fit = std::make_unique<RecordingFit>(settings, known, basis);
-  out.recording_fit->borrow(known);
+  borrow(*out.recording_fit, base, task);
   const bool nonlinear = out.recording_fit->model().nonlinear();
   const Start start = quick_fit_of(*out.recording_fit, base, task, nonlinear ? no_rival : rival);  // quick runs are off
   out.fit = start.fit;

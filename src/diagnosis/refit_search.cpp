@@ -12,6 +12,7 @@ constexpr double kSameVariant = 0.8;      // cosine above which two variants are
 constexpr std::size_t kWarmStarts = 6;    // fits of the initial segment that are tried on the whole recording
 constexpr std::size_t kWarmStartsOf = 2;  // those of one effect
 constexpr std::size_t kLeaders = 3;       // refits whose other variants and kinds are tried
+constexpr std::size_t kTogether = 2;      // nonlinear refits that are fitted side by side
 
 /// The search goes stage by stage, and only while nothing explains the recording.
 class RefitSearch {
@@ -31,19 +32,21 @@ class RefitSearch {
 
   /// See search_refits.
   bool all() {
-    refit_from_tangents();
+    const bool about_run = screening_.base.recording_fit->may_be_linearised();
+    about_run ? refit_in_turn() : refit_from_tangents();
     if (!screening_.settled && refits_.move_to_better_base()) return !explained();
     if (!wide()) return false;
     if (!screening_.beside_another && !explained()) refit_other_variants();
     if (!explained()) refit_from_initial_segment();
     if (screening_.beside_another) return false;
     if (!explained()) refit_other_kinds();
-    if (!explained()) refit_faint_nonlinear_effects();
+    if (!explained() && !about_run) refit_faint_nonlinear_effects();
     return false;
   }
 
  private:
   void refit_from_tangents();
+  void refit_in_turn();
   void refit_other_variants();
   void refit_from_initial_segment();
   void refit_other_kinds();
@@ -78,6 +81,29 @@ void RefitSearch::refit_from_tangents() {
   }
   refits_.add(first);
   refits_.add(others);
+}
+
+// Every fit of a nonlinear model takes long, and its tangents are those of its run. So effects are fitted in the order of
+// their evidence, until one explains the recording. Then those follow whose tangents are hardly told from its own.
+void RefitSearch::refit_in_turn() {
+  std::vector<const Ranked*> left;
+  for (const Ranked& r : screening_.ranked) {
+    if (r.evidence > kComparison.worthwhile) left.push_back(&r);
+  }
+  auto next = left.begin();
+  while (next != left.end() && !explained()) {
+    std::vector<RefitTask> together;
+    for (; next != left.end() && together.size() < kTogether; ++next)
+      together.push_back({(*next)->best, (*next)->score.amplitude});
+    refits_.add(together);
+  }
+  if (!explained()) return;
+  const Score known = screening_.scorer->score(refits_.best().candidate->tangent);
+  std::vector<RefitTask> rivals;
+  for (; next != left.end(); ++next) {
+    if ((*next)->score.cosine_with(known) > kConfusable) rivals.push_back({(*next)->best, (*next)->score.amplitude});
+  }
+  refits_.add(rivals);
 }
 
 // Returns up to kLeaders refits, best first. They are copies, because the list changes while they are used.

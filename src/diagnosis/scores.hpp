@@ -5,6 +5,8 @@
 
 namespace tissue_stiffness {
 
+constexpr double kConfusable = 0.9;  ///< cosine between what two effects explain, above which they are indistinguishable
+
 /// A tangent is a missing effect as the residual sees it, with one column for each component of its amplitude.
 struct Tangent {
   Eigen::MatrixXd columns;  ///< N x components: d rows / d amplitude, in sigmas per unit

@@ -97,6 +97,12 @@ std::vector<ParameterSpec> FibreField::angles() {
           {"tilt", "psi", "rad", -4.0, 4.0, ParameterSpec::Default::optional, 0.0, NAN, 1}};
 }
 
+EffectEntry FibreField::entry(const std::string& effect, const Trial& trial, const Argument& angle, const Argument& tilt) {
+  EffectEntry out{effect, {{"direction", trial.direction}, {"angle", angle}}};
+  if (trial.straight) out.arguments.emplace_back("tilt", tilt);
+  return out;
+}
+
 std::vector<FibreField::Trial> FibreField::trials(const TetMesh& mesh) {
   const Eigen::Vector3d axis = principal_axis(mesh).direction;
   std::vector<Trial> list{{"circumferential", 0.0, false}, {"longitudinal", 0.0, false}, {"radial", 0.0, false}};

@@ -38,6 +38,9 @@ class FibreField {
     double angle;
     bool straight;  ///< alike everywhere: a fit may turn it by `angle` and `tilt`
   };
+  static constexpr double kTurn = 0.3;  ///< [rad] prior standard deviation of both angles, of fibres that a fit turns
+  /// Returns an entry for the model file with fibres along a trial's direction; only a straight one may have a tilt.
+  static EffectEntry entry(const std::string& effect, const Trial& trial, const Argument& angle, const Argument& tilt);
   /// Returns directions about the body's axis, two helices, and the coordinate axes that are not the body's axis.
   static std::vector<Trial> trials(const TetMesh& mesh);
   /// Returns the straight directions halfway between two or three coordinate axes. With these axes they cover the half

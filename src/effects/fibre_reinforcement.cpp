@@ -41,21 +41,19 @@ class FibreReinforcement : public PointwiseEffect {
   FibreField fibres_;
 };
 
-constexpr double kTurn = 0.3;  // [rad] prior standard deviation of both angles
-
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.holds("fibre_reinforcement")) return {};
   const double scale = 0.5 * context.young_modulus;
   std::vector<Proposal> list;
   const auto add = [&](const FibreField::Trial& trial) {
     const auto with = [&trial](const Argument& angle, const Argument& tilt, const Quantity& modulus) {
-      EffectEntry entry{"fibre_reinforcement", {{"direction", trial.direction}, {"angle", angle}}};
-      if (trial.straight) entry.arguments.emplace_back("tilt", tilt);
+      EffectEntry entry = FibreField::entry("fibre_reinforcement", trial, angle, tilt);
       entry.arguments.emplace_back("modulus", modulus);
       return entry;
     };
     Proposal proposal{with(trial.angle, 0.0, normal_prior(0.0, scale)), "modulus",
-                      with(normal_prior(trial.angle, kTurn), normal_prior(0.0, kTurn), log_normal_prior(scale, 3.0))};
+                      with(normal_prior(trial.angle, FibreField::kTurn), normal_prior(0.0, FibreField::kTurn),
+                           log_normal_prior(scale, 3.0))};
     // Tangents choose between straight directions, because a fit turns them.
     if (!trial.straight) proposal.kind_keys = {"direction"};
     list.push_back(std::move(proposal));

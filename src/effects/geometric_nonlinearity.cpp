@@ -12,10 +12,7 @@ class GeometricNonlinearity : public Effect {
 };
 
 std::vector<Proposal> propose(const ProposalContext& context) {
-  if (context.holds("geometric_nonlinearity")) return {};
-  for (const EffectSettings* elasticity : context.all("elasticity")) {
-    if (elasticity->arguments.at("law").as_text() != "linear") return {};
-  }
+  if (context.holds("geometric_nonlinearity") || context.finite_strain()) return {};
   const auto with = [](const Argument& share) { return EffectEntry{"geometric_nonlinearity", {{"share", share}}}; };
   return {{with(normal_prior(0.0, 0.5)), "share", with(1.0)}};
 }

@@ -57,6 +57,28 @@ class HolzapfelGasserOgden : public PointwiseEffect {
   FibreField fibres_;
 };
 
+// Fibres that stiffen slowly show where they lie; a fit turns them and finds how fast they stiffen.
+std::vector<Proposal> propose(const ProposalContext& context) {
+  if (context.holds("holzapfel_gasser_ogden") || !context.finite_strain()) return {};
+  const double scale = 0.5 * context.young_modulus;
+  std::vector<Proposal> list;
+  for (const FibreField::Trial& trial : FibreField::trials(context.mesh)) {
+    const auto with = [&trial](const Argument& angle, const Argument& tilt, const Quantity& stiffness,
+                               const Argument& exponent) {
+      EffectEntry entry = FibreField::entry("holzapfel_gasser_ogden", trial, angle, tilt);
+      entry.arguments.emplace_back("stiffness", stiffness);
+      entry.arguments.emplace_back("exponent", exponent);
+      return entry;
+    };
+    Proposal proposal{with(trial.angle, 0.0, normal_prior(0.0, scale), 1.0), "stiffness",
+                      with(normal_prior(trial.angle, FibreField::kTurn), normal_prior(0.0, FibreField::kTurn),
+                           log_normal_prior(scale, 3.0), log_normal_prior(2.0, 4.0))};
+    if (!trial.straight) proposal.kind_keys = {"direction"};
+    list.push_back(std::move(proposal));
+  }
+  return list;
+}
+
 }  // namespace
 
 EffectSpec holzapfel_gasser_ogden_spec() {
@@ -72,6 +94,7 @@ EffectSpec holzapfel_gasser_ogden_spec() {
   for (const ParameterSpec& angle : FibreField::angles()) spec.parameters.push_back(angle);
   spec.keys = FibreField::keys();
   spec.of_finite_strain = true;
+  spec.proposals = propose;
   return spec;
 }
 

@@ -40,6 +40,12 @@ class MooneyRivlin : public PointwiseEffect {
   Solids solids_;
 };
 
+std::vector<Proposal> propose(const ProposalContext& context) {
+  if (context.holds("mooney_rivlin") || !context.finite_strain()) return {};
+  const EffectEntry entry{"mooney_rivlin", {{"share", normal_prior(0.0, 0.5)}}};
+  return {{entry, "share", entry}};
+}
+
 }  // namespace
 
 EffectSpec mooney_rivlin_spec() {
@@ -50,6 +56,7 @@ EffectSpec mooney_rivlin_spec() {
   spec.source = "Mooney 1940; Rivlin 1948; Holzapfel 2000, eq. 6.127";
   spec.parameters = {{"share", "s", "-", 0.0, 1.0, ParameterSpec::Default::required, 0.0, 0.0, 1}};
   spec.of_finite_strain = true;
+  spec.proposals = propose;
   return spec;
 }
 

@@ -88,6 +88,12 @@ class Ogden : public PointwiseEffect {
   Solids solids_;
 };
 
+std::vector<Proposal> propose(const ProposalContext& context) {
+  if (context.holds("ogden") || !context.finite_strain()) return {};
+  const EffectEntry entry{"ogden", {{"exponent", normal_prior(2.0, 10.0)}}};
+  return {{entry, "exponent", entry}};
+}
+
 }  // namespace
 
 EffectSpec ogden_spec() {
@@ -99,6 +105,7 @@ EffectSpec ogden_spec() {
   spec.source = "Ogden 1972; Holzapfel 2000, eq. 6.119, one term";
   spec.parameters = {{"exponent", "alpha", "-", -50.0, 50.0, ParameterSpec::Default::required, 0.0, 2.0, 1}};
   spec.of_finite_strain = true;
+  spec.proposals = propose;
   return spec;
 }
 

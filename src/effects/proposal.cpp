@@ -39,6 +39,12 @@ bool ProposalContext::estimates(const std::string& effect, const std::string& pa
   });
 }
 
+bool ProposalContext::finite_strain() const {
+  const auto elasticities = all("elasticity");
+  return std::any_of(elasticities.begin(), elasticities.end(),
+                     [](const EffectSettings* entry) { return entry->arguments.at("law").as_text() != "linear"; });
+}
+
 Eigen::Vector3d ProposalContext::low() const {
   return mesh.nodes.rowwise().minCoeff();
 }

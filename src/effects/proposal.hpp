@@ -33,6 +33,8 @@ struct ProposalContext {
   std::vector<std::string> regions_of(const std::string& acting, const std::string& absent) const;
   /// Returns whether an effect of this name has this parameter estimated.
   bool estimates(const std::string& effect, const std::string& parameter) const;
+  /// Returns whether an elasticity has a law of finite strain.
+  bool finite_strain() const;
   /// These return the corners of the body's bounding box [m], and its diagonal.
   Eigen::Vector3d low() const;
   Eigen::Vector3d high() const;

@@ -9,18 +9,6 @@ namespace {
 
 constexpr double kFarthest = 1.0;  // lengths of the last move: nothing is known farther away
 
-Eigen::MatrixXd outputs(const ForwardModel& model, const Eigen::VectorXd& theta, double start,
-                        const std::vector<double>& times, const std::function<void()>& checkpoint) {
-  const auto run = model.start(theta, start);
-  Eigen::MatrixXd u(run->output().size(), static_cast<Eigen::Index>(times.size()));
-  for (std::size_t k = 0; k < times.size(); ++k) {
-    checkpoint();
-    run->advance(times[k]);
-    u.col(static_cast<Eigen::Index>(k)) = run->output();
-  }
-  return u;
-}
-
 class CorrectedTrajectory : public Trajectory {
  public:
   CorrectedTrajectory(std::unique_ptr<Trajectory> run, const std::vector<double>& times, const Eigen::MatrixXd& difference,
@@ -59,14 +47,38 @@ class CorrectedTrajectory : public Trajectory {
 
 }  // namespace
 
+Eigen::MatrixXd run_outputs(const ForwardModel& model, const Eigen::VectorXd& theta, double start,
+                            const std::vector<double>& times, const std::function<void()>& checkpoint) {
+  const auto run = model.start(theta, start);
+  Eigen::MatrixXd u(run->output().size(), static_cast<Eigen::Index>(times.size()));
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    checkpoint();
+    run->advance(times[k]);
+    u.col(static_cast<Eigen::Index>(k)) = run->output();
+  }
+  return u;
+}
+
 void CorrectedSurrogate::anchor(const Eigen::VectorXd& theta, double start, const std::vector<double>& times,
                                 const std::function<void()>& checkpoint) {
   Eigen::MatrixXd accurate, cheap;
-  run_side_by_side([&] { accurate = outputs(*accurate_, theta, start, times, checkpoint); },
-                   [&] { cheap = outputs(*cheap_, theta, start, times, checkpoint); });
+  run_side_by_side([&] { accurate = run_outputs(*accurate_, theta, start, times, checkpoint); },
+                   [&] { cheap = run_outputs(*cheap_, theta, start, times, checkpoint); });
   times_ = times;
   anchor_ = theta;
   difference_ = accurate - cheap;
+}
+
+void CorrectedSurrogate::anchor_to(const Eigen::MatrixXd& accurate, const Eigen::VectorXd& theta, double start,
+                                   const std::vector<double>& times, const std::function<void()>& checkpoint) {
+  times_ = times;
+  anchor_ = theta;
+  difference_ = accurate - run_outputs(*cheap_, theta, start, times, checkpoint);
+}
+
+void CorrectedSurrogate::anchor_as(const CorrectedSurrogate& other, const Eigen::VectorXd& theta, double start,
+                                   const std::function<void()>& checkpoint) {
+  anchor_to(run_outputs(other, other.anchor_, start, other.times_, checkpoint), theta, start, other.times_, checkpoint);
 }
 
 void CorrectedSurrogate::follow(const CorrectedSurrogate& before, const Eigen::VectorXd& scale) {

@@ -29,6 +29,13 @@ class CorrectedSurrogate : public ForwardModel {
   /// another anchor. `scale` is one unit of each of theta, 0 where both anchors have the same value.
   void follow(const CorrectedSurrogate& before, const Eigen::VectorXd& scale);
 
+  /// The same with outputs of the accurate model that are known, a column for each time.
+  void anchor_to(const Eigen::MatrixXd& accurate, const Eigen::VectorXd& theta, double start,
+                 const std::vector<double>& times, const std::function<void()>& checkpoint);
+  /// Agrees at theta with what `other`, a surrogate of the same mesh, has at its own anchor. Its accurate model is not run.
+  void anchor_as(const CorrectedSurrogate& other, const Eigen::VectorXd& theta, double start,
+                 const std::function<void()>& checkpoint);
+
   /// Takes over the difference of another surrogate of the same mesh, as it is at that one's anchor.
   void move_as(const CorrectedSurrogate& other) {
     times_ = other.times_;
@@ -49,5 +56,9 @@ class CorrectedSurrogate : public ForwardModel {
   Eigen::MatrixXd change_;
   Eigen::VectorXd along_;
 };
+
+/// Returns the outputs of a run, a column for each time. Calls `checkpoint` before each.
+Eigen::MatrixXd run_outputs(const ForwardModel& model, const Eigen::VectorXd& theta, double start,
+                            const std::vector<double>& times, const std::function<void()>& checkpoint);
 
 }  // namespace tissue_stiffness

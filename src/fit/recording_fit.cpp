@@ -6,8 +6,10 @@
 #include <utility>
 
 #include "fit/coordinate_scan.hpp"
+#include "forward/basis_seed_vectors.hpp"
 #include "forward/extra_force.hpp"
 #include "forward/hyper_reduced_model.hpp"
+#include "forward/linearised_model.hpp"
 #include "forward/study_model.hpp"
 #include "observation/frame_misfit.hpp"
 #include "tissue_stiffness/meshing/build_mesh.hpp"
@@ -26,6 +28,9 @@ constexpr double kGain = 1e-4;         // relative fall of the cost that a full 
 constexpr double kNarrower = 4.0;      // posterior standard deviations: span of the next fit's sigma points
 constexpr double kBaseSpread = 0.05;   // prior standard deviations, for parameters that a smaller model has too
 constexpr double kAddedSpread = 0.25;  // prior standard deviations, for the others
+constexpr double kProbe = 0.02;        // prior standard deviations: how far a parameter is moved for its sensitivity
+constexpr int kBorrowed = 48;          // displacements of another fit's runs that train a model
+constexpr int kSeen = 24;              // likewise, of the other model at first order
 
 }  // namespace
 
@@ -47,20 +52,26 @@ RecordingFit::RecordingFit(const ModelSettings& settings, const TetMesh& mesh, s
       training_(recording.training()),
       model_(settings, mesh, std::move(regions)),
       operators_(make_observation_operators(model_)) {
+  recording_.checkpoint();
+  model_.loads().drive(recording_.first_stamp, recording_.loads);
   prepare(basis, nullptr);
 }
 
 RecordingFit::RecordingFit(const ModelSettings& settings, const RecordingFit& relative, const BasisOptions& basis)
+    : RecordingFit(settings, relative, &basis) {}
+
+// Without a basis the forward model is still to come.
+RecordingFit::RecordingFit(const ModelSettings& settings, const RecordingFit& relative, const BasisOptions* basis)
     : recording_(relative.recording_),
       training_(relative.training_),
       model_(settings, relative.model_),
       operators_(make_observation_operators(model_)) {
-  prepare(basis, relative.forward_.get());
+  recording_.checkpoint();  // what follows may take longer than a frame
+  model_.loads().drive(recording_.first_stamp, recording_.loads);
+  if (basis != nullptr) prepare(*basis, relative.forward_.get());
 }
 
 void RecordingFit::prepare(const BasisOptions& basis, const ForwardModel* relative) {
-  recording_.checkpoint();  // what follows may take longer than a frame
-  model_.loads().drive(recording_.first_stamp, recording_.loads);
   BasisOptions whole = basis;
   whole.steps_per_frame = kSteps;
   whole.extrapolated = true;
@@ -74,8 +85,51 @@ void RecordingFit::prepare(const BasisOptions& basis, const ForwardModel* relati
     return adds_extra_force(part) && model_.estimated(part);
   });
   quick.nonlinear = steered ? BasisOptions::Nonlinear::first_order : BasisOptions::Nonlinear::left_out;
-  quick_ = make_forward_model(model_, quick, relative);
-  quick_->restrict_output_to(nodes);
+  std::shared_ptr<ForwardModel> cheap = make_forward_model(model_, quick, relative);
+  cheap->restrict_output_to(nodes);
+  quick_ = std::move(cheap);
+}
+
+bool RecordingFit::may_be_hyper_reduced() const {
+  return model_.nonlinear() && why_not_hyper_reduced(model_).empty();
+}
+
+bool RecordingFit::may_be_linearised() const {
+  return model_.nonlinear() && !studied_in_full(model_) && why_not_linearised(model_).empty() &&
+         model_.relaxations(model_.prior_theta()).empty();
+}
+
+std::vector<double> RecordingFit::times(const Eigen::VectorXd& theta) const {
+  std::vector<double> out;
+  for (const Frame& frame : recording_.frames) out.push_back(frame.time - model_.sensors().delay(theta));
+  return out;
+}
+
+std::shared_ptr<const RecordingFit> RecordingFit::linearised(const ModelSettings& settings,
+                                                             const Eigen::VectorXd& w) const {
+  FullModel::Options full;
+  full.steps_per_frame = 1;
+  const Eigen::VectorXd own = model_.parameters().theta(w);
+  const double start = problem(*forward_, training_).start.time, step = model_.settings().time.step;
+  std::vector<double> instants;
+  double before = start;
+  for (const double time : times(own)) {
+    const int steps = step > 0.0 ? static_cast<int>(std::ceil((time - before) / step * (1.0 - 1e-9))) : kSteps;
+    for (int i = 1; i <= steps && time > before; ++i) instants.push_back(before + (time - before) * i / steps);
+    before = std::max(before, time);
+  }
+  std::vector<DynamicState> run = FullModel(model_, full).states(own, start, instants, recording_.checkpoint);
+  const std::shared_ptr<RecordingFit> out(new RecordingFit(settings, *this, static_cast<const BasisOptions*>(nullptr)));
+  const ParameterSpace& parameters = out->model_.parameters();
+  const Eigen::VectorXd at = out->extend(*this, w), theta = parameters.theta(at);
+  LinearisedModel::Options options;
+  options.stride = std::max<std::size_t>(1, instants.size() / recording_.frames.size());
+  options.checkpoint = recording_.checkpoint;
+  const Eigen::VectorXd moves = parameters.theta(at + kProbe * parameters.prior_std()) - theta;
+  auto linearised = std::make_shared<LinearisedModel>(out->model_, theta, std::move(run), moves, options);
+  linearised->restrict_output_to(observed_nodes(out->operators_, recording_.frames));
+  out->forward_ = std::move(linearised);
+  return out;
 }
 
 BasisOptions RecordingFit::keeping_root() {
@@ -84,10 +138,47 @@ BasisOptions RecordingFit::keeping_root() {
   return basis;
 }
 
-void RecordingFit::borrow(const RecordingFit& base) {
+void RecordingFit::borrow(const RecordingFit& base, const Eigen::VectorXd& w, const RecordingFit* seen,
+                          const Eigen::VectorXd& seen_w) {
   if (!base.surrogate_ || !quick_) return;
+  if (base.motions_.thetas.empty()) {
+    surrogate_ = std::make_unique<CorrectedSurrogate>(*forward_, *quick_);
+    surrogate_->move_as(*base.surrogate_);
+    return;
+  }
+  const double start = problem(*forward_, training_).start.time;
+  Eigen::VectorXd theta = model_.parameters().theta(w);
+  if (may_be_hyper_reduced()) {
+    motions_ = base.motions_.thinned(kBorrowed);
+    if (seen != nullptr) {
+      const auto run = seen->forward_->start(seen->model_.parameters().theta(seen_w), start);
+      const std::vector<double> all = times(theta);
+      for (std::size_t k = 0; k < kSeen; ++k) {
+        run->advance(all[(2 * k + 1) * all.size() / (2 * kSeen)]);
+        motions_.add({run->displacement(), {theta}});
+      }
+    }
+    motions_.thetas.assign(motions_.thetas.size(), theta);
+    quick_ = make_hyper_reduced(seen == nullptr ? base.quick_.get() : nullptr);
+  }
+  for (std::size_t i = 0; i < model_.parts().size(); ++i) {
+    const auto known = [&](const Model::Part& part) { return part.label == model_.parts()[i].label; };
+    const auto& parts = base.model_.parts();
+    if (std::none_of(parts.begin(), parts.end(), known)) theta = theta_without_part(model_, i, theta);
+  }
   surrogate_ = std::make_unique<CorrectedSurrogate>(*forward_, *quick_);
-  surrogate_->move_as(*base.surrogate_);
+  surrogate_->anchor_as(*base.surrogate_, theta, start, recording_.checkpoint);
+}
+
+std::shared_ptr<const ForwardModel> RecordingFit::make_hyper_reduced(const ForwardModel* relative) const {
+  HyperOptions options;
+  options.full.step = model_.settings().time.step;
+  options.full.steps_per_frame = 2 * kSteps;
+  const auto* known = dynamic_cast<const HyperReducedModel*>(relative);
+  auto reduced = known != nullptr ? std::make_shared<HyperReducedModel>(model_, *known)
+                                  : std::make_shared<HyperReducedModel>(model_, motions_, options);
+  reduced->restrict_output_to(observed_nodes(operators_, recording_.frames));
+  return reduced;
 }
 
 FitProblem RecordingFit::problem(const ForwardModel& forward, const std::vector<Frame>& frames) const {
@@ -199,59 +290,48 @@ BatchFit RecordingFit::quick_fit(const Eigen::VectorXd& start, const Eigen::Vect
   return fit_batch(problem(quick(), frames), start, spread, rival);
 }
 
-RecordingFit::Run RecordingFit::run_in_full(const Eigen::VectorXd& w, FullMotions* motions) const {
+RecordingFit::Run RecordingFit::run_in_full(const Eigen::VectorXd& w) {
   const double start = problem(*forward_, training_).start.time;
   const Eigen::VectorXd theta = model_.parameters().theta(w);
   std::vector<double> times;
   for (const Frame& frame : recording_.frames) times.push_back(frame.time);
   Run out{quick_, nullptr};
-  if (motions != nullptr) {
-    HyperOptions options;
-    options.full.steps_per_frame = kSteps;
-    const auto run = FullModel(model_, options.full).start(theta, start);
-    for (const double time : times) {
-      recording_.checkpoint();
-      run->advance(time);
-      motions->add({run->displacement(), {theta}});
-    }
-    options.full.steps_per_frame = 2 * kSteps;
-    auto reduced = std::make_shared<HyperReducedModel>(model_, *motions, options);
-    reduced->restrict_output_to(observed_nodes(operators_, recording_.frames));
-    out.cheap = reduced;
+  if (!may_be_hyper_reduced()) {
+    out.corrected = std::make_unique<CorrectedSurrogate>(*forward_, *out.cheap);
+    out.corrected->anchor(theta, start, times, recording_.checkpoint);
+    return out;
   }
+  const Eigen::MatrixXd accurate = run_outputs(*forward_, theta, start, times, recording_.checkpoint);
+  motions_.add({accurate, std::vector<Eigen::VectorXd>(times.size(), theta)});
+  out.cheap = make_hyper_reduced(nullptr);
   out.corrected = std::make_unique<CorrectedSurrogate>(*forward_, *out.cheap);
-  out.corrected->anchor(theta, start, times, recording_.checkpoint);
+  out.corrected->anchor_to(accurate, theta, start, times, recording_.checkpoint);
   return out;
 }
 
-// What is linear in finite strain is no guide from afar, so such a model is fitted in few vectors first. From near it is
-// one, and others borrow its correction.
-BatchFit RecordingFit::fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd spread, double rival) {
-  if (why_not_hyper_reduced(model_).empty()) {
-    FullMotions motions{Eigen::MatrixXd(model_.fem().dof_count(), 0), {}};
-    const BatchFit near = fit_from_run_to_run(at, spread, rival, &motions);
-    at = near.w;
-    spread = spread.cwiseMin(kNarrower * near.covariance.diagonal().cwiseSqrt());
-  }
-  return fit_from_run_to_run(std::move(at), std::move(spread), rival, nullptr);
-}
-
 // Every full run tells by how much quick runs are off there. A fit with that correction tells where the next full run has
-// to be.
-BatchFit RecordingFit::fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd spread, double rival, FullMotions* motions) {
-  Run run = run_in_full(at, motions);
-  double cost = free_fit(problem(*run.corrected, training_), at).cost;
+// to be. Where the model leaves more than the noise, its parameters are known no better than that.
+BatchFit RecordingFit::fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd spread, double rival) {
+  Run run = run_in_full(at);
+  const FreeFit first = free_fit(problem(*run.corrected, training_), at);
+  double cost = first.cost;
   BatchFit fit;
   for (int k = 0; k < kMostRuns; ++k) {
     fit = fit_batch(problem(*run.corrected, training_), at, spread);
-    const Eigen::VectorXd std = fit.covariance.diagonal().cwiseSqrt();
+    const double misfit = std::sqrt(std::max(1.0, fit.cost / std::max(1.0, first.rows)));
+    const Eigen::VectorXd std = misfit * fit.covariance.diagonal().cwiseSqrt();
     Eigen::VectorXd move = fit.w - at;
     const bool settled = (move.array().abs() < kSettled * std.array()).all();
     if (settled || cost - fit.cost < kWorthwhile * cost || fit.cost > rival) break;
     double gain = 0.0;
     for (int cut = 0; cut < kMostCuts && !(gain > 0.0); ++cut, move *= 0.3) {
-      Run there = run_in_full(at + move, motions);
-      const double now = free_fit(problem(*there.corrected, training_), at + move).cost;
+      Run there;
+      double now = std::numeric_limits<double>::infinity();
+      try {
+        there = run_in_full(at + move);
+        now = free_fit(problem(*there.corrected, training_), at + move).cost;
+      } catch (const NumericalError&) {  // such a move is cut, too
+      }
       gain = cost - now;
       if (!(gain > 0.0)) continue;
       if (there.cheap == run.cheap) {
@@ -267,7 +347,8 @@ BatchFit RecordingFit::fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd s
     spread = spread.cwiseMin(kNarrower * std);
   }
   fit.w = at;
-  if (motions == nullptr) surrogate_ = std::move(run.corrected);
+  quick_ = std::move(run.cheap);
+  surrogate_ = std::move(run.corrected);
   return fit;
 }
 

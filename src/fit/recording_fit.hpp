@@ -31,6 +31,12 @@ class RecordingFit {
   RecordingFit(const RecordingFit&) = delete;
   RecordingFit& operator=(const RecordingFit&) = delete;
 
+  /// Returns this model with more effects, all absent, at first order about its run in full at w: every free parameter has
+  /// its sensitivity (LinearisedModel). Throws InputError where the model has no such form (may_be_linearised).
+  std::shared_ptr<const RecordingFit> linearised(const ModelSettings& settings, const Eigen::VectorXd& w) const;
+  /// Returns whether it is nonlinear in a way that a study does not run in full, and can be linearised.
+  bool may_be_linearised() const;
+
   /// Returns the basis options of a fit that others will reuse.
   static BasisOptions keeping_root();
 
@@ -77,8 +83,12 @@ class RecordingFit {
   /// Fits the first `share` of the training frames without full runs. `rival` is explained at fit_batch.
   BatchFit quick_fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread, double share = 1.0,
                      double rival = no_rival) const;
-  /// Corrects quick runs by what those of `base`, a fitted model with fewer effects, were off.
-  void borrow(const RecordingFit& base);
+  /// Corrects quick runs by what those of `base`, a fitted model with fewer effects, were off. Where both have a form in
+  /// few vectors, quick runs take the base's vectors and points, so what was added must not have a law of its own.
+  void borrow(const RecordingFit& base) { borrow(base, model_.parameters().prior_mean(), nullptr, {}); }
+  /// The same, for a model that will be at w, with any effects more. It is trained with the base's runs in full, and with
+  /// the motion of `seen`, the base at first order, at that one's w. `seen` may be null.
+  void borrow(const RecordingFit& base, const Eigen::VectorXd& w, const RecordingFit* seen, const Eigen::VectorXd& seen_w);
   /// Returns where a coarse scan along each coordinate of the prior explains the training frames best.
   Eigen::VectorXd scan(const Eigen::VectorXd& start) const;
 
@@ -109,7 +119,13 @@ class RecordingFit {
   Eigen::VectorXd spread_beyond(const RecordingFit& base) const;
 
  private:
+  RecordingFit(const ModelSettings& settings, const RecordingFit& relative, const BasisOptions* basis);
   void prepare(const BasisOptions& basis, const ForwardModel* relative);
+  bool may_be_hyper_reduced() const;
+  /// Returns the times of all frames, less the sensors' delay at theta [s].
+  std::vector<double> times(const Eigen::VectorXd& theta) const;
+  /// `relative`: a model whose vectors and points are taken; null: they are chosen.
+  std::shared_ptr<const ForwardModel> make_hyper_reduced(const ForwardModel* relative) const;
   FitProblem problem(const ForwardModel& forward, const std::vector<Frame>& frames) const;
   /// Returns all training frames, or the first of them copied into `room`.
   const std::vector<Frame>& first_of_training(double share, std::vector<Frame>& room) const;
@@ -120,18 +136,18 @@ class RecordingFit {
     std::shared_ptr<const ForwardModel> cheap;
     std::unique_ptr<CorrectedSurrogate> corrected;
   };
-  /// Runs in full at w. Quick runs from there are hyper-reduced ones that `motions` have trained, to which this run is
-  /// added; null: what is linear in the model.
-  Run run_in_full(const Eigen::VectorXd& w, FullMotions* motions) const;
+  /// Runs in full at w. Quick runs from there are hyper-reduced ones that all runs have trained, to which this one is
+  /// added. Without such a form they are those of what is linear in the model.
+  Run run_in_full(const Eigen::VectorXd& w);
   BatchFit fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd spread, double rival);
-  BatchFit fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd spread, double rival, FullMotions* motions);
   const ForwardModel& quick() const { return surrogate_ ? *surrogate_ : quick_ ? *quick_ : *forward_; }
 
   const Recording& recording_;
   std::vector<Frame> training_;
   Model model_;
   std::shared_ptr<ForwardModel> forward_;
-  std::shared_ptr<ForwardModel> quick_;            ///< null: forward_ is quick itself
+  std::shared_ptr<const ForwardModel> quick_;      ///< null: forward_ is quick itself
+  FullMotions motions_;                            ///< of all runs in full; of models that have a form in few vectors
   std::unique_ptr<CorrectedSurrogate> surrogate_;  ///< at the last full run; null: none yet
   std::vector<std::unique_ptr<ObservationOperator>> operators_;
 };

@@ -190,6 +190,19 @@ std::unique_ptr<Trajectory> FullModel::start(const Eigen::VectorXd& theta, doubl
   return std::make_unique<FullTrajectory>(model_, theta, at_start(model_, theta, start, linear_form_.get()), options_);
 }
 
+std::vector<DynamicState> FullModel::states(const Eigen::VectorXd& theta, double start, const std::vector<double>& times,
+                                            const std::function<void()>& checkpoint) const {
+  std::vector<DynamicState> out{at_start(model_, theta, start, linear_form_.get())};
+  GeneralizedAlpha(ModelSystem(model_, theta), options_.spectral_radius, options_.tolerance).initialise(out.front());
+  FullTrajectory run(model_, theta, out.front(), options_);
+  for (const double time : times) {
+    checkpoint();
+    run.advance(time);
+    if (time > out.back().time) out.push_back(run.state());
+  }
+  return out;
+}
+
 std::unique_ptr<Trajectory> FullModel::resume(const Eigen::VectorXd& theta, const Trajectory& from) const {
   return std::make_unique<FullTrajectory>(model_, theta, dynamic_cast<const FullTrajectory&>(from).state(), options_);
 }

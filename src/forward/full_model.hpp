@@ -34,6 +34,9 @@ class FullModel : public ForwardModel {
   std::unique_ptr<Trajectory> resume(const Eigen::VectorXd& theta, const Trajectory& from) const override;
   std::unique_ptr<Trajectories> resume_all(const std::vector<Eigen::VectorXd>& thetas,
                                            const Trajectory& from) const override;
+  /// Returns the states of a run at its start and at later `times` [s], ascending. `checkpoint` is called before each time.
+  std::vector<DynamicState> states(const Eigen::VectorXd& theta, double start, const std::vector<double>& times,
+                                   const std::function<void()>& checkpoint) const;
   std::string description() const override;
   const Options& options() const { return options_; }
 
@@ -53,6 +56,7 @@ class ModelSystem : public DynamicSystem {
   const SparseMatrix& mass() const override { return mass_; }
   const SparseMatrix& damping() const override { return damping_; }
   bool damped() const override { return damped_; }
+  const Eigen::VectorXd& gravity() const { return gravity_; }  ///< [N]
   const std::vector<char>& fixed() const override { return fixed_; }
   const std::vector<Relaxation>& relaxations() const override { return relaxations_; }
   const SparseMatrix& relaxing_stiffness() const override { return reference_; }

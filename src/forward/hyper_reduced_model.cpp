@@ -41,12 +41,24 @@ class HyperReducedTrajectories : public SeparateTrajectories {
 
 HyperReducedModel::HyperReducedModel(const Model& model, FullMotions motions, const HyperOptions& options)
     : model_(model), options_(options), motions_(std::move(motions)) {
-  if (const std::string why = why_not_hyper_reduced(model); !why.empty()) {
-    throw InputError(model.settings().name, why, "a model of finite strain with a form at sampled points");
-  }
+  require_form();
   basis_ = choose_hyper_basis(model, motions_, options_);
   project_motion();
   project_parts();
+}
+
+HyperReducedModel::HyperReducedModel(const Model& model, const HyperReducedModel& relative)
+    : model_(model), options_(relative.options_), motions_(relative.motions_), basis_(relative.basis_) {
+  require_form();
+  motions_.thetas.assign(motions_.thetas.size(), model.prior_theta());
+  project_motion();
+  project_parts();
+}
+
+void HyperReducedModel::require_form() const {
+  if (const std::string why = why_not_hyper_reduced(model_); !why.empty()) {
+    throw InputError(model_.settings().name, why, "a model of finite strain with a form at sampled points");
+  }
 }
 
 void HyperReducedModel::project_motion() {

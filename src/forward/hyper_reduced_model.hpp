@@ -21,6 +21,8 @@ class HyperReducedModel : public ForwardModel {
  public:
   /// Throws InputError for a model that has no such form (why_not_hyper_reduced).
   HyperReducedModel(const Model& model, FullMotions motions, const HyperOptions& options);
+  /// Takes vectors and points of a relative, whose mesh and laws are the same.
+  HyperReducedModel(const Model& model, const HyperReducedModel& relative);
 
   std::unique_ptr<Trajectory> start(const Eigen::VectorXd& theta, double start) const override;
   std::unique_ptr<Trajectories> start_all(const std::vector<Eigen::VectorXd>& thetas, double start) const override;
@@ -58,6 +60,7 @@ class HyperReducedModel : public ForwardModel {
   double tolerance() const;
 
  private:
+  void require_form() const;
   void project_motion();
   void project_parts();
   QuadraticForce project(const FollowerLoad& load) const;

@@ -111,6 +111,8 @@ class Model {
   /// Adds the load terms (without gravity) at an instant [N].
   void add_loads(const Point& at, double time, Eigen::VectorXd& force) const;
   void add_nonlinear_force(const Point& at, Motion motion, Eigen::VectorXd& force) const;
+  /// Adds what the nonlinear forces change by between two theta. Parts that stay the same are not evaluated.
+  void add_nonlinear_change(const Point& from, const Point& to, Motion motion, Eigen::VectorXd& force) const;
   void add_nonlinear_stiffness(const Point& at, Motion motion, SparseMatrix& stiffness) const;
   /// Returns whether a force depends on the velocity beyond the linear damping: friction, or the viscous stress of finite
   /// strain. The next function adds their tangents.
@@ -144,6 +146,7 @@ class Model {
   EffectContext context();
   void add_part(const EffectSettings& settings, const EffectContext& context, const Model* relative);
   std::shared_ptr<const Effect> shared_effect(const EffectSettings& settings) const;
+  void add_part_force(const Point& at, std::size_t part, Motion motion, Eigen::VectorXd& force) const;
   void link_elasticities();
   void check_laws() const;
   void settle_terms(Part& part) const;

@@ -221,29 +221,56 @@ void Model::add_loads(const Point& at, double time, Eigen::VectorXd& force) cons
   }
 }
 
-void Model::add_nonlinear_force(const Point& at, Motion motion, Eigen::VectorXd& force) const {
+void Model::add_part_force(const Point& at, std::size_t i, Motion motion, Eigen::VectorXd& force) const {
+  const Effect& effect = *parts_[i].effect;
+  const Eigen::VectorXd& p = at.parts[i].parameters;
   motion.load_factor = at.load_factor;
   motion.since = motion.time - loads_.first_stamp();
-  for (std::size_t i = 0; i < parts_.size(); ++i) {
-    const Effect& effect = *parts_[i].effect;
-    const Eigen::VectorXd& p = at.parts[i].parameters;
-    motion.finite_share = at.parts[i].finite_share;
-    if (const NonlinearForce* own = effect.nonlinear_force()) own->add_force(motion, p, force);
-    const FiniteStrainForm* form = effect.finite_strain();
-    if (motion.finite_share == 1.0) {
-      form->add_finite_force(motion, p, force);
-    } else if (motion.finite_share > 0.0) {
-      VectorPool::Loan finite(scratch_, force.size());
-      finite->setZero();
-      form->add_finite_force(motion, p, *finite);
-      force += motion.finite_share * *finite;
-    }
+  motion.finite_share = at.parts[i].finite_share;
+  if (const NonlinearForce* own = effect.nonlinear_force()) own->add_force(motion, p, force);
+  const FiniteStrainForm* form = effect.finite_strain();
+  if (motion.finite_share == 1.0) {
+    form->add_finite_force(motion, p, force);
+  } else if (motion.finite_share > 0.0) {
+    VectorPool::Loan finite(scratch_, force.size());
+    finite->setZero();
+    form->add_finite_force(motion, p, *finite);
+    force += motion.finite_share * *finite;
   }
+}
+
+void Model::add_nonlinear_force(const Point& at, Motion motion, Eigen::VectorXd& force) const {
+  for (std::size_t i = 0; i < parts_.size(); ++i) add_part_force(at, i, motion, force);
   if (!has_finite_damping(at)) return;
   VectorPool::Loan rates(scratch_, strain_count(fem()));
   green_strain_rates(fem(), motion.displacement, motion.velocity, *rates);
   *rates *= at.stiffness_damping;
   add_strain_force(at, motion.displacement, *rates, force);
+}
+
+void Model::add_nonlinear_change(const Point& from, const Point& to, Motion motion, Eigen::VectorXd& force) const {
+  Eigen::VectorXd before = Eigen::VectorXd::Zero(force.size()), rates;
+  const bool scaled = from.load_factor != to.load_factor;
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    const Point::Part &old = from.parts[i], &now = to.parts[i];
+    const FiniteStrainForm* form = parts_[i].effect->finite_strain();
+    const bool loaded = scaled && form != nullptr && form->follower_load() != nullptr;
+    const bool changed = old.parameters != now.parameters || old.finite_share != now.finite_share;
+    if (changed || loaded) {
+      add_part_force(to, i, motion, force);
+      add_part_force(from, i, motion, before);
+    }
+    const double damps = from.stiffness_damping * strain_share(parts_[i], old),
+                 will = to.stiffness_damping * strain_share(parts_[i], now);
+    if ((!changed && damps == will) || (damps == 0.0 && will == 0.0)) continue;
+    if (rates.size() == 0) {
+      rates.resize(strain_count(fem()));
+      green_strain_rates(fem(), motion.displacement, motion.velocity, rates);
+    }
+    if (will != 0.0) form->add_strain_force(motion.displacement, rates, now.parameters, will, force);
+    if (damps != 0.0) form->add_strain_force(motion.displacement, rates, old.parameters, damps, before);
+  }
+  force -= before;
 }
 
 void Model::add_strain_force(const Point& at, const Eigen::VectorXd& u, const Eigen::Ref<const Eigen::VectorXd>& strains,
