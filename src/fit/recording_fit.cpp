@@ -170,10 +170,11 @@ void RecordingFit::borrow(const RecordingFit& base, const Eigen::VectorXd& w, co
   surrogate_->anchor_as(*base.surrogate_, theta, start, recording_.checkpoint);
 }
 
+// Steps have one length, so that a run that leaves out held-out frames has the errors of one that does not.
 std::shared_ptr<const ForwardModel> RecordingFit::make_hyper_reduced(const ForwardModel* relative) const {
   HyperOptions options;
-  options.full.step = model_.settings().time.step;
-  options.full.steps_per_frame = 2 * kSteps;
+  const double stated = model_.settings().time.step, span = recording_.frames.back().time - recording_.first_stamp;
+  options.full.step = stated > 0.0 ? stated : span / static_cast<double>(2 * kSteps * recording_.frames.size());
   const auto* known = dynamic_cast<const HyperReducedModel*>(relative);
   auto reduced = known != nullptr ? std::make_shared<HyperReducedModel>(model_, *known)
                                   : std::make_shared<HyperReducedModel>(model_, motions_, options);
