@@ -63,8 +63,9 @@ double motion(const RecordingFit::Rows& rows) {
   return motion_of(rows).norm() / std::sqrt(static_cast<double>(rows.predicted.size()));
 }
 
-// Returns nothing where the run diverges.
+// Returns nothing where the run diverges, which one of a linear model does not.
 std::optional<Eigen::VectorXd> prediction(const RecordingFit& recording_fit, const Eigen::VectorXd& w) {
+  if (!recording_fit.model().nonlinear()) return recording_fit.predicted(w);
   try {
     return recording_fit.predicted(w);
   } catch (const NumericalError&) {
@@ -270,7 +271,7 @@ Eigen::MatrixXd base_tangents(const RecordingFit& base, const Eigen::VectorXd& w
     const auto i = static_cast<Eigen::Index>(k);
     const Eigen::VectorXd step = std::max(0.5 * std[i], 1e-6) * Eigen::VectorXd::Unit(w.size(), i);
     const std::optional<Eigen::VectorXd> up = prediction(base, w + step), down = prediction(base, w - step);
-    const Eigen::VectorXd middle = up && down ? Eigen::VectorXd() : base.predicted(w);
+    const Eigen::VectorXd middle = up && down ? Eigen::VectorXd() : base.predicted(w);  // throws where nothing runs
     const double width = (up ? step[i] : 0.0) + (down ? step[i] : 0.0);
     out.col(i) = rows.used.cwiseProduct((up ? *up : middle) - (down ? *down : middle)) / std::max(width, step[i]);
   });

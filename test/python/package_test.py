@@ -60,7 +60,11 @@ class PackageTest(unittest.TestCase):
             program = os.path.join(folder, 'example.py')
             with open(program, 'w') as file:
                 file.write(code)
-            self.assertEqual(run(program), output)
+            printed = run(program)
+        number = r'\d{4,}'
+        self.assertEqual(re.sub(number, 'N', printed), re.sub(number, 'N', output))
+        for got, wanted in zip(re.findall(number, printed), re.findall(number, output)):
+            self.assertAlmostEqual(float(got) / float(wanted), 1.0, delta=0.1)  # BLAS libraries round differently
 
     def test_the_example_runs(self):
         with tempfile.TemporaryDirectory() as folder:
