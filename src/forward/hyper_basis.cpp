@@ -10,6 +10,7 @@
 
 #include "fem/nonnegative_least_squares.hpp"
 #include "fem/products.hpp"
+#include "forward/orthogonal_decomposition.hpp"
 #include "forward/orthonormal_basis.hpp"
 #include "forward/project_matrix.hpp"
 
@@ -44,14 +45,7 @@ Eigen::MatrixXd decompose(const Eigen::MatrixXd& snapshots, const SparseMatrix& 
   const Eigen::MatrixXd elastic = inner_products(snapshots, symmetric_product(stiffness, snapshots)),
                         inertial = inner_products(snapshots, symmetric_product(mass, snapshots));
   const double share = inertial.trace() > 0.0 ? elastic.trace() / inertial.trace() : 0.0;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(elastic + share * inertial);
-  const Eigen::VectorXd& energy = eigen.eigenvalues();
-  Eigen::Index count = 0;
-  for (double left = energy.sum(); count < std::min<Eigen::Index>(energy.size(), options.largest); ++count) {
-    if (left <= options.energy_left * energy.sum()) break;
-    left -= energy[energy.size() - 1 - count];
-  }
-  return snapshots * eigen.eigenvectors().rightCols(count).rowwise().reverse();
+  return most_energetic(snapshots, elastic + share * inertial, options.energy_left, options.largest);
 }
 
 class Chooser {

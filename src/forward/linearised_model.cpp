@@ -1,6 +1,5 @@
 #include "forward/linearised_model.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,8 @@
 #include "fem/products.hpp"
 #include "fem/relaxation.hpp"
 #include "forward/for_each_index.hpp"
+#include "forward/force_change.hpp"
+#include "forward/orthogonal_decomposition.hpp"
 #include "forward/orthonormal_basis.hpp"
 #include "forward/project_matrix.hpp"
 #include "forward/static_response.hpp"
@@ -21,22 +22,14 @@ constexpr double kMotion = 0.4;       // of the vectors: those of the motion its
 constexpr std::size_t kDeformed = 8;  // instants of which static responses are taken
 constexpr double kEnergyLeft = 1e-8;  // share of the energy that vectors may leave out
 
-// Returns the most energetic directions of x in the inner product of K, at most `most`.
+// Returns the most energetic directions of x in the inner product of K.
 Eigen::MatrixXd decompose(const Eigen::MatrixXd& x, const SparseMatrix& k, Eigen::Index most) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inner_products(x, symmetric_product(k, x)));
-  const Eigen::VectorXd& energy = eigen.eigenvalues();
-  Eigen::Index count = 0;
-  for (double left = energy.sum(); count < std::min(energy.size(), most); ++count) {
-    if (left <= kEnergyLeft * energy.sum()) break;
-    left -= energy[energy.size() - 1 - count];
-  }
-  return x * eigen.eigenvectors().rightCols(count).rowwise().reverse();
+  return most_energetic(x, inner_products(x, symmetric_product(k, x)), kEnergyLeft, most);
 }
 
 }  // namespace
 
 std::string why_not_linearised(const ModelPart& part) {
-  if (!part.effect) return "";
   if (!part.compliant_nodes().empty()) return part.label + " may release nodes";
   if (part.terms.initial_motion) return part.label + " sets the body in motion";
   if (part.effect->contact() != nullptr) return part.label + " touches the body";
@@ -51,99 +44,11 @@ std::string why_not_linearised(const Model& model) {
   return "";
 }
 
-namespace {
-
-/// What one theta changes, for its unit.
-class Change {
- public:
-  Change(const Model& model, const Eigen::VectorXd& theta, const Eigen::VectorXd& moved, double step)
-      : model_(model), step_(step), from_(model.point(theta)), to_(model.point(moved)), rest_(model, theta) {
-    auto now = std::make_unique<const ModelSystem>(model, moved);
-    mass = difference(now->mass(), rest_.mass());
-    stiffness = difference(model.stiffness(moved), model.stiffness(theta));
-    if (now->damped() || rest_.damped()) {
-      const SparseMatrix none = model.fem().pattern();
-      damping = difference(now->damped() ? now->damping() : none, rest_.damped() ? rest_.damping() : none);
-    }
-    gravity = (now->gravity() - rest_.gravity()) / step_;
-    velocity = (model.initial_velocity(moved) - model.initial_velocity(theta)) / step_;
-    for (std::size_t i = 0; i < model.parts().size(); ++i) {
-      const bool same =
-          to_.parts[i].parameters == from_.parts[i].parameters && to_.parts[i].finite_share == from_.parts[i].finite_share;
-      const Effect& effect = *model.parts()[i].effect;
-      laws = laws || (!same && (effect.nonlinear_force() != nullptr || effect.finite_strain() != nullptr));
-      loads = loads || (!model.parts()[i].terms.loads.empty() && (!same || to_.load_factor != from_.load_factor));
-    }
-    rates = to_.stiffness_damping != from_.stiffness_damping || !now->relaxations().empty();
-    if (!now->relaxations().empty()) relaxing_ = std::move(now);
-  }
-
-  /// Returns all of the right-hand side at an instant; a relaxing branch is not relaxed.
-  Eigen::VectorXd whole(const DynamicState& at) const {
-    Eigen::VectorXd out = gravity + load(at.time) + nonlinear(at);
-    if (mass.nonZeros() > 0) subtract_product(mass, at.acceleration, out);
-    if (damping.nonZeros() > 0) subtract_product(damping, at.velocity, out);
-    if (stiffness.nonZeros() > 0) subtract_product(stiffness, at.displacement, out);
-    if (relaxing_) {
-      const std::vector<Eigen::VectorXd> relaxed(relaxing_->relaxations().size(), Eigen::VectorXd::Zero(strain(at).size()));
-      out += relaxation(at, relaxed);
-    }
-    return out;
-  }
-  Eigen::VectorXd load(double time) const {
-    Eigen::VectorXd now = Eigen::VectorXd::Zero(gravity.size()), before = now;
-    if (!loads) return now;
-    model_.add_loads(to_, time, now);
-    model_.add_loads(from_, time, before);
-    return (now - before) / step_;
-  }
-  Eigen::VectorXd nonlinear(const DynamicState& at) const {
-    Eigen::VectorXd out = Eigen::VectorXd::Zero(gravity.size());
-    model_.add_nonlinear_change(from_, to_, {at.time, at.displacement, at.velocity}, out);
-    return out / step_;
-  }
-  bool relaxes() const { return relaxing_ != nullptr; }
-  const std::vector<Relaxation>& branches() const { return relaxing_->relaxations(); }
-  Eigen::VectorXd strain(const DynamicState& at) const {
-    Eigen::VectorXd out;
-    relaxing_->find_relaxing_strain(at.displacement, out);
-    return out;
-  }
-  Eigen::VectorXd relaxation(const DynamicState& at, const std::vector<Eigen::VectorXd>& relaxed) const {
-    Eigen::VectorXd stretch, out = Eigen::VectorXd::Zero(gravity.size());
-    overstretch(branches(), strain(at), relaxed, stretch);
-    relaxing_->subtract_relaxing_force(at.displacement, stretch, out);
-    return out / step_;
-  }
-
-  SparseMatrix mass, damping, stiffness;  ///< empty: they stay the same
-  Eigen::VectorXd gravity;                ///< [N]
-  Eigen::Vector3d velocity;               ///< at the start
-  bool laws = false, loads = false;
-  bool rates = false;  ///< a nonlinear force that follows the velocity
-
- private:
-  SparseMatrix difference(const SparseMatrix& now, const SparseMatrix& before) const {
-    SparseMatrix out = now - before;
-    out.prune([](Eigen::Index, Eigen::Index, double value) { return value != 0.0; });
-    out /= step_;
-    return out;
-  }
-
-  const Model& model_;
-  double step_;
-  Model::Point from_, to_;
-  ModelSystem rest_;
-  std::unique_ptr<const ModelSystem> relaxing_;
-};
-
-}  // namespace
-
 /// Finds vectors and sensitivities.
 class LinearisedModel::Builder {
  public:
   Builder(LinearisedModel& out, const Eigen::VectorXd& step, const Options& options)
-      : out_(out), model_(out.model_), options_(options), system_(out.model_, out.theta_) {
+      : out_(out), model_(out.model_), options_(options), unchanged_(out.model_, out.theta_), system_(unchanged_.system) {
     if (!system_.relaxations().empty()) {
       throw InputError(model_.settings().name, "relaxing branches", "a model without them, to be linearised about a run");
     }
@@ -156,7 +61,7 @@ class LinearisedModel::Builder {
       const Eigen::Index i = out_.moved_[k];
       Eigen::VectorXd moved = out_.theta_;
       moved[i] += step[i];
-      changes_[k] = std::make_unique<const Change>(model_, out_.theta_, moved, step[i]);
+      changes_[k] = std::make_unique<const ForceChange>(unchanged_, moved, step[i]);
     });
   }
 
@@ -272,7 +177,7 @@ class LinearisedModel::Builder {
   }
 
   // Returns a right-hand side at all instants, m x instants.
-  Eigen::MatrixXd projected_forces(const Change& change) const {
+  Eigen::MatrixXd projected_forces(const ForceChange& change) const {
     const Eigen::MatrixXd& v = out_.vectors_;
     Eigen::MatrixXd out = (v.transpose() * change.gravity).replicate(1, position_.cols());
     if (change.mass.nonZeros() > 0) out -= project_matrix(change.mass, v) * acceleration_;
@@ -296,7 +201,7 @@ class LinearisedModel::Builder {
     }
     return out;
   }
-  void add_relaxation(const Change& change, Eigen::MatrixXd& out) const {
+  void add_relaxation(const ForceChange& change, Eigen::MatrixXd& out) const {
     Eigen::VectorXd before = change.strain(out_.run_.front());
     std::vector<Eigen::VectorXd> relaxed(change.branches().size(), before);
     for (std::size_t j = 1; j < instants(); ++j) {
@@ -368,13 +273,14 @@ class LinearisedModel::Builder {
   LinearisedModel& out_;
   const Model& model_;
   const Options& options_;
-  ModelSystem system_;
-  std::vector<std::unique_ptr<const Change>> changes_;  ///< of each theta that is moved
-  std::vector<std::size_t> knots_;                      ///< instants at which matrices and laws are evaluated
-  Eigen::MatrixXd weighted_;                            ///< M times the vectors
-  Eigen::MatrixXd position_, rate_, acceleration_;      ///< of the run in the vectors, m x instants
-  std::vector<Eigen::MatrixXd> stiffness_, damping_;    ///< in the vectors, at each knot
-  std::vector<Eigen::MatrixXd> forces_;                 ///< of each theta that is moved, m x instants
+  const UnchangedForces unchanged_;
+  const ModelSystem& system_;
+  std::vector<std::unique_ptr<const ForceChange>> changes_;  ///< of each theta that is moved
+  std::vector<std::size_t> knots_;                           ///< instants at which matrices and laws are evaluated
+  Eigen::MatrixXd weighted_;                                 ///< M times the vectors
+  Eigen::MatrixXd position_, rate_, acceleration_;           ///< of the run in the vectors, m x instants
+  std::vector<Eigen::MatrixXd> stiffness_, damping_;         ///< in the vectors, at each knot
+  std::vector<Eigen::MatrixXd> forces_;                      ///< of each theta that is moved, m x instants
 };
 
 LinearisedModel::LinearisedModel(const Model& model, const Eigen::VectorXd& theta, std::vector<DynamicState> run,

@@ -102,6 +102,8 @@ class Model {
       Eigen::VectorXd parameters;
       double finite_share;
       std::vector<Eigen::VectorXd> shaped;  ///< pattern of each load term; empty if it is constant
+      /// Returns whether what shapes its forces is the same.
+      bool same(const Part& other) const { return parameters == other.parameters && finite_share == other.finite_share; }
     };
     std::vector<Part> parts;
     double load_factor;
@@ -111,6 +113,8 @@ class Model {
   /// Adds the load terms (without gravity) at an instant [N].
   void add_loads(const Point& at, double time, Eigen::VectorXd& force) const;
   void add_nonlinear_force(const Point& at, Motion motion, Eigen::VectorXd& force) const;
+  /// Returns whether the nonlinear forces of a part differ between two theta, but for their viscous stress.
+  bool nonlinear_part_changes(const Point& from, const Point& to, std::size_t part) const;
   /// Adds what the nonlinear forces change by between two theta. Parts that stay the same are not evaluated.
   void add_nonlinear_change(const Point& from, const Point& to, Motion motion, Eigen::VectorXd& force) const;
   void add_nonlinear_stiffness(const Point& at, Motion motion, SparseMatrix& stiffness) const;
@@ -146,7 +150,9 @@ class Model {
   EffectContext context();
   void add_part(const EffectSettings& settings, const EffectContext& context, const Model* relative);
   std::shared_ptr<const Effect> shared_effect(const EffectSettings& settings) const;
-  void add_part_force(const Point& at, std::size_t part, Motion motion, Eigen::VectorXd& force) const;
+  /// Returns the motion as the forces of a part take it.
+  Motion seen_by(std::size_t part, const Point& at, Motion motion) const;
+  void add_part_force(const Point& at, std::size_t part, const Motion& motion, Eigen::VectorXd& force) const;
   void link_elasticities();
   void check_laws() const;
   void settle_terms(Part& part) const;

@@ -221,12 +221,17 @@ void Model::add_loads(const Point& at, double time, Eigen::VectorXd& force) cons
   }
 }
 
-void Model::add_part_force(const Point& at, std::size_t i, Motion motion, Eigen::VectorXd& force) const {
-  const Effect& effect = *parts_[i].effect;
-  const Eigen::VectorXd& p = at.parts[i].parameters;
+Motion Model::seen_by(std::size_t part, const Point& at, Motion motion) const {
   motion.load_factor = at.load_factor;
   motion.since = motion.time - loads_.first_stamp();
-  motion.finite_share = at.parts[i].finite_share;
+  motion.finite_share = at.parts[part].finite_share;
+  return motion;
+}
+
+void Model::add_part_force(const Point& at, std::size_t i, const Motion& general, Eigen::VectorXd& force) const {
+  const Effect& effect = *parts_[i].effect;
+  const Eigen::VectorXd& p = at.parts[i].parameters;
+  const Motion motion = seen_by(i, at, general);
   if (const NonlinearForce* own = effect.nonlinear_force()) own->add_force(motion, p, force);
   const FiniteStrainForm* form = effect.finite_strain();
   if (motion.finite_share == 1.0) {
@@ -248,27 +253,31 @@ void Model::add_nonlinear_force(const Point& at, Motion motion, Eigen::VectorXd&
   add_strain_force(at, motion.displacement, *rates, force);
 }
 
+bool Model::nonlinear_part_changes(const Point& from, const Point& to, std::size_t i) const {
+  const FiniteStrainForm* form = parts_[i].effect->finite_strain();
+  if (form == nullptr && parts_[i].effect->nonlinear_force() == nullptr) return false;
+  const bool loaded = form != nullptr && form->follower_load() != nullptr;
+  return !to.parts[i].same(from.parts[i]) || (loaded && to.load_factor != from.load_factor);
+}
+
 void Model::add_nonlinear_change(const Point& from, const Point& to, Motion motion, Eigen::VectorXd& force) const {
   Eigen::VectorXd before = Eigen::VectorXd::Zero(force.size()), rates;
-  const bool scaled = from.load_factor != to.load_factor;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
-    const Point::Part &old = from.parts[i], &now = to.parts[i];
-    const FiniteStrainForm* form = parts_[i].effect->finite_strain();
-    const bool loaded = scaled && form != nullptr && form->follower_load() != nullptr;
-    const bool changed = old.parameters != now.parameters || old.finite_share != now.finite_share;
-    if (changed || loaded) {
+    const bool changed = nonlinear_part_changes(from, to, i);
+    if (changed) {
       add_part_force(to, i, motion, force);
       add_part_force(from, i, motion, before);
     }
-    const double damps = from.stiffness_damping * strain_share(parts_[i], old),
-                 will = to.stiffness_damping * strain_share(parts_[i], now);
+    const double damps = from.stiffness_damping * strain_share(parts_[i], from.parts[i]),
+                 will = to.stiffness_damping * strain_share(parts_[i], to.parts[i]);
     if ((!changed && damps == will) || (damps == 0.0 && will == 0.0)) continue;
     if (rates.size() == 0) {
       rates.resize(strain_count(fem()));
       green_strain_rates(fem(), motion.displacement, motion.velocity, rates);
     }
-    if (will != 0.0) form->add_strain_force(motion.displacement, rates, now.parameters, will, force);
-    if (damps != 0.0) form->add_strain_force(motion.displacement, rates, old.parameters, damps, before);
+    const FiniteStrainForm& form = *parts_[i].effect->finite_strain();
+    if (will != 0.0) form.add_strain_force(motion.displacement, rates, to.parts[i].parameters, will, force);
+    if (damps != 0.0) form.add_strain_force(motion.displacement, rates, from.parts[i].parameters, damps, before);
   }
   force -= before;
 }
@@ -281,13 +290,11 @@ void Model::add_strain_force(const Point& at, const Eigen::VectorXd& u, const Ei
   }
 }
 
-void Model::add_nonlinear_stiffness(const Point& at, Motion motion, SparseMatrix& stiffness) const {
-  motion.load_factor = at.load_factor;
-  motion.since = motion.time - loads_.first_stamp();
+void Model::add_nonlinear_stiffness(const Point& at, Motion general, SparseMatrix& stiffness) const {
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const Effect& effect = *parts_[i].effect;
     const Eigen::VectorXd& p = at.parts[i].parameters;
-    motion.finite_share = at.parts[i].finite_share;
+    const Motion motion = seen_by(i, at, general);
     if (const NonlinearForce* own = effect.nonlinear_force()) own->add_stiffness(motion, p, stiffness);
     const FiniteStrainForm* form = effect.finite_strain();
     if (motion.finite_share == 1.0) {

@@ -13,9 +13,9 @@ constexpr int kFrames = 16, kSteps = 24;
 
 struct Case {
   std::string name;
-  std::string effect;  ///< the last parameter that is estimated is its own, absent at the prior
-  double step;         ///< of that parameter, for differences of runs in full (second order, one-sided)
-  double most = 0.03;  ///< error, as a share. Accelerations and rates ring more than few vectors hold
+  std::vector<std::string> effects;  ///< the last parameter that is estimated is theirs, absent at the prior
+  double step;                       ///< of that parameter, for differences of runs in full (second order, one-sided)
+  double most = 0.03;                ///< error, as a share. Accelerations and rates ring more than few vectors hold
 };
 void PrintTo(const Case& c, std::ostream* out) {
   *out << c.name;
@@ -35,7 +35,7 @@ class Linearised : public testing::TestWithParam<Case> {
     std::vector<std::string> list{
         "inertia: {density: 1000}", "fixed: {region: clamp}", "traction: {region: tip, topic: /push}",
         "elasticity: {law: neo_hookean, poisson_ratio: 0.45, young_modulus: {prior: 20e3, factor: 2}}"};
-    if (!GetParam().effect.empty()) list.push_back(GetParam().effect);
+    list.insert(list.end(), GetParam().effects.begin(), GetParam().effects.end());
     return list;
   }
   Eigen::VectorXd moved(double share) const {
@@ -76,18 +76,23 @@ TEST_P(Linearised, AnswersAsRunsInFullDo) {
 
 INSTANTIATE_TEST_SUITE_P(
     Parameters, Linearised,
-    testing::Values(Case{"modulus", "", 5e-4},
-                    Case{"acceleration", "gravity: {acceleration: {mean: [0, 0, 0], std: 1}}", 0.02},
-                    Case{"damping", "viscous_damping: {beta: {mean: 0, std: 1e-2}}", 5e-5, 0.06},
-                    Case{"mass_damping", "mass_damping: {alpha: {mean: 0, std: 1}}", 0.02},
-                    Case{"relaxing", "viscoelasticity: {gamma: {mean: 0, std: 1}, tau: 0.1}", 5e-4},
-                    Case{"mass", "added_mass: {region: far, mass: {mean: 0, std: 1e-2}}", 5e-6, 0.12},
-                    Case{"ogden", "ogden: {exponent: {mean: 2, std: 5}}", 0.01},
-                    Case{"stiffening", "strain_stiffening: {exponent: {mean: 0, std: 10}}", 2e-3},
-                    Case{"compressible", "compressibility: {shift: {mean: 0, std: 0.1}}", 2e-4},
-                    Case{"load", "force_scale: {relative: {mean: 0, std: 0.5}}", 0.02},
+    testing::Values(Case{"modulus", {}, 5e-4},
+                    Case{"acceleration", {"gravity: {acceleration: {mean: [0, 0, 0], std: 1}}"}, 0.02},
+                    Case{"damping", {"viscous_damping: {beta: {mean: 0, std: 1e-2}}"}, 5e-5, 0.06},
+                    Case{"mass_damping", {"mass_damping: {alpha: {mean: 0, std: 1}}"}, 0.02},
+                    Case{"relaxing", {"viscoelasticity: {gamma: {mean: 0, std: 1}, tau: 0.1}"}, 5e-4},
+                    Case{"mass", {"added_mass: {region: far, mass: {mean: 0, std: 1e-2}}"}, 5e-6, 0.12},
+                    Case{"ogden", {"ogden: {exponent: {mean: 2, std: 5}}"}, 0.01},
+                    Case{"stiffening", {"strain_stiffening: {exponent: {mean: 0, std: 10}}"}, 2e-3},
+                    Case{"compressible", {"compressibility: {shift: {mean: 0, std: 0.1}}"}, 2e-4},
+                    Case{"load", {"force_scale: {relative: {mean: 0, std: 0.5}}"}, 0.02},
+                    Case{
+                        "pressure",
+                        {"pressure: {region: top, topic: /p, scale: -100}", "force_scale: {relative: {mean: 0, std: 0.5}}"},
+                        0.02},
                     Case{"inclusion",
-                         "stiff_inclusion: {center: [0.03, 0.01, 0.01], radius: 0.015, excess: {mean: 0, std: 1}}", 0.02}),
+                         {"stiff_inclusion: {center: [0.03, 0.01, 0.01], radius: 0.015, excess: {mean: 0, std: 1}}"},
+                         0.02}),
     [](const auto& info) { return info.param.name; });
 
 }  // namespace
