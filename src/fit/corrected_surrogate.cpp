@@ -1,6 +1,7 @@
 #include "fit/corrected_surrogate.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "forward/for_each_index.hpp"
 
@@ -64,16 +65,18 @@ void CorrectedSurrogate::anchor(const Eigen::VectorXd& theta, double start, cons
   Eigen::MatrixXd accurate, cheap;
   run_side_by_side([&] { accurate = run_outputs(*accurate_, theta, start, times, checkpoint); },
                    [&] { cheap = run_outputs(*cheap_, theta, start, times, checkpoint); });
+  agree(theta, times, accurate - cheap);
+}
+
+void CorrectedSurrogate::agree(const Eigen::VectorXd& theta, const std::vector<double>& times, Eigen::MatrixXd difference) {
   times_ = times;
   anchor_ = theta;
-  difference_ = accurate - cheap;
+  difference_ = std::move(difference);
 }
 
 void CorrectedSurrogate::anchor_to(const Eigen::MatrixXd& accurate, const Eigen::VectorXd& theta, double start,
                                    const std::vector<double>& times, const std::function<void()>& checkpoint) {
-  times_ = times;
-  anchor_ = theta;
-  difference_ = accurate - run_outputs(*cheap_, theta, start, times, checkpoint);
+  agree(theta, times, accurate - run_outputs(*cheap_, theta, start, times, checkpoint));
 }
 
 void CorrectedSurrogate::anchor_as(const CorrectedSurrogate& other, const Eigen::VectorXd& theta, double start,

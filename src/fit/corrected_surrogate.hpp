@@ -46,6 +46,8 @@ class CorrectedSurrogate : public ForwardModel {
   std::string description() const override;
 
  private:
+  void agree(const Eigen::VectorXd& theta, const std::vector<double>& times, Eigen::MatrixXd difference);
+
   const ForwardModel* accurate_;
   const ForwardModel* cheap_;
   std::vector<double> times_;

@@ -52,34 +52,33 @@ RecordingFit::RecordingFit(const ModelSettings& settings, const TetMesh& mesh, s
       training_(recording.training()),
       model_(settings, mesh, std::move(regions)),
       operators_(make_observation_operators(model_)) {
-  recording_.checkpoint();
-  model_.loads().drive(recording_.first_stamp, recording_.loads);
-  prepare(basis, nullptr);
+  prepare(&basis, nullptr);
 }
 
 RecordingFit::RecordingFit(const ModelSettings& settings, const RecordingFit& relative, const BasisOptions& basis)
     : RecordingFit(settings, relative, &basis) {}
 
-// Without a basis the forward model is still to come.
 RecordingFit::RecordingFit(const ModelSettings& settings, const RecordingFit& relative, const BasisOptions* basis)
     : recording_(relative.recording_),
       training_(relative.training_),
       model_(settings, relative.model_),
       operators_(make_observation_operators(model_)) {
-  recording_.checkpoint();  // what follows may take longer than a frame
-  model_.loads().drive(recording_.first_stamp, recording_.loads);
-  if (basis != nullptr) prepare(*basis, relative.forward_.get());
+  prepare(basis, relative.forward_.get());
 }
 
-void RecordingFit::prepare(const BasisOptions& basis, const ForwardModel* relative) {
-  BasisOptions whole = basis;
+// Without a basis the forward model is still to come.
+void RecordingFit::prepare(const BasisOptions* basis, const ForwardModel* relative) {
+  recording_.checkpoint();  // what follows may take longer than a frame
+  model_.loads().drive(recording_.first_stamp, recording_.loads);
+  if (basis == nullptr) return;
+  BasisOptions whole = *basis;
   whole.steps_per_frame = kSteps;
   whole.extrapolated = true;
   forward_ = make_forward_model(model_, whole, relative);
   const std::vector<int> nodes = observed_nodes(operators_, recording_.frames);
   forward_->restrict_output_to(nodes);
-  if (studied_in_full(model_) || basis.nonlinear != BasisOptions::Nonlinear::in_full) return;
-  BasisOptions quick = basis;
+  if (studied_in_full(model_) || basis->nonlinear != BasisOptions::Nonlinear::in_full) return;
+  BasisOptions quick = *basis;
   const auto& parts = model_.parts();
   const bool steered = std::any_of(parts.begin(), parts.end(), [&](const Model::Part& part) {
     return adds_extra_force(part) && model_.estimated(part);

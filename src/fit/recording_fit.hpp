@@ -120,7 +120,7 @@ class RecordingFit {
 
  private:
   RecordingFit(const ModelSettings& settings, const RecordingFit& relative, const BasisOptions* basis);
-  void prepare(const BasisOptions& basis, const ForwardModel* relative);
+  void prepare(const BasisOptions* basis, const ForwardModel* relative);
   bool may_be_hyper_reduced() const;
   /// Returns the times of all frames, less the sensors' delay at theta [s].
   std::vector<double> times(const Eigen::VectorXd& theta) const;
