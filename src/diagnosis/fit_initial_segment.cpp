@@ -45,10 +45,14 @@ InitialSegmentFit fit_initial_segment(const FittedModel& base, const Candidate& 
   const Model& model = recording_fit.model();
   const Eigen::VectorXd w = recording_fit.extend(known, base.fit.w);
   const std::vector<Eigen::Index> tuning = recording_fit.tuning_shared_with(known);
+  const std::vector<Eigen::Index> acting = recording_fit.acting_shared_with(known);
   const Eigen::VectorXd spread = recording_fit.spread_beyond(known);
   std::vector<RecordingFit::Place> places;
-  for (const Eigen::VectorXd& start : strengths(recording_fit, w, candidate))
-    places.push_back(recording_fit.scan_prior(start, tuning, kInitialSegment));
+  for (const Eigen::VectorXd& start : strengths(recording_fit, w, candidate)) {
+    const Eigen::VectorXd loaded = recording_fit.project(start, acting, kInitialSegment).w;
+    const Eigen::VectorXd tuned = recording_fit.scan_prior(loaded, tuning, kInitialSegment).w;
+    places.push_back(recording_fit.project(tuned, acting, kInitialSegment));
+  }
   std::stable_sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
   places.resize(std::min(places.size(), kMostStarts));
   BatchFit fit;

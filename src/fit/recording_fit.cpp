@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "fit/coordinate_scan.hpp"
+#include "fit/variable_projection.hpp"
 #include "forward/basis_seed_vectors.hpp"
 #include "forward/extra_force.hpp"
 #include "forward/hyper_reduced_model.hpp"
@@ -31,6 +32,8 @@ constexpr double kAddedSpread = 0.25;  // prior standard deviations, for the oth
 constexpr double kProbe = 0.02;        // prior standard deviations: how far a parameter is moved for its sensitivity
 constexpr int kBorrowed = 48;          // displacements of another fit's runs that train a model
 constexpr int kSeen = 24;              // likewise, of the other model at first order
+constexpr int kMostSolves = 4;         // of a projection, whose robust weights follow the fit
+constexpr double kGainOfSolve = 0.01;  // relative fall of the cost that is worth another one
 
 }  // namespace
 
@@ -372,6 +375,22 @@ RecordingFit::Place RecordingFit::scan_prior(const Eigen::VectorXd& start, const
   return {far.best, far.lowest};
 }
 
+RecordingFit::Place RecordingFit::project(const Eigen::VectorXd& w, const std::vector<Eigen::Index>& linear,
+                                          double share) const {
+  const auto cost = cost_of(share);
+  std::vector<Frame> room;
+  const FitProblem first = problem(quick(), first_of_training(share, room));
+  Place out{w, cost(w)};
+  for (int k = 0; k < kMostSolves && !linear.empty(); ++k) {
+    Place next{variable_projection(first, out.w, linear), 0.0};
+    next.cost = cost(next.w);
+    if (!(next.cost < out.cost)) break;
+    std::swap(out, next);
+    if (!(out.cost < (1.0 - kGainOfSolve) * next.cost)) break;
+  }
+  return out;
+}
+
 std::function<double(const Eigen::VectorXd&)> RecordingFit::cost_of(double share) const {
   const auto room = std::make_shared<std::vector<Frame>>();
   const std::vector<Frame>& frames = first_of_training(share, *room);
@@ -395,6 +414,12 @@ std::vector<Eigen::Index> RecordingFit::tuning_shared_with(const RecordingFit& b
       tuning.push_back(i);
   }
   return tuning;
+}
+
+std::vector<Eigen::Index> RecordingFit::acting_shared_with(const RecordingFit& base) const {
+  std::vector<Eigen::Index> acting = shared_with(base);
+  for (const Eigen::Index i : tuning_shared_with(base)) acting.erase(std::find(acting.begin(), acting.end(), i));
+  return acting;
 }
 
 Eigen::VectorXd RecordingFit::extend(const RecordingFit& base, const Eigen::VectorXd& w) const {

@@ -101,6 +101,9 @@ class RecordingFit {
   Place scan_near(const Eigen::VectorXd& start, const std::vector<Eigen::Index>& coordinates, double share = 1.0) const;
   /// Returns the best place of a coarse scan of these coordinates over their whole prior, the others held at `start`.
   Place scan_prior(const Eigen::VectorXd& start, const std::vector<Eigen::Index>& coordinates, double share) const;
+  /// Moves coordinates in which the run is linear to where they fit best while the others are held (variable_projection).
+  /// It is repeated, because robust weights follow the fit. The result is no worse than w, if they are not quite linear.
+  Place project(const Eigen::VectorXd& w, const std::vector<Eigen::Index>& linear, double share) const;
 
   /// Returns what is linear in the model, in a reduced basis.
   std::shared_ptr<const ReducedModel> reduced() const;
@@ -112,6 +115,8 @@ class RecordingFit {
   /// Returns those of them that change how the body answers a load, or when that is seen. What acts on the body is left
   /// out.
   std::vector<Eigen::Index> tuning_shared_with(const RecordingFit& base) const;
+  /// Returns the others of them: what acts on the body.
+  std::vector<Eigen::Index> acting_shared_with(const RecordingFit& base) const;
   /// Converts `w` of `base` to the coordinates of this model; parameters that `base` lacks stay at their prior.
   Eigen::VectorXd extend(const RecordingFit& base, const Eigen::VectorXd& w) const;
   /// Returns the spread of the sigma points for a first fit from the fit of `base`: narrow in its parameters, wide in the
