@@ -14,15 +14,15 @@ namespace {
 MissingEffect describe_candidate(const Screening& screening, const Ranked& r) {
   MissingEffect out;
   out.effect = r.effect;
-  out.entry = to_yaml(r.best->proposal.entry);
+  out.entry = to_yaml(r.best().proposal.entry);
   out.log_bayes_factor = r.evidence;
-  const Eigen::VectorXd& amplitude = r.score.amplitude;
-  const double gain = r.score.explained / screening.comparison.noise_variance();
+  const Eigen::VectorXd& amplitude = r.score().amplitude;
+  const double gain = r.score().explained / screening.comparison.noise_variance();
   out.p_value = likelihood_ratio_p_value(gain, static_cast<double>(amplitude.size()));
-  out.explained = r.score.explained / screening.cost;
+  out.explained = r.score().explained / screening.cost;
   for (Eigen::Index i = 0; i < amplitude.size(); ++i) {
     const std::string suffix = amplitude.size() > 1 ? std::string("_") + "xyz"[i] : "";
-    out.parameters[r.effect + "." + r.best->proposal.amplitude + suffix] = amplitude[i];
+    out.parameters[r.effect + "." + r.best().proposal.amplitude + suffix] = amplitude[i];
   }
   return out;
 }
@@ -53,10 +53,10 @@ std::vector<MissingEffect> describe_candidate(const Screening& screening, const 
     effect.held_out_rms_before = before;
     effect.size = std::sqrt(std::max(0.0, effect.explained) * screening.cost / screening.base.rows.count());
     const auto same = [&](const Ranked& r) { return r.effect == effect.effect; };
-    const Score& own = std::find_if(screening.ranked.begin(), screening.ranked.end(), same)->score;
+    const Score& own = std::find_if(screening.ranked.begin(), screening.ranked.end(), same)->score();
     for (const Ranked& other : screening.ranked) {
       if (same(other)) continue;
-      const double cosine = own.cosine_with(other.score);
+      const double cosine = own.cosine_with(other.score());
       if (cosine > kConfusable) effect.confusable_with.push_back({other.effect, cosine});
     }
   }

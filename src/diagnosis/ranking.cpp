@@ -10,6 +10,21 @@ namespace {
 
 constexpr double kImpossible = -1e3;  // log Bayes factor of an amplitude out of bounds
 
+bool better(const ScoredCandidate& a, const ScoredCandidate& b) {
+  return a.score.log_bayes_factor > b.score.log_bayes_factor;
+}
+
+void keep_best_of_form(ScoredCandidate next, std::vector<ScoredCandidate>& forms) {
+  const std::string form = next.candidate->proposal.form();
+  const auto known = std::find_if(forms.begin(), forms.end(),
+                                  [&form](const ScoredCandidate& s) { return s.candidate->proposal.form() == form; });
+  if (known == forms.end()) {
+    forms.push_back(std::move(next));
+  } else if (better(next, *known)) {
+    *known = std::move(next);
+  }
+}
+
 }  // namespace
 
 std::vector<Ranked> rank_effects(const Scorer& scorer, const std::vector<Candidate>& candidates) {
@@ -23,12 +38,13 @@ std::vector<Ranked> rank_effects(const Scorer& scorer, const std::vector<Candida
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     factors[candidates[c].effect].push_back(scores[c].log_bayes_factor);
     auto at = std::find_if(ranked.begin(), ranked.end(), [&](const Ranked& r) { return r.effect == candidates[c].effect; });
-    if (at == ranked.end()) at = ranked.insert(ranked.end(), {candidates[c].effect, nullptr, {}, 0.0});
-    if (at->best != nullptr && scores[c].log_bayes_factor <= at->score.log_bayes_factor) continue;
-    at->best = &candidates[c];
-    at->score = scores[c];
+    if (at == ranked.end()) at = ranked.insert(ranked.end(), {candidates[c].effect, {}, 0.0});
+    keep_best_of_form({&candidates[c], std::move(scores[c])}, at->forms);
   }
-  for (Ranked& r : ranked) r.evidence = log_mean_exp(factors[r.effect]);
+  for (Ranked& r : ranked) {
+    r.evidence = log_mean_exp(factors[r.effect]);
+    std::stable_sort(r.forms.begin(), r.forms.end(), better);
+  }
   std::stable_sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) { return a.evidence > b.evidence; });
   return ranked;
 }

@@ -12,8 +12,8 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kSpread = 0.05;          // prior standard deviations, around the fit of an initial segment
-constexpr double kShares[] = {0.6, 1.0};  // of the training frames, fitted in turn from a fit of the initial segment
+constexpr double kSpread = 0.05;          // prior standard deviations, around a known place
+constexpr double kShares[] = {0.6, 1.0};  // of the training frames, fitted in turn from a known place
 
 struct Start {
   Eigen::VectorXd w, spread;
@@ -25,13 +25,6 @@ double tangent_value(const FreeParameter& parameter, const RefitTask& task, Eige
   const bool amplitude = parameter.name.find("." + task.candidate->proposal.amplitude) != std::string::npos;
   if (!amplitude || taken == task.amplitude.size()) return std::numeric_limits<double>::quiet_NaN();
   return task.candidate->absent + task.amplitude[taken++];
-}
-
-double scanned_value(const FreeParameter& parameter, const RefitTask& task) {
-  const auto known = task.scanned.find(parameter.name);
-  const std::string amplitude = task.effect() + "." + task.candidate->proposal.amplitude;
-  const bool scanned = known != task.scanned.end() && parameter.name.rfind(amplitude, 0) != 0;
-  return scanned ? known->second : std::numeric_limits<double>::quiet_NaN();
 }
 
 // Returns the base's fit with the proposal's prior, preceded by one with the tangent's amplitude where that is allowed.
@@ -50,14 +43,12 @@ std::vector<Start> starts(const RecordingFit& recording_fit, const RecordingFit&
       const bool allowed = free[i].prior.kind != Quantity::Kind::log_normal || value > 0.0;
       tangent.w[k] = allowed ? free[i].to_coordinate(value) : prior.w[k];
       differs = differs || allowed;
-    } else if (const double value = scanned_value(free[i], task); std::isfinite(value)) {
-      prior.w[k] = tangent.w[k] = free[i].to_coordinate(value);
     }
   }
   return differs ? std::vector<Start>{tangent, prior} : std::vector<Start>{prior};
 }
 
-// Starts where the initial segment's fit left all parameters.
+// Starts at these parameters, the others at their priors.
 Start start_of(const RecordingFit& recording_fit, const std::map<std::string, double>& parameters) {
   const Model& model = recording_fit.model();
   return {model.parameters().coordinates(parameters, model.parameters().prior_mean()),
@@ -83,7 +74,7 @@ std::optional<Start> quick_start(const RecordingFit& recording_fit, const Record
   return best;
 }
 
-// Goes from a fit of the initial segment to one of all training frames.
+// Goes from a known place to a fit of all training frames.
 Start grown(const RecordingFit& recording_fit, Start start, double rival) {
   for (const double share : kShares) {
     start.fit = recording_fit.quick_fit(start.w, start.spread, share, share < 1.0 ? no_rival : rival);
@@ -94,7 +85,7 @@ Start grown(const RecordingFit& recording_fit, Start start, double rival) {
 
 // Returns where the quick runs of a model fit best. What was linearised about the run itself is near already.
 Start quick_fit_of(const RecordingFit& quick, const FittedModel& base, const RefitTask& task, double rival) {
-  if (task.warm_started) return grown(quick, start_of(quick, task.scanned), rival);
+  if (!task.start.empty()) return grown(quick, start_of(quick, task.start), rival);
   const RecordingFit& known = *base.recording_fit;
   if (task.candidate->linearised) {
     Start start = starts(quick, known, base.fit.w, task).front();
@@ -143,6 +134,13 @@ FittedModel fit_extended(const FittedModel& base, const RefitTask& task, double 
 }
 
 }  // namespace
+
+double cost_at(const FittedModel& base, const Candidate& candidate, const std::map<std::string, double>& parameters) {
+  ModelSettings settings = base.recording_fit->model().settings();
+  add_effect(settings, candidate.proposal.refine);
+  const RecordingFit recording_fit(settings, *base.recording_fit);
+  return recording_fit.scan_near(start_of(recording_fit, parameters).w, {}).cost;
+}
 
 Refit refit_with(const FittedModel& base, const RefitTask& task, double rival) {
   const RecordingFit& known = *base.recording_fit;

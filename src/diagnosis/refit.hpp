@@ -10,13 +10,12 @@
 
 namespace tissue_stiffness {
 
-/// A task is one candidate to be fitted, with the amplitude that its tangent has.
+/// A task is one candidate to be fitted, from the amplitude that its tangent has or from a known place.
 struct RefitTask {
   const Candidate* candidate = nullptr;
   Eigen::VectorXd amplitude;
-  std::map<std::string, double> scanned = {};  ///< starts for what is neither amplitude nor the base's
-  bool warm_started = false;                   ///< `scanned` holds every parameter, from an InitialSegmentFit
-  bool in_full = false;                        ///< a nonlinear model is run in full whatever its first order promises
+  std::map<std::string, double> start = {};  ///< by name, the others at their priors; empty: start from the tangent
+  bool in_full = false;                      ///< a nonlinear model is run in full whatever its first order promises
 
   const std::string& effect() const { return candidate->effect; }
 };
@@ -30,6 +29,10 @@ struct InitialSegmentFit {
 constexpr double kInitialSegment = 0.3;  // share of the frames
 /// Fits the initial segment. Throws NumericalError when no start can be run.
 InitialSegmentFit fit_initial_segment(const FittedModel& base, const Candidate& candidate);
+
+/// Returns the cost of the training frames where a linear base runs with the candidate's proposal, as it is refitted, at
+/// these parameters. They have names; the others are at their priors. Throws NumericalError where that cannot be run.
+double cost_at(const FittedModel& base, const Candidate& candidate, const std::map<std::string, double>& parameters);
 
 /// A refit is a fit of the base model with one proposal more.
 struct Refit {

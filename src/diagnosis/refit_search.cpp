@@ -1,17 +1,20 @@
 #include "diagnosis/refit_search.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
-#include <optional>
+#include <set>
 #include <utility>
 
 namespace tissue_stiffness {
 namespace {
 
 constexpr double kSameVariant = 0.8;      // cosine above which two variants are one
-constexpr std::size_t kWarmStarts = 6;    // fits of the initial segment that are tried on the whole recording
+constexpr std::size_t kWarmStarts = 6;    // places that a stage finds and from which the whole recording is fitted
 constexpr std::size_t kWarmStartsOf = 2;  // those of one effect
-constexpr std::size_t kLeaders = 3;       // refits whose other variants and kinds are tried
+constexpr std::size_t kLeaders = 3;       // refits whose other variants are tried
+constexpr int kRounds = 3;                // in which they are tried
 constexpr std::size_t kTogether = 2;      // nonlinear refits that are fitted side by side
 
 /// The search goes stage by stage, and only while nothing explains the recording.
@@ -23,9 +26,9 @@ class RefitSearch {
   void all_in_full() {
     std::vector<RefitTask> list;
     for (const Ranked& r : screening_.ranked) {
-      list.push_back({r.best, r.score.amplitude});
-      list.back().in_full = true;
+      for (RefitTask& task : tasks_of(r)) list.push_back(std::move(task));
     }
+    for (RefitTask& task : list) task.in_full = true;
     refits_.add(list);
     if (screening_.beside_another && wide() && !explained()) refit_from_initial_segment();
   }
@@ -36,23 +39,32 @@ class RefitSearch {
     about_run ? refit_in_turn() : refit_from_tangents();
     if (!screening_.settled && refits_.move_to_better_base()) return !explained();
     if (!wide()) return false;
-    if (!screening_.beside_another && !explained()) refit_other_variants();
+    if (!explained()) about_run ? refit_other_tangents() : refit_other_variants(1);
     if (!explained()) refit_from_initial_segment();
-    if (screening_.beside_another) return false;
-    if (!explained()) refit_other_kinds();
-    if (!explained() && !about_run) refit_faint_nonlinear_effects();
+    if (about_run) return false;
+    refit_other_variants(kRounds);  // of those that lead now
+    if (!explained() && !screening_.beside_another) refit_faint_nonlinear_effects();
     return false;
   }
 
  private:
   void refit_from_tangents();
   void refit_in_turn();
-  void refit_other_variants();
+  void refit_other_variants(int rounds);
+  void refit_other_tangents();
   void refit_from_initial_segment();
-  void refit_other_kinds();
   void refit_faint_nonlinear_effects();
   std::vector<const Candidate*> most_evident_initially() const;
   std::vector<Refit> leaders() const;
+
+  /// A fit may start here.
+  struct Start {
+    const Candidate* candidate = nullptr;
+    std::map<std::string, double> parameters;               ///< of the whole model, by name
+    double cost = std::numeric_limits<double>::infinity();  ///< of this place, or of a fit of the initial segment
+  };
+  static std::vector<RefitTask> warm_started(std::vector<Start> starts);
+  static std::map<std::string, double> parameters_for(const Candidate& candidate, const Refit& leader);
   /// Returns whether something is to be explained that tangents may not show. What a model that already has an effect
   /// leaves is small once it passes its test, and tangents are taken at the right place.
   bool wide() const {
@@ -60,13 +72,20 @@ class RefitSearch {
   }
   /// Returns whether the tangent of a nonlinear effect explains little. Fits of such effects take long.
   bool faint(const Ranked& r) const {
-    return !r.best->linear && !(r.score.explained > kComparison.promising * structured_squares(screening_.base.rows));
+    return !r.best().linear && !(r.score().explained > kComparison.promising * structured_squares(screening_.base.rows));
+  }
+  // Returns one for each form of the effect. Tangents at different places of the model do not tell forms apart.
+  static std::vector<RefitTask> tasks_of(const Ranked& r) {
+    std::vector<RefitTask> out;
+    for (const ScoredCandidate& form : r.forms) out.push_back({form.candidate, form.score.amplitude});
+    return out;
   }
   Verdict verdict() const { return judge(refits_.compare()); }
   bool explained() const { return verdict() == Verdict::missing; }
 
   const Screening& screening_;
   RefitList& refits_;
+  std::set<std::pair<std::string, double>> explored_;  ///< leaders whose variants were tried, with what they were `fitted`
 };
 
 // Refits every effect where something is to be explained. Elsewhere a tangent has to speak for some effect; then all that
@@ -77,7 +96,7 @@ void RefitSearch::refit_from_tangents() {
   const double least = most > kComparison.worthwhile ? most - 2.0 * kComparison.worthwhile : most + 1.0;
   for (const Ranked& r : screening_.ranked) {
     if (faint(r) || (!wide() && r.evidence < least)) continue;
-    (first.empty() ? first : others).push_back({r.best, r.score.amplitude});
+    for (RefitTask& task : tasks_of(r)) (first.empty() ? first : others).push_back(std::move(task));
   }
   refits_.add(first);
   refits_.add(others);
@@ -94,14 +113,14 @@ void RefitSearch::refit_in_turn() {
   while (next != left.end() && !explained()) {
     std::vector<RefitTask> together;
     for (; next != left.end() && together.size() < kTogether; ++next)
-      together.push_back({(*next)->best, (*next)->score.amplitude});
+      together.push_back({&(*next)->best(), (*next)->score().amplitude});
     refits_.add(together);
   }
   if (!explained()) return;
   const Score known = screening_.scorer->score(refits_.best().candidate->tangent);
   std::vector<RefitTask> rivals;
   for (; next != left.end(); ++next) {
-    if ((*next)->score.cosine_with(known) > kConfusable) rivals.push_back({(*next)->best, (*next)->score.amplitude});
+    if ((*next)->score().cosine_with(known) > kConfusable) rivals.push_back({&(*next)->best(), (*next)->score().amplitude});
   }
   refits_.add(rivals);
 }
@@ -115,8 +134,39 @@ std::vector<Refit> RefitSearch::leaders() const {
   return out;
 }
 
-// Refits the best variant of each leader that differs from the refitted one, because tangents choose badly between them.
-void RefitSearch::refit_other_variants() {
+// Tangents choose badly between the variants of an effect. So each other variant of the leaders runs where the leader fits,
+// and the best ones are fitted from there. A leader that fits better now is the next round's.
+void RefitSearch::refit_other_variants(int rounds) {
+  if (rounds == 0 || explained()) return;
+  std::vector<Start> starts;
+  for (const Refit& leader : leaders()) {
+    if (!explored_.insert({leader.effect, leader.fitted}).second) continue;
+    for (const Candidate& candidate : screening_.candidates) {
+      if (candidate.effect == leader.effect && candidate.linear && &candidate != leader.candidate)
+        starts.push_back({&candidate, parameters_for(candidate, leader)});
+    }
+  }
+  refits_.try_each(
+      starts.size(), [&](std::size_t i) { return "variants of " + starts[i].candidate->effect; },
+      [&](std::size_t i) { starts[i].cost = cost_at(screening_.base, *starts[i].candidate, starts[i].parameters); });
+  if (starts.empty()) return;
+  refits_.add(warm_started(std::move(starts)));
+  refit_other_variants(rounds - 1);
+}
+
+// Returns where a variant starts: where its leader fits. If they differ in a place, the leader's place is not taken over.
+std::map<std::string, double> RefitSearch::parameters_for(const Candidate& candidate, const Refit& leader) {
+  if (candidate.proposal.is_other_kind_of(leader.candidate->proposal)) return leader.parameters;
+  const std::string own = leader.effect + ".", amplitude = own + candidate.proposal.amplitude;
+  std::map<std::string, double> out;
+  for (const auto& [name, value] : leader.parameters) {
+    if (name.rfind(own, 0) != 0 || name.rfind(amplitude, 0) == 0) out[name] = value;
+  }
+  return out;
+}
+
+// A variant of a nonlinear model is too slow to run only to be ranked, so its tangent ranks it.
+void RefitSearch::refit_other_tangents() {
   std::vector<RefitTask> list;
   for (const Refit& leader : leaders()) {
     const Score known = screening_.scorer->score(leader.candidate->tangent);
@@ -135,24 +185,11 @@ void RefitSearch::refit_other_variants() {
   refits_.add(list);
 }
 
-// Refits the leaders in other directions, or on other regions, from the rhythm (or what else is scanned) that they found.
-void RefitSearch::refit_other_kinds() {
-  std::vector<RefitTask> list;
-  for (const Refit& leader : leaders()) {
-    if (leader.candidate->proposal.kind_keys.empty()) continue;
-    for (const Candidate& candidate : screening_.candidates) {
-      if (candidate.effect == leader.effect && candidate.proposal.is_other_kind_of(leader.candidate->proposal))
-        list.push_back({&candidate, {}, leader.parameters});
-    }
-  }
-  refits_.add(list);
-}
-
 // A tangent says little of an effect that changes the frequencies, and "unexplained" is said of what was tried.
 void RefitSearch::refit_faint_nonlinear_effects() {
   std::vector<RefitTask> list;
   for (const Ranked& r : screening_.ranked) {
-    if (faint(r) && r.evidence > kComparison.worthwhile) list.push_back({r.best, r.score.amplitude});
+    if (faint(r) && r.evidence > kComparison.worthwhile) list.push_back({&r.best(), r.score().amplitude});
   }
   refits_.add(list);
 }
@@ -161,23 +198,26 @@ void RefitSearch::refit_faint_nonlinear_effects() {
 // strength. The best fits of the initial segment tell where to start.
 void RefitSearch::refit_from_initial_segment() {
   const std::vector<const Candidate*> variants = most_evident_initially();
-  std::vector<std::optional<InitialSegmentFit>> fits(variants.size());
+  std::vector<Start> starts(variants.size());
   refits_.try_each(
       variants.size(), [&](std::size_t i) { return "initial segment with " + variants[i]->effect; },
-      [&](std::size_t i) { fits[i] = fit_initial_segment(screening_.base, *variants[i]); });
-  std::vector<std::size_t> order;
-  for (std::size_t i = 0; i < variants.size(); ++i) {
-    if (fits[i]) order.push_back(i);
-  }
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return fits[a]->deviance < fits[b]->deviance; });
-  std::vector<RefitTask> list;
+      [&](std::size_t i) {
+        InitialSegmentFit fit = fit_initial_segment(screening_.base, *variants[i]);
+        starts[i] = {variants[i], std::move(fit.parameters), fit.deviance};
+      });
+  refits_.add(warm_started(std::move(starts)));
+}
+
+// Returns fits from the best starts, of which at most kWarmStartsOf are of one effect.
+std::vector<RefitTask> RefitSearch::warm_started(std::vector<Start> starts) {
+  std::stable_sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.cost < b.cost; });
+  std::vector<RefitTask> out;
   std::map<std::string, std::size_t> taken;
-  for (const std::size_t i : order) {
-    if (list.size() < kWarmStarts && taken[variants[i]->effect]++ < kWarmStartsOf)
-      list.push_back({variants[i], {}, fits[i]->parameters, true});
+  for (Start& start : starts) {
+    if (std::isfinite(start.cost) && out.size() < kWarmStarts && taken[start.candidate->effect]++ < kWarmStartsOf)
+      out.push_back({start.candidate, {}, std::move(start.parameters)});
   }
-  refits_.add(list);
+  return out;
 }
 
 // Returns for each effect and kind the candidate with most evidence in the initial segment.

@@ -71,6 +71,12 @@ std::string Proposal::kind() const {
   return out;
 }
 
+std::string Proposal::form() const {
+  std::string out;
+  for (const auto& [key, argument] : refine.arguments) out += (out.empty() ? "" : " ") + key;
+  return out;
+}
+
 bool Proposal::is_other_kind_of(const Proposal& other) const {
   if (kind_keys.empty() || kind() == other.kind()) return false;
   EffectEntry own = refine, others = other.refine;

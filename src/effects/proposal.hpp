@@ -53,6 +53,8 @@ struct Proposal {
 
   /// Returns the arguments of these keys as in a model file; empty where there are none.
   std::string kind() const;
+  /// Returns the keys of the refit's arguments: a mass on a region has another form than one at a place that is fitted.
+  std::string form() const;
   /// Returns whether the proposals differ only in their kind.
   bool is_other_kind_of(const Proposal& other) const;
 };

@@ -1,0 +1,58 @@
+// Fits of a model with one effect more.
+#include "diagnosis/refit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "../estimation/bar.hpp"
+#include "tissue_stiffness/types/error.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr int kFrames = 36;
+constexpr double kTruth = 30e3, kDamping = 4.0;
+
+class RefitTest : public ::testing::Test {
+ protected:
+  RefitTest() {
+    std::vector<std::string> effects = bar_under_gravity(prior(kTruth, 2.0));
+    const ModelSettings given = box_settings(effects);
+    effects.push_back("mass_damping: {alpha: 4}");
+    const Experiment truth(box_settings(effects), bar_mesh(), {kTruth});
+    recording.frames = see_all(truth, truth.film(0.0, kFilmed, kFrames), kNoise, 5);
+    auto recording_fit = std::make_unique<RecordingFit>(given, bar_mesh(), recording);
+    const Eigen::VectorXd w = recording_fit->scan(recording_fit->model().parameters().prior_mean());
+    base = fit_recording(std::move(recording_fit), w, 0.1);
+    for (Candidate& candidate : propose_candidates(*base.recording_fit, base.fit.w, {})) {
+      if (candidate.effect == "mass_damping") damping = candidate;
+    }
+  }
+  double cost(double young_modulus, double alpha) const {
+    return cost_at(base, damping, {{"elasticity.young_modulus", young_modulus}, {"mass_damping.alpha", alpha}});
+  }
+
+  Recording recording;
+  FittedModel base;
+  Candidate damping;
+};
+
+TEST_F(RefitTest, CostsAtAPlaceWhatTheNoiseCostsAtTheTruth) {
+  ASSERT_EQ(damping.effect, "mass_damping");
+  const double rows = base.rows.count() * static_cast<double>(recording.training().size()) / kFrames;
+  EXPECT_NEAR(cost(kTruth, kDamping) / rows, 1.0, 0.05);
+  EXPECT_GT(cost(kTruth, 0.5 * kDamping), 1.5 * rows);
+  EXPECT_GT(cost(1.1 * kTruth, kDamping), 1.5 * rows);
+}
+
+TEST_F(RefitTest, FindsTheTruthFromThere) {
+  RefitTask task{&damping, {}, {{"elasticity.young_modulus", 0.97 * kTruth}, {"mass_damping.alpha", 0.7 * kDamping}}};
+  const Refit refit = refit_with(base, task, no_rival);
+  EXPECT_NEAR(refit.parameters.at("elasticity.young_modulus"), kTruth, 0.01 * kTruth);
+  EXPECT_NEAR(refit.parameters.at("mass_damping.alpha"), kDamping, 0.05 * kDamping);
+  EXPECT_LT(refit.cost, 1.1 * base.rows.count());
+}
+
+}  // namespace
+}  // namespace tissue_stiffness
