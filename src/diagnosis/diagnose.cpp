@@ -283,29 +283,30 @@ class ModelSearch {
     const auto is_second = [&](const Leader& l) { return l.effect == second.effect; };
     Refit* const refit = refit_of(finding_, second.effect);
     if (refit == nullptr || std::any_of(leaders.begin(), leaders.end(), is_second)) return;
-    refit->proposed = second.proposed;
-    refit->entry = second.entry;
-    refit->parameters = second.parameters;
-    refit->model.reset();
+    lead_with(second, *refit);
     examine_beside(*refit, {best->effect}, leaders);
   }
 
-  // What is confusable with the best set's leader is tried in its place: by its tangent, or because each alone explains the
-  // same. What else is missing hides the difference between them.
+  // What else may be missing hides the difference between effects. So all of them are tried in the place of the best pair's
+  // leader, beside its other effect, unless that one led, too.
   void exchange(std::vector<Leader>& leaders) {
-    const std::vector<std::string> set = finding_.comparison.best().effects;
+    const std::vector<std::string> pair = finding_.comparison.best().effects;
     const auto is = [](const std::string& name) { return [name](const auto& x) { return x.effect == name; }; };
-    const std::vector<MissingEffect::Confusable> alike =
-        std::find_if(finding_.effects.begin(), finding_.effects.end(), is(set.front()))->confusable_with;
-    const Eigen::VectorXd explained = explained_.error - refit_of(finding_, set.front())->explained->error;
-    for (Refit& refit : finding_.refits) {
-      const bool tried = std::any_of(leaders.begin(), leaders.end(), is(refit.effect));
-      if (tried || std::count(set.begin(), set.end(), refit.effect) > 0) continue;
-      const Eigen::VectorXd other = explained_.error - refit.explained->error;
-      const bool same = other.dot(explained) > kConfusable * other.norm() * explained.norm();
-      if (same || std::any_of(alike.begin(), alike.end(), is(refit.effect)))
-        examine_beside(refit, {set.begin() + 1, set.end()}, leaders);
-    }
+    if (pair.size() < 2 || std::any_of(leaders.begin(), leaders.end(), is(pair[1]))) return;
+    const Finding& beside_first = std::find_if(leaders.begin(), leaders.end(), is(pair[0]))->deeper;
+    const Refit* const second = refit_of(beside_first, pair[1]);
+    Refit* const refit = refit_of(finding_, pair[1]);
+    if (second == nullptr || refit == nullptr) return;
+    lead_with(*second, *refit);
+    examine_beside(*refit, {}, leaders);
+  }
+
+  // Replaces what was fitted while its partner was missing.
+  static void lead_with(const Refit& beside_partner, Refit& refit) {
+    refit.proposed = beside_partner.proposed;
+    refit.entry = beside_partner.entry;
+    refit.parameters = beside_partner.parameters;
+    refit.model.reset();
   }
 
   // Compares what is missing beside a leader, or how the `wanted` effects fit beside it, with all that is known.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "../box_model.hpp"
@@ -288,10 +289,12 @@ TEST(Diagnose, ProposesWhatItAddedAsTheLastFitHasIt) {
 TEST(Diagnose, NamesTwoEffectsThatAreMissingTogether) {
   DiagnosisOptions options;
   options.automatic = true;
-  std::set<std::string> leaders;
-  const std::string beside = "what is missing beside ";
+  std::string leader;
+  std::map<std::string, std::set<std::string>> beside;  // by leader
   options.progress = [&](const std::string& what, std::size_t, std::size_t) {
-    if (what.rfind(beside, 0) == 0) leaders.insert(what.substr(beside.size()));
+    const std::string next = "what is missing beside ", refit = "refit with ";
+    if (what.rfind(next, 0) == 0) leader = what.substr(next.size());
+    if (what.rfind(refit, 0) == 0) beside[leader].insert(what.substr(refit.size()));
   };
   const Diagnosis d =
       diagnose_bar(film({"viscous_damping: {beta: 2.0e-3}", "added_mass: {region: tip, mass: 0.002}"}, 3), options);
@@ -301,9 +304,8 @@ TEST(Diagnose, NamesTwoEffectsThatAreMissingTogether) {
   EXPECT_TRUE(added("viscous_damping") || added("mass_damping") || added("viscoelasticity"))
       << "alike where one mode rings";
   EXPECT_TRUE(added("added_mass"));
-  // What explains the same as the first one was tried in its place.
   for (const char* damping : {"viscous_damping", "mass_damping", "viscoelasticity"})
-    EXPECT_EQ(leaders.count(damping), 1U) << damping;
+    EXPECT_EQ(beside["added_mass"].count(damping), 1U) << damping << " is tried in the first one's place";
   EXPECT_EQ(d.final_verdict, Verdict::adequate);
   EXPECT_NEAR(d.steps.back().parameters.at("elasticity.young_modulus") / kTruth, 1.0, 0.03);
 }
