@@ -279,12 +279,7 @@ class ModelSearch {
     const auto best = std::min_element(leaders.begin(), leaders.end(),
                                        [&](const Leader& a, const Leader& b) { return cost(a) < cost(b); });
     if (best == leaders.end() || best->deeper.refits.empty()) return;
-    const Refit& second = best->deeper.refits.front();
-    const auto is_second = [&](const Leader& l) { return l.effect == second.effect; };
-    Refit* const refit = refit_of(finding_, second.effect);
-    if (refit == nullptr || std::any_of(leaders.begin(), leaders.end(), is_second)) return;
-    lead_with(second, *refit);
-    examine_beside(*refit, {best->effect}, leaders);
+    lead_in_turn(best->deeper.refits.front(), {best->effect}, leaders);
   }
 
   // What else may be missing hides the difference between effects. So all of them are tried in the place of the best pair's
@@ -292,21 +287,21 @@ class ModelSearch {
   void exchange(std::vector<Leader>& leaders) {
     const std::vector<std::string> pair = finding_.comparison.best().effects;
     const auto is = [](const std::string& name) { return [name](const auto& x) { return x.effect == name; }; };
-    if (pair.size() < 2 || std::any_of(leaders.begin(), leaders.end(), is(pair[1]))) return;
-    const Finding& beside_first = std::find_if(leaders.begin(), leaders.end(), is(pair[0]))->deeper;
-    const Refit* const second = refit_of(beside_first, pair[1]);
-    Refit* const refit = refit_of(finding_, pair[1]);
-    if (second == nullptr || refit == nullptr) return;
-    lead_with(*second, *refit);
-    examine_beside(*refit, {}, leaders);
+    if (pair.size() < 2) return;
+    const Leader& first = *std::find_if(leaders.begin(), leaders.end(), is(pair[0]));
+    if (const Refit* const second = refit_of(first.deeper, pair[1])) lead_in_turn(*second, {}, leaders);
   }
 
-  // Replaces what was fitted while its partner was missing.
-  static void lead_with(const Refit& beside_partner, Refit& refit) {
-    refit.proposed = beside_partner.proposed;
-    refit.entry = beside_partner.entry;
-    refit.parameters = beside_partner.parameters;
-    refit.model.reset();
+  // Lets the second effect of a pair lead, as it was fitted beside the first one, unless it led already.
+  void lead_in_turn(const Refit& second, const std::vector<std::string>& wanted, std::vector<Leader>& leaders) {
+    const auto is_second = [&](const Leader& l) { return l.effect == second.effect; };
+    Refit* const refit = refit_of(finding_, second.effect);
+    if (refit == nullptr || std::any_of(leaders.begin(), leaders.end(), is_second)) return;
+    refit->proposed = second.proposed;
+    refit->entry = second.entry;
+    refit->parameters = second.parameters;
+    refit->model.reset();
+    examine_beside(*refit, wanted, leaders);
   }
 
   // Compares what is missing beside a leader, or how the `wanted` effects fit beside it, with all that is known.

@@ -49,8 +49,8 @@ InitialSegmentFit fit_initial_segment(const FittedModel& base, const Candidate& 
   const Eigen::VectorXd spread = recording_fit.spread_beyond(known);
   std::vector<RecordingFit::Place> places;
   for (const Eigen::VectorXd& start : strengths(recording_fit, w, candidate)) {
-    const Eigen::VectorXd loaded = recording_fit.project(start, acting, kInitialSegment).w;
-    const Eigen::VectorXd tuned = recording_fit.scan_prior(loaded, tuning, kInitialSegment).w;
+    const RecordingFit::Place loaded = recording_fit.project({start}, acting, kInitialSegment);
+    const RecordingFit::Place tuned = recording_fit.scan_prior(loaded.w, tuning, kInitialSegment);
     places.push_back(recording_fit.project(tuned, acting, kInitialSegment));
   }
   std::stable_sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });

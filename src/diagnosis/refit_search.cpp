@@ -146,10 +146,10 @@ void RefitSearch::refit_other_variants(int rounds) {
         starts.push_back({&candidate, parameters_for(candidate, leader)});
     }
   }
+  if (starts.empty()) return;
   refits_.try_each(
       starts.size(), [&](std::size_t i) { return "variants of " + starts[i].candidate->effect; },
       [&](std::size_t i) { starts[i].cost = cost_at(screening_.base, *starts[i].candidate, starts[i].parameters); });
-  if (starts.empty()) return;
   refits_.add(warm_started(std::move(starts)));
   refit_other_variants(rounds - 1);
 }

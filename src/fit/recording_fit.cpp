@@ -375,14 +375,15 @@ RecordingFit::Place RecordingFit::scan_prior(const Eigen::VectorXd& start, const
   return {far.best, far.lowest};
 }
 
-RecordingFit::Place RecordingFit::project(const Eigen::VectorXd& w, const std::vector<Eigen::Index>& linear,
-                                          double share) const {
-  const auto cost = cost_of(share);
+RecordingFit::Place RecordingFit::project(const Place& from, const std::vector<Eigen::Index>& linear, double share) const {
+  if (linear.empty()) return from;
   std::vector<Frame> room;
   const FitProblem first = problem(quick(), first_of_training(share, room));
-  Place out{w, cost(w)};
-  for (int k = 0; k < kMostSolves && !linear.empty(); ++k) {
-    Place next{variable_projection(first, out.w, linear), 0.0};
+  const auto cost = [&first](const Eigen::VectorXd& w) { return free_fit(first, w).cost; };
+  Place out = from;
+  if (!std::isfinite(out.cost)) out.cost = cost(out.w);
+  for (int k = 0; k < kMostSolves; ++k) {
+    Place next{variable_projection(first, out.w, linear)};
     next.cost = cost(next.w);
     if (!(next.cost < out.cost)) break;
     std::swap(out, next);

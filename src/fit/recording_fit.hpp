@@ -96,14 +96,15 @@ class RecordingFit {
   /// After another model's fit left them there, a run that rings may need them in another minimum.
   struct Place {
     Eigen::VectorXd w;
-    double cost = 0.0;  ///< sum of squared errors over those frames [sigma^2]
+    double cost = no_rival;  ///< sum of squared errors over those frames [sigma^2]; infinite where it is not known
   };
   Place scan_near(const Eigen::VectorXd& start, const std::vector<Eigen::Index>& coordinates, double share = 1.0) const;
   /// Returns the best place of a coarse scan of these coordinates over their whole prior, the others held at `start`.
   Place scan_prior(const Eigen::VectorXd& start, const std::vector<Eigen::Index>& coordinates, double share) const;
   /// Moves coordinates in which the run is linear to where they fit best while the others are held (variable_projection).
-  /// It is repeated, because robust weights follow the fit. The result is no worse than w, if they are not quite linear.
-  Place project(const Eigen::VectorXd& w, const std::vector<Eigen::Index>& linear, double share) const;
+  /// It is repeated, because robust weights follow the fit. The result is no worse than `from`, if they are not quite
+  /// linear.
+  Place project(const Place& from, const std::vector<Eigen::Index>& linear, double share) const;
 
   /// Returns what is linear in the model, in a reduced basis.
   std::shared_ptr<const ReducedModel> reduced() const;

@@ -113,9 +113,9 @@ TEST_F(RecordingFitTest, SolvesForWhatActsOnTheBody) {
   ASSERT_EQ(acting, (std::vector<Eigen::Index>{1, 2, 3}));
   ASSERT_EQ(fit.tuning_shared_with(fit), std::vector<Eigen::Index>{0});
   const auto start = [](double young_modulus) { return Eigen::Vector4d(std::log(young_modulus), 0.0, 0.0, 0.0); };
-  const RecordingFit::Place found = fit.project(start(kTruth), acting, 1.0);
+  const RecordingFit::Place found = fit.project({start(kTruth)}, acting, 1.0);
   EXPECT_LT((found.w - start(kTruth) - Eigen::Vector4d(0.0, 0.5, 0.0, -0.3)).cwiseAbs().maxCoeff(), 0.02);
-  const RecordingFit::Place best = fit.project(start(1.02 * kTruth), acting, 0.5);
+  const RecordingFit::Place best = fit.project({start(1.02 * kTruth)}, acting, 0.5);
   EXPECT_EQ(best.w[0], std::log(1.02 * kTruth));
   EXPECT_NEAR(fit.scan_near(best.w, {}, 0.5).cost, best.cost, 1e-9 * best.cost);
   for (const Eigen::Index i : acting) {
