@@ -32,10 +32,31 @@ double least_weight(const Hypothesis& model, const std::vector<Hypothesis>& all)
   return least + model.log_prior;
 }
 
+// Something unknown is one alternative to the most probable model, whatever it acts beside. So all random forces together
+// gain over that model what its test says, and a search that tries more models makes them no more probable.
+void bound_random_forces(const Hypothesis& best, std::vector<Hypothesis>& all) {
+  const double over_best = best.log_weight + log_bayes_factor_bound(best.z);
+  const auto shown = [over_best](const Hypothesis& h) { return over_best + h.log_prior_of_force; };
+  double sum = 0.0;
+  for (Hypothesis& h : all) {
+    if (!h.random_force || h.superfluous) continue;
+    h.log_weight = h.same_effects(best) ? shown(h) : std::min(h.log_weight, shown(h));
+    sum += std::exp(h.log_weight - shown(h));
+  }
+  for (Hypothesis& h : all) {
+    if (h.random_force && sum > 1.0) h.log_weight -= std::log(sum);
+  }
+}
+
 }  // namespace
 
 bool Hypothesis::holds(const std::string& effect) const {
   return std::find(effects.begin(), effects.end(), effect) != effects.end();
+}
+
+bool Hypothesis::same_effects(const Hypothesis& other) const {
+  return effects.size() == other.effects.size() &&
+         std::is_permutation(effects.begin(), effects.end(), other.effects.begin());
 }
 
 bool Hypothesis::extends(const Hypothesis& other) const {
@@ -105,11 +126,7 @@ void Comparison::find_probabilities() {
   for (const Hypothesis& h : weighed) {
     if (!h.random_force && h.log_weight > best->log_weight) best = &h;
   }
-  for (Hypothesis& h : weighed) {
-    if (!h.random_force || h.superfluous) continue;
-    const double shown = best->log_weight + h.log_prior_of_force + log_bayes_factor_bound(best->z);
-    h.log_weight = h.effects == best->effects ? shown : std::min(h.log_weight, shown);
-  }
+  bound_random_forces(*best, weighed);
   find_probabilities_of(weighed);
   for (std::size_t i = 0; i < weighed.size(); ++i) hypotheses[i].probability = weighed[i].probability;
 }
@@ -119,7 +136,22 @@ void Comparison::assess(const ModelComparison& models) {
     const Assessment assessment = models.assess(*hypotheses[i].explained);
     hypotheses[i].weigh(assessment, models);
   });
+  drop_worse_twins();
   find_probabilities();
+}
+
+void Comparison::drop_worse_twins() {
+  const auto worse = [this](const Hypothesis& h) {
+    return std::any_of(hypotheses.begin(), hypotheses.end(), [&h](const Hypothesis& other) {
+      const bool twin = h.same_effects(other) && !h.random_force == !other.random_force;
+      return twin && (other.log_weight > h.log_weight || (other.log_weight == h.log_weight && &other < &h));
+    });
+  };
+  std::vector<Hypothesis> kept;
+  for (const Hypothesis& h : hypotheses) {
+    if (!worse(h)) kept.push_back(h);
+  }
+  hypotheses = std::move(kept);
 }
 
 void Comparison::merge(const std::vector<std::string>& effects, const Comparison& deeper) {

@@ -28,6 +28,7 @@ struct Hypothesis {
   bool superfluous = false;                                    ///< another hypothesis already suffices
   double probability = 0.0;
   bool holds(const std::string& effect) const;
+  bool same_effects(const Hypothesis& other) const;  ///< in whichever order they were added
   /// Returns whether this one has all that the other one has and something more.
   bool extends(const Hypothesis& other) const;
   /// Returns whether this one extends another one that leaves no structure beyond chance.
@@ -51,16 +52,20 @@ struct Comparison {
   /// Returns what may act besides the most probable hypothesis without being missed: superfluous extensions of it, by their
   /// evidence. Together they have no more than half, because the evidence may be that of the mesh's error.
   std::vector<Trace> traces() const;
-  /// Assigns weights, tests and probabilities to all hypotheses by one likelihood.
+  /// Assigns weights, tests and probabilities to all hypotheses by one likelihood. Sets that were fitted in several orders
+  /// are one hypothesis: the likeliest fit.
   void assess(const ModelComparison& models);
   /// Computes probabilities from the weights. A superfluous hypothesis has none: what it has more is too small to be
   /// missing, whatever it gains. No hypothesis loses more to effects that extend it than the structure of its residual
-  /// says. A random force gains over the given model, and over the most probable one, what their tests say: the tests
-  /// tolerate what the mesh's error and its memory may give to a force.
+  /// says. A random force gains over the given model, and all random forces together gain over the most probable one, what
+  /// their tests say: the tests tolerate what the mesh's error and its memory may give to a force.
   void find_probabilities();
   /// `deeper` is a comparison about the model with `effects` added. Its hypotheses take the place of those with these
   /// effects alone, and have to be assessed together with the others.
   void merge(const std::vector<std::string>& effects, const Comparison& deeper);
+
+ private:
+  void drop_worse_twins();
 };
 
 /// Returns `adequate` if the given model is believed (P(given) > 1 - `believed`) and its residual passes, `numerics` if it

@@ -239,6 +239,27 @@ TEST_F(CleanBar, AssessesAllHypothesesAlike) {
   EXPECT_GT(c.given().probability, 0.99);
 }
 
+// A pair that was fitted in both orders is one hypothesis, and the likelier fit stands for it.
+TEST_F(CleanBar, ComparesASetOfEffectsOnce) {
+  const ModelComparison models(base_, Eigen::VectorXd::Zero(base_.rows.error.size()));
+  Comparison c;
+  const auto add = [&](std::vector<std::string> effects, double wrong) {
+    c.hypotheses.push_back(hypothesis(std::move(effects), 0.0, false));
+    c.hypotheses.back().explained = std::make_shared<const Explained>(rigid(base_.rows.error + wrong * slow()));
+  };
+  add({}, 1.0);
+  add({"a", "b"}, 0.2);
+  add({"a", "c"}, 0.1);
+  add({"b", "a"}, 0.1);
+  c.assess(models);
+  ASSERT_EQ(c.hypotheses.size(), 3u);
+  EXPECT_TRUE(c.given().effects.empty());
+  EXPECT_EQ(c.hypotheses[1].effects, (std::vector<std::string>{"a", "c"}));
+  EXPECT_EQ(c.hypotheses[2].effects, (std::vector<std::string>{"b", "a"}));
+  EXPECT_NEAR(c.probability_of("a"), 1.0, 1e-9);
+  EXPECT_NEAR(c.probability_of("b"), 0.5, 1e-9);
+}
+
 // A slow bending that nothing explains is the work of a force; noise is not.
 TEST_F(CleanBar, GivesARandomForceWhatNothingElseExplains) {
   const ModelComparison models(base_, Eigen::VectorXd::Zero(base_.rows.error.size()));
@@ -280,6 +301,18 @@ TEST(Comparison, MergesWhatIsFoundBesideALeader) {
   EXPECT_LT(c.none_of_these(), 1e-4);
   EXPECT_EQ(judge(c), Verdict::missing);
   EXPECT_EQ(believed_effects(c), (std::vector<std::string>{"a", "b", "c"}));
+}
+
+// Something unknown is one alternative, however many models it was tried beside.
+TEST(Comparison, MakesNoneOfTheseNoLikelierByTryingMoreModels) {
+  std::vector<Hypothesis> list{hypothesis({}, 0.0, false), hypothesis({"a"}, 500.0, true),
+                               hypothesis({"a"}, 900.0, false, true)};
+  list[1].z = 2.6;
+  const double none = std::exp(log_bayes_factor_bound(2.6));
+  EXPECT_NEAR(compared(list).none_of_these(), none / (1.0 + none), 1e-9);
+  for (const char* const other : {"b", "c", "d"}) list.push_back(hypothesis({other}, 900.0, false, true));
+  EXPECT_NEAR(compared(list).none_of_these(), none / (1.0 + none), 1e-9);
+  EXPECT_NEAR(compared(list).probability_of("a"), 1.0 / (1.0 + none), 1e-9);
 }
 
 // What is added to a model that leaves nothing but noise is too small to be missing, whatever it gains.
