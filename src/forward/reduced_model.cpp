@@ -1,9 +1,9 @@
 #include "forward/reduced_model.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "fem/generalized_modes.hpp"
 #include "forward/reduced_trajectory.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
@@ -229,12 +229,11 @@ ReducedModes ReducedModel::solve(const Proportions& proportions, const Eigen::Ve
     }
   }
   const std::vector<int> columns = active(theta, half);
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(chosen(stiffness, columns, columns),
-                                                                        chosen(mass, columns, columns));
-  modes.square = eigen.eigenvalues().cwiseMax(0.0);
-  modes.shapes = Eigen::MatrixXd::Zero(m, eigen.eigenvectors().cols());
+  const GeneralizedModes found = generalized_modes(chosen(stiffness, columns, columns), chosen(mass, columns, columns));
+  modes.square = found.values.cwiseMax(0.0);
+  modes.shapes = Eigen::MatrixXd::Zero(m, found.vectors.cols());
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    modes.shapes.row(columns[i]) = eigen.eigenvectors().row(static_cast<Eigen::Index>(i));
+    modes.shapes.row(columns[i]) = found.vectors.row(static_cast<Eigen::Index>(i));
   }
   modes.to_modal = modes.shapes.transpose() * mass;
   modes.weight = modes.shapes.transpose() * modes.weight;
