@@ -244,11 +244,17 @@ std::vector<EffectEntry> entries_of_time_steps(const RecordingFit& recording_fit
   return entries;
 }
 
+BasisOptions same_basis(const RecordingFit& recording_fit) {
+  BasisOptions out;
+  out.adopt = !recording_fit.model().nonlinear();
+  return out;
+}
+
 Eigen::MatrixXd tangents_of_time_steps(const RecordingFit& recording_fit, const Eigen::VectorXd& w,
                                        const RecordingFit::Rows& rows) {
   const std::vector<EffectEntry> entries = entries_of_time_steps(recording_fit, w);
   if (entries.empty()) return Eigen::MatrixXd(rows.error.size(), 0);
-  RecordingFit extended(extend_model(recording_fit.model().settings(), entries), recording_fit, BasisOptions());
+  RecordingFit extended(extend_model(recording_fit.model().settings(), entries), recording_fit, same_basis(recording_fit));
   extended.borrow(recording_fit);
   const Eigen::VectorXd start = extended.extend(recording_fit, w), std = extended.model().parameters().prior_std();
   const std::vector<Eigen::Index> added = added_parameters(extended, recording_fit);

@@ -54,6 +54,9 @@ void read_tangents(const RecordingFit& base, const Eigen::VectorXd& w, std::vect
 /// Returns entries for the time steps of a simulated recording, which the model does not allow for.
 std::vector<EffectEntry> entries_of_time_steps(const RecordingFit& recording_fit, const Eigen::VectorXd& w);
 
+/// Returns the options of a model that has time steps more than `recording_fit`, which need no vectors of their own.
+BasisOptions same_basis(const RecordingFit& recording_fit);
+
 /// Returns what the time steps of a simulated recording do to the rows of a model that does not allow for them. Each column
 /// is for a prior standard deviation of the squared step [sigma]. There are no columns where the model has these steps.
 Eigen::MatrixXd tangents_of_time_steps(const RecordingFit& recording_fit, const Eigen::VectorXd& w,

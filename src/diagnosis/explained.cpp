@@ -58,11 +58,13 @@ Linearisation linearise_model(const FittedModel& fitted, const std::vector<std::
   return out;
 }
 
-Explained compared_residual(const FittedModel& fitted, const std::vector<std::string>& amplitudes, bool far) {
+Explained compared_residual(const FittedModel& fitted, const std::vector<std::string>& amplitudes,
+                            FittedNumerics numerics) {
   Explained out{fitted.rows.error, linearise_model(fitted, amplitudes)};
   const RecordingFit& recording_fit = *fitted.recording_fit;
   const Eigen::Index all = out.linearisation.columns.cols(), own = out.linearisation.parameters;
-  if (recording_fit.model().nonlinear() || all == own) return out;
+  const bool far = numerics == FittedNumerics::far;
+  if (numerics == FittedNumerics::none || recording_fit.model().nonlinear() || all == own) return out;
   double with = 0.0, without = 0.0;
   most_probable(out.linearisation, out.error, own, without);
   const Eigen::VectorXd u = most_probable(out.linearisation, out.error, all, with);
@@ -70,13 +72,14 @@ Explained compared_residual(const FittedModel& fitted, const std::vector<std::st
   if (!linear && !far) return out;
   FittedModel joint;
   joint.recording_fit = std::make_unique<RecordingFit>(
-      extend_model(recording_fit.model().settings(), entries_of_time_steps(recording_fit, fitted.fit.w)), recording_fit);
+      extend_model(recording_fit.model().settings(), entries_of_time_steps(recording_fit, fitted.fit.w)), recording_fit,
+      same_basis(recording_fit));
   const RecordingFit& stepped = *joint.recording_fit;
   const Eigen::VectorXd at = stepped.extend(recording_fit, fitted.fit.w), prior = stepped.model().parameters().prior_std();
   const Eigen::VectorXd near = kSpread * prior;
   if (linear) joint.fit = stepped.quick_fit(at + prior.cwiseProduct(u), near);
   // Long steps lead a body that rings into another minimum, which no tangent shows.
-  const std::vector<Eigen::Index> tuning = stepped.tuning_shared_with(recording_fit);
+  const std::vector<Eigen::Index> tuning = stepped.scanned_shared_with(recording_fit);
   for (const double length : kSteps) {
     if (!far) break;
     Eigen::VectorXd start = at;

@@ -30,9 +30,12 @@ struct Explained {
   Eigen::VectorXd error;  ///< of each row [sigma]
   Linearisation linearisation;
 };
-/// Returns the residual to compare. Where the time steps of a simulated recording matter to a linear model, they are fitted
-/// with it. What they do to a body that rings for long is not linear in them. `far` fits them also where no tangent shows
-/// them.
-Explained compared_residual(const FittedModel& fitted, const std::vector<std::string>& amplitudes = {}, bool far = false);
+/// Says which time steps of a simulated recording are fitted with a linear model: none, those whose tangents matter, or
+/// also those that no tangent shows.
+enum class FittedNumerics { none, evident, far };
+/// Returns the residual to compare. What time steps do to a body that rings for long is not linear in them, so they are
+/// fitted with it.
+Explained compared_residual(const FittedModel& fitted, const std::vector<std::string>& amplitudes = {},
+                            FittedNumerics numerics = FittedNumerics::evident);
 
 }  // namespace tissue_stiffness

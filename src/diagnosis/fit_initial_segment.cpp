@@ -41,10 +41,10 @@ InitialSegmentFit fit_initial_segment(const FittedModel& base, const Candidate& 
   const RecordingFit& known = *base.recording_fit;
   ModelSettings settings = known.model().settings();
   add_effect(settings, candidate.proposal.refine);
-  const RecordingFit recording_fit(settings, known);
+  const RecordingFit recording_fit(settings, known, ranking_basis());
   const Model& model = recording_fit.model();
   const Eigen::VectorXd w = recording_fit.extend(known, base.fit.w);
-  const std::vector<Eigen::Index> tuning = recording_fit.tuning_shared_with(known);
+  const std::vector<Eigen::Index> tuning = recording_fit.scanned_shared_with(known);
   const std::vector<Eigen::Index> acting = recording_fit.acting_shared_with(known);
   const Eigen::VectorXd spread = recording_fit.spread_beyond(known);
   std::vector<RecordingFit::Place> places;

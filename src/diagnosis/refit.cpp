@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kSpread = 0.05;          // prior standard deviations, around a known place
 constexpr double kShares[] = {0.6, 1.0};  // of the training frames, fitted in turn from a known place
+constexpr int kRankingVectors = 12;       // for each effect, of models that only rank
 
 struct Start {
   Eigen::VectorXd w, spread;
@@ -60,7 +61,7 @@ Start start_of(const RecordingFit& recording_fit, const std::map<std::string, do
 // minimum.
 std::optional<Start> quick_start(const RecordingFit& recording_fit, const RecordingFit& base,
                                  const std::vector<Start>& starts, double rival, std::string& reason) {
-  const std::vector<Eigen::Index> tuning = recording_fit.tuning_shared_with(base);
+  const std::vector<Eigen::Index> tuning = recording_fit.scanned_shared_with(base);
   std::optional<Start> best;
   for (Start start : starts) {
     try {
@@ -135,10 +136,16 @@ FittedModel fit_extended(const FittedModel& base, const RefitTask& task, double 
 
 }  // namespace
 
+BasisOptions ranking_basis() {
+  BasisOptions out;
+  out.per_part = out.released = kRankingVectors;
+  return out;
+}
+
 double cost_at(const FittedModel& base, const Candidate& candidate, const std::map<std::string, double>& parameters) {
   ModelSettings settings = base.recording_fit->model().settings();
   add_effect(settings, candidate.proposal.refine);
-  const RecordingFit recording_fit(settings, *base.recording_fit);
+  const RecordingFit recording_fit(settings, *base.recording_fit, ranking_basis());
   return recording_fit.scan_near(start_of(recording_fit, parameters).w, {}).cost;
 }
 
@@ -155,8 +162,9 @@ Refit refit_with(const FittedModel& base, const RefitTask& task, double rival) {
   fit_entries(entries, model, fitted->fit);
   out.entry = entries.front();
   out.parameters = model.parameters().values(fitted->fit.w);
-  out.explained =
-      std::make_shared<const Explained>(compared_residual(*fitted, added_amplitudes(*fitted->recording_fit, known)));
+  const auto numerics = fitted->fit.cost > rival ? FittedNumerics::none : FittedNumerics::evident;
+  out.explained = std::make_shared<const Explained>(
+      compared_residual(*fitted, added_amplitudes(*fitted->recording_fit, known), numerics));
   RecordingFit::Rows compared = fitted->rows;
   compared.error = out.explained->error;
   out.held_out_rms = rms_error(compared, known.recording(), true);

@@ -20,6 +20,9 @@ struct RefitTask {
   const std::string& effect() const { return candidate->effect; }
 };
 
+/// Returns the options of models that only rank starts of fits: a few vectors for each effect suffice.
+BasisOptions ranking_basis();
+
 /// This is a fit of the recording's initial segment alone, with one proposal more. Its amplitude is scanned across its
 /// whole prior. Phases that drift apart hide the minimum from tangents and from fits of a whole recording, but not there.
 struct InitialSegmentFit {

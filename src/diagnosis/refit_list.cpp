@@ -129,7 +129,7 @@ bool RefitList::move_to_better_base() {
   const RecordingFit& recording_fit = *screening_.base.recording_fit;
   if (recording_fit.model().nonlinear()) return false;
   RecordingFit::Place start =
-      recording_fit.scan_near(screening_.base.fit.w, recording_fit.tuning_shared_with(recording_fit));
+      recording_fit.scan_near(screening_.base.fit.w, recording_fit.scanned_shared_with(recording_fit));
   for (const Refit& refit : refits_) {
     RecordingFit::Place place = recording_fit.scan_near(
         recording_fit.model().parameters().coordinates(refit.parameters, screening_.base.fit.w), {});

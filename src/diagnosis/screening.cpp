@@ -52,7 +52,7 @@ Screening::Screening(FittedModel& fitted, const DiagnosisOptions& options, Previ
       comparison(base, Eigen::VectorXd::Zero(base.rows.error.size())),
       given(comparison.assess(explained)) {
   if (previous.models) comparison.note(*previous.models);
-  if (!given.test.passes()) explained = compared_residual(base, {}, true);
+  if (!given.test.passes()) explained = compared_residual(base, {}, FittedNumerics::far);
   candidates = propose_candidates(*base.recording_fit, base.fit.w, left_out_effects(options));
   effect_count = effects_in(candidates);
   keep_wanted(candidates, wanted);
@@ -84,7 +84,7 @@ void Screening::move_base(const BatchFit& fit) {
   base.fit = fit;
   base.rows = base.recording_fit->rows(fit.w);
   cost = base.rows.error.squaredNorm();
-  explained = compared_residual(base, {}, !given.test.passes());
+  explained = compared_residual(base, {}, given.test.passes() ? FittedNumerics::evident : FittedNumerics::far);
   comparison.note(base.rows.error);
 }
 

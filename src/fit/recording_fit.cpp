@@ -32,6 +32,8 @@ constexpr double kAddedSpread = 0.25;  // prior standard deviations, for the oth
 constexpr double kProbe = 0.02;        // prior standard deviations: how far a parameter is moved for its sensitivity
 constexpr int kBorrowed = 48;          // displacements of another fit's runs that train a model
 constexpr int kSeen = 24;              // likewise, of the other model at first order
+constexpr Eigen::Index kShifted = 12;  // lowest modes whose frequencies tell by how much a parameter shifts them
+constexpr double kRigid = 1e-9;        // of the highest eigenvalue: below it a body moves freely
 constexpr int kMostSolves = 4;         // of a projection, whose robust weights follow the fit
 constexpr double kGainOfSolve = 0.01;  // relative fall of the cost that is worth another one
 
@@ -414,6 +416,29 @@ std::vector<Eigen::Index> RecordingFit::tuning_shared_with(const RecordingFit& b
                             model_.parameters().theta(w + std[i] * Eigen::VectorXd::Unit(w.size(), i))))
       tuning.push_back(i);
   }
+  return tuning;
+}
+
+std::vector<Eigen::Index> RecordingFit::scanned_shared_with(const RecordingFit& base) const {
+  std::vector<Eigen::Index> tuning = tuning_shared_with(base);
+  const auto* const linear = dynamic_cast<const ReducedModel*>(forward_.get());
+  if (linear == nullptr || tuning.size() < 2) return tuning;
+  const Eigen::VectorXd w = model_.parameters().prior_mean(), std = model_.parameters().prior_std();
+  const auto lowest = [&](const Eigen::VectorXd& there) {
+    const Eigen::ArrayXd square = linear->modes(model_.parameters().theta(there))->square;
+    return Eigen::ArrayXd(square.head(std::min(kShifted, square.size())).max(kRigid * square.maxCoeff()).log());
+  };
+  const Eigen::ArrayXd here = lowest(w);
+  Eigen::VectorXd shift = Eigen::VectorXd::Zero(w.size());
+  for (const Eigen::Index i : tuning) {
+    const Eigen::ArrayXd there = lowest(w + std[i] * Eigen::VectorXd::Unit(w.size(), i));
+    const Eigen::Index modes = std::min(here.size(), there.size());
+    shift[i] = (there.head(modes) - here.head(modes)).abs().mean();
+  }
+  Eigen::Index most = 0;
+  shift.maxCoeff(&most);
+  const auto weaker = [&](Eigen::Index i) { return i != most && shift[i] > 0.0; };
+  tuning.erase(std::remove_if(tuning.begin(), tuning.end(), weaker), tuning.end());
   return tuning;
 }
 

@@ -116,7 +116,11 @@ class RecordingFit {
   /// Returns those of them that change how the body answers a load, or when that is seen. What acts on the body is left
   /// out.
   std::vector<Eigen::Index> tuning_shared_with(const RecordingFit& base) const;
-  /// Returns the others of them: what acts on the body.
+  /// Returns those of them along which a fit's start is scanned. A run that rings has other minima where its frequencies
+  /// shift. Among the parameters that shift frequencies, only the one whose prior shifts them most is scanned, because the
+  /// fit moves the others from there.
+  std::vector<Eigen::Index> scanned_shared_with(const RecordingFit& base) const;
+  /// Returns those that are not tuning: what acts on the body.
   std::vector<Eigen::Index> acting_shared_with(const RecordingFit& base) const;
   /// Converts `w` of `base` to the coordinates of this model; parameters that `base` lacks stay at their prior.
   Eigen::VectorXd extend(const RecordingFit& base, const Eigen::VectorXd& w) const;

@@ -54,5 +54,23 @@ TEST_F(RefitTest, FindsTheTruthFromThere) {
   EXPECT_LT(refit.cost, 1.1 * base.rows.count());
 }
 
+// The time steps of a simulated recording are fitted with a model, unless another one is far ahead of it.
+TEST_F(RefitTest, FitsTimeStepsWithWhatMayWin) {
+  std::vector<std::string> effects = bar_under_gravity(prior(kTruth, 2.0));
+  effects.emplace_back("mass_damping: {alpha: 4}");
+  effects.emplace_back("period_elongation: {step_squared: 1.0e-4}");
+  const Experiment truth(box_settings(effects), bar_mesh(), {kTruth});
+  recording.frames = see_all(truth, truth.film(0.0, kFilmed, kFrames), kNoise, 5);
+  auto recording_fit =
+      std::make_unique<RecordingFit>(box_settings(bar_under_gravity(prior(kTruth, 2.0))), bar_mesh(), recording);
+  const Eigen::VectorXd w = recording_fit->scan(recording_fit->model().parameters().prior_mean());
+  base = fit_recording(std::move(recording_fit), w, 0.1);
+  const RefitTask task{&damping, {}, {{"elasticity.young_modulus", kTruth}, {"mass_damping.alpha", kDamping}}};
+  const Refit alone = refit_with(base, task, no_rival), behind = refit_with(base, task, 0.5 * alone.fitted);
+  EXPECT_LT(alone.explained->error.squaredNorm(), 1.1 * base.rows.count());
+  EXPECT_GT(alone.model->rows.error.squaredNorm(), 1.2 * base.rows.count());
+  EXPECT_EQ(behind.explained->error, behind.model->rows.error);
+}
+
 }  // namespace
 }  // namespace tissue_stiffness

@@ -124,6 +124,21 @@ TEST_F(RecordingFitTest, SolvesForWhatActsOnTheBody) {
   }
 }
 
+// Minima of a ringing body lie along what shifts its frequencies. One such parameter is scanned, and what shifts none.
+TEST_F(RecordingFitTest, ScansWhatShiftsTheFrequenciesMost) {
+  const Recording recording = film({}, kNoise);
+  const auto scanned = [&](double modulus_factor, const std::string& mass_factor) {
+    std::vector<std::string> effects = bar_under_gravity(prior(kTruth, modulus_factor));
+    effects.push_back("added_mass: {region: tip, mass: {prior: 0.02, factor: " + mass_factor + "}}");
+    effects.emplace_back("mass_damping: {alpha: {prior: 2, factor: 2}}");
+    const RecordingFit fit(box_settings(effects), bar_mesh(), recording);
+    EXPECT_EQ(fit.tuning_shared_with(fit), (std::vector<Eigen::Index>{0, 1, 2}));
+    return fit.scanned_shared_with(fit);
+  };
+  EXPECT_EQ(scanned(3.0, "1.1"), (std::vector<Eigen::Index>{0, 2}));
+  EXPECT_EQ(scanned(1.1, "9"), (std::vector<Eigen::Index>{1, 2}));
+}
+
 TEST_F(RecordingFitTest, FindsTheModulusByFitAndByScan) {
   const Recording recording = film({}, kNoise);
   RecordingFit fit(model(), bar_mesh(), recording);
