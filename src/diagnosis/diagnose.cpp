@@ -3,27 +3,22 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <map>
-#include <memory>
 #include <optional>
 #include <utility>
 
 #include "diagnosis/belief_map.hpp"
 #include "diagnosis/describe.hpp"
-#include "diagnosis/estimate_at_last.hpp"
-#include "diagnosis/finding.hpp"
 #include "diagnosis/fit_entries.hpp"
+#include "diagnosis/fit_given_model.hpp"
 #include "diagnosis/missing_force.hpp"
 #include "diagnosis/mix_explanations.hpp"
+#include "diagnosis/pair_search.hpp"
 #include "diagnosis/residual_views.hpp"
-#include "diagnosis/screening.hpp"
+#include "diagnosis/rounds.hpp"
 #include "diagnosis/try_run.hpp"
 #include "effects/registry.hpp"
 #include "estimation/mesh_error.hpp"
 #include "estimation/posterior.hpp"
-#include "forward/extra_force.hpp"
-#include "forward/hyper_basis.hpp"
-#include "settings/extend_model.hpp"
 #include "tissue_stiffness/types/error.hpp"
 #include "types/repeated_observation.hpp"
 #include "types/stop_request.hpp"
@@ -32,11 +27,6 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr std::size_t kFewestFrames = 18;
-constexpr double kBaseSpread = 0.1;            // prior standard deviations, of the sigma points of the first fit
-constexpr double kShares[] = {0.1, 0.2, 0.4};  // of the training frames
-constexpr int kMostBases = 3;                  // rounds that are repeated because the model fits better elsewhere
-constexpr std::size_t kGrown = 2;              // leaders that are tried as one of several effects
-constexpr double kAddedSpread = 0.02;          // prior standard deviations, of those of a model that starts from a refit
 
 // Returns the recording as the estimator would take it: without the frames during which a load was silent, and without
 // observations that came twice.
@@ -58,67 +48,6 @@ Recording usable_part(const ModelSettings& settings, const TetMesh& mesh, const 
   const std::size_t all = recording.frames.size();
   left_out = std::to_string(all - out.frames.size()) + " of " + std::to_string(all) + " frames (" + why + ")";
   return out;
-}
-
-// A scan of the modulus over all frames says nothing while it is not known how the body starts. The first frames tell both,
-// whatever the prior, so such a model is fitted to more and more of them.
-Eigen::VectorXd starting_point(const RecordingFit& recording_fit) {
-  const ParameterSpace& parameters = recording_fit.model().parameters();
-  Eigen::VectorXd w = parameters.prior_mean();
-  if (!recording_fit.model().starts_in_motion()) return recording_fit.scan(w);
-  for (const double share : kShares) w = recording_fit.quick_fit(w, kBaseSpread * parameters.prior_std(), share).w;
-  return w;
-}
-
-// A scan of finite strain runs only what is linear in it, which may be far from the recording. The estimator runs the model
-// itself, so the fit begins where the better of both is.
-Eigen::VectorXd starting_point_of_finite(const RecordingFit& recording_fit) {
-  const Model& model = recording_fit.model();
-  const Eigen::VectorXd scanned = starting_point(recording_fit);
-  std::map<std::string, double> values;
-  for (const ParameterEstimate& p :
-       estimate_by_filter(model.settings(), recording_fit, recording_fit.recording().training()).parameters)
-    values[p.name] = p.mean;
-  const Eigen::VectorXd estimated = model.parameters().coordinates(values, model.parameters().prior_mean());
-  return recording_fit.cost_in_full(estimated) < recording_fit.cost_in_full(scanned) ? estimated : scanned;
-}
-
-FittedModel fit_model(const ModelSettings& settings, const TetMesh& mesh, const Recording& recording) {
-  auto recording_fit = std::make_unique<RecordingFit>(settings, mesh, recording);
-  const Model& model = recording_fit->model();
-  const Eigen::VectorXd start =
-      why_not_hyper_reduced(model).empty() ? starting_point_of_finite(*recording_fit) : starting_point(*recording_fit);
-  return fit_recording(std::move(recording_fit), start, kBaseSpread);
-}
-
-// Returns the refit's model, run in full where that was not worth it before. It has the priors of the refit: those around
-// its fit would hold it to what it was while something else was missing.
-FittedModel extended(const FittedModel& base, const Refit& refit) {
-  if (refit.model) return std::move(*refit.model);
-  auto recording_fit = std::make_unique<RecordingFit>(
-      extend_model(base.recording_fit->model().settings(), {refit.proposed}), *base.recording_fit);
-  const Model& model = recording_fit->model();
-  return fit_recording(std::move(recording_fit),
-                       model.parameters().coordinates(refit.parameters, model.parameters().prior_mean()), kAddedSpread);
-}
-
-// Returns null where the effect was not refitted.
-template <typename F>
-auto refit_of(F& finding, const std::string& effect) -> decltype(finding.refits.data()) {
-  const auto same = [&effect](const Refit& refit) { return refit.effect == effect; };
-  const auto at = std::find_if(finding.refits.begin(), finding.refits.end(), same);
-  return at == finding.refits.end() ? nullptr : &*at;
-}
-
-// Returns whether all that `next` has beyond the model acts on the body or in a sensor, and leaves the body's own mass and
-// stiffness alone.
-bool same_body(const Model& model, const Model& next) {
-  return std::all_of(next.parts().begin(), next.parts().end(), [&model](const Model::Part& part) {
-    const auto same = [&part](const Model::Part& known) { return known.label == part.label; };
-    const LinearTerms& terms = part.terms;
-    return std::any_of(model.parts().begin(), model.parts().end(), same) ||
-           (terms.mass.empty() && terms.stiffness.empty() && terms.strain_stiffness.empty() && !adds_extra_force(part));
-  });
 }
 
 // Returns zero for a linear model, whose estimator finds this out and corrects E.
@@ -155,12 +84,12 @@ class ModelSearch {
 
   void judge_given(const ModelSettings& settings, const TetMesh& mesh) {
     options_.progress("fit of the given model", 0, 0);
-    model_ = fit_model(settings, mesh, recording_);
+    model_ = fit_given_model(settings, mesh, recording_);
     describe_residual(model_, out_);
     options_.progress("compare the given model with the recording", 0, 0);
     add_step(compared_residual(model_), 0.0);
     bool moved = false;
-    finding_ = examine(model_, {}, moved, [&](std::vector<MissingEffect> candidates) {
+    finding_ = examine(model_, options_, {}, moved, [&](std::vector<MissingEffect> candidates) {
       out_.candidates = std::move(candidates);
       publish();
     });
@@ -168,7 +97,7 @@ class ModelSearch {
       replace_step();
       describe_residual(model_, out_);
     }
-    if (finding_.verdict == Verdict::unexplained) grow();
+    if (finding_.verdict == Verdict::unexplained) grown_ = search_pairs(model_, finding_, recording_, options_);
     out_.verdict = out_.final_verdict = finding_.verdict;
     out_.adequate = finding_.comparison.given().probability;
     out_.none_of_these = finding_.comparison.none_of_these();
@@ -216,115 +145,6 @@ class ModelSearch {
  private:
   bool lacks_something() const { return finding_.verdict == Verdict::missing || finding_.verdict == Verdict::unexplained; }
 
-  // Returns what a round on a model with one more effect takes over.
-  PreviousRound after_adding(const Library& library) const {
-    return {finding_.previous.finer, finding_.models, library, true};
-  }
-
-  // Returns the library of tangents that a round on `next` may take over.
-  Library library_for(const FittedModel& next) const {
-    return same_body(model_.recording_fit->model(), next.recording_fit->model()) ? finding_.previous.library : Library();
-  }
-
-  // Repeats rounds until the model fits nowhere better. `moved` says that it does not stay where it was.
-  Finding examine(
-      FittedModel& model, const PreviousRound& previous, bool& moved,
-      const CandidatesSoFar& so_far = [](std::vector<MissingEffect>) {}) {
-    const int most = previous.beside_another ? 1 : kMostBases;
-    Finding out = diagnose_once(model, {}, options_, previous, so_far);
-    moved = out.base_moved;
-    for (int k = 1; out.to_repeat; ++k) {
-      PreviousRound next = out.previous;
-      next.settled = k == most;
-      out = diagnose_once(model, {}, options_, next, so_far);
-      moved = true;
-    }
-    return out;
-  }
-
-  /// A leader is a refit that is taken for one of several missing effects, with what is found beside it.
-  struct Leader {
-    std::string effect;
-    Finding deeper;
-  };
-
-  // Several effects may be missing, of which none explains the error alone. Each leader in turn that explains a part of it
-  // is taken for one of them. What is found beside it is compared with the rest.
-  void grow() {
-    const double cost = model_.rows.error.squaredNorm(), structured = structured_squares(model_.rows);
-    std::vector<Leader> leaders;
-    for (std::size_t i = 0; i < std::min(kGrown, finding_.refits.size()) && finding_.verdict != Verdict::missing; ++i) {
-      if (cost - finding_.refits[i].cost > kComparison.promising * structured)
-        examine_beside(finding_.refits[i], {}, leaders);
-    }
-    if (finding_.verdict != Verdict::missing) turn(leaders);
-    if (finding_.verdict != Verdict::missing) return;
-    exchange(leaders);
-    const std::string best = finding_.comparison.best().effects.front();
-    const auto is_best = [&best](const auto& x) { return x.effect == best; };
-    const auto leader = std::find_if(leaders.begin(), leaders.end(), is_best);
-    const auto refit = std::find_if(finding_.refits.begin(), finding_.refits.end(), is_best);
-    std::rotate(finding_.refits.begin(), refit, refit + 1);
-    if (leader == leaders.end()) return;  // one effect suffices with the noise that is known now
-    finding_.take_over(best, leader->deeper.effects);
-    finding_.believe(Comparison(finding_.comparison));
-    grown_ = std::move(leader->deeper);
-  }
-
-  // The leader of a pair was fitted while the other effect was missing, which may have led it astray. So the pair that fits
-  // best is fitted the other way round: all variants of its leader are tried beside the other effect, unless that one led,
-  // too.
-  void turn(std::vector<Leader>& leaders) {
-    const auto cost = [](const Leader& l) { return l.deeper.refits.empty() ? no_rival : l.deeper.refits.front().cost; };
-    const auto best = std::min_element(leaders.begin(), leaders.end(),
-                                       [&](const Leader& a, const Leader& b) { return cost(a) < cost(b); });
-    if (best == leaders.end() || best->deeper.refits.empty()) return;
-    lead_in_turn(best->deeper.refits.front(), {best->effect}, leaders);
-  }
-
-  // What else may be missing hides the difference between effects. So all of them are tried in the place of the best pair's
-  // leader, beside its other effect, unless that one led, too.
-  void exchange(std::vector<Leader>& leaders) {
-    const std::vector<std::string> pair = finding_.comparison.best().effects;
-    const auto is = [](const std::string& name) { return [name](const auto& x) { return x.effect == name; }; };
-    if (pair.size() < 2) return;
-    const Leader& first = *std::find_if(leaders.begin(), leaders.end(), is(pair[0]));
-    if (const Refit* const second = refit_of(first.deeper, pair[1])) lead_in_turn(*second, {}, leaders);
-  }
-
-  // Lets the second effect of a pair lead, as it was fitted beside the first one, unless it led already.
-  void lead_in_turn(const Refit& second, const std::vector<std::string>& wanted, std::vector<Leader>& leaders) {
-    const auto is_second = [&](const Leader& l) { return l.effect == second.effect; };
-    Refit* const refit = refit_of(finding_, second.effect);
-    if (refit == nullptr || std::any_of(leaders.begin(), leaders.end(), is_second)) return;
-    refit->proposed = second.proposed;
-    refit->entry = second.entry;
-    refit->parameters = second.parameters;
-    refit->model.reset();
-    examine_beside(*refit, wanted, leaders);
-  }
-
-  // Compares what is missing beside a leader, or how the `wanted` effects fit beside it, with all that is known.
-  void examine_beside(Refit& leader, const std::vector<std::string>& wanted, std::vector<Leader>& leaders) {
-    options_.progress("what is missing beside " + leader.effect, 0, 0);
-    std::shared_ptr<FittedModel> next;
-    Finding deeper;
-    const auto examine_rest = [&] {
-      next = std::make_shared<FittedModel>(extended(model_, leader));
-      const PreviousRound previous = after_adding(library_for(*next));
-      bool moved = false;
-      deeper = wanted.empty() ? examine(*next, previous, moved) : diagnose_once(*next, wanted, options_, previous);
-    };
-    if (!try_run(recording_, examine_rest)) return;
-    leader.model = next;
-    if (deeper.models->noise_variance() < finding_.models->noise_variance()) finding_.models = deeper.models;
-    Comparison all = finding_.comparison;
-    all.merge({leader.effect}, deeper.comparison);
-    all.assess(*finding_.models);
-    finding_.believe(std::move(all));
-    leaders.push_back({leader.effect, std::move(deeper)});
-  }
-
   Assessment assessment() const { return finding_.models->assess(explained_); }
   BeliefMap validity() const { return belief_map(model_, assessment().left, *finding_.models); }
 
@@ -351,7 +171,7 @@ class ModelSearch {
     }
     const auto judge_it = [&] {
       bool moved = false;
-      finding_ = grown_ ? std::move(*grown_) : examine(model_, after_adding(library), moved);
+      finding_ = grown_ ? std::move(*grown_) : examine(model_, options_, after_adding(finding_, library), moved);
       if (moved) replace_step();
     };
     const bool judged = try_run(recording_, judge_it, &reason);
@@ -366,7 +186,7 @@ class ModelSearch {
     options_.progress("add " + best.effect, 0, 0);
     FittedModel next = extended(model_, best);
     Explained explained = compared_residual(next);
-    Library library = library_for(next);
+    Library library = library_for(model_, next, finding_);
     // What is found beside another effect was compared beside that one only.
     out_.rivals.push_back(grown_ ? std::vector<RivalExplanation>() : rivals_of(finding_, best));
     out_.final_effects.push_back(best.effect);

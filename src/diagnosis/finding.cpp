@@ -81,6 +81,17 @@ void Finding::believe(Comparison known) {
   }
 }
 
+void Finding::judge_by(std::shared_ptr<const ModelComparison> likelihood) {
+  models = std::move(likelihood);
+  Comparison again = comparison;
+  again.assess(*models);
+  believe(std::move(again));
+  const std::vector<std::string>& best = comparison.best().effects;
+  const auto leads = [&best](const Refit& refit) { return !best.empty() && refit.effect == best.front(); };
+  const auto leader = std::find_if(refits.begin(), refits.end(), leads);
+  if (leader != refits.end()) std::rotate(refits.begin(), leader, leader + 1);
+}
+
 void Finding::take_over(const std::string& leader, const std::vector<MissingEffect>& deeper) {
   std::vector<MissingEffect>& known = effects;
   for (const MissingEffect& effect : deeper) {

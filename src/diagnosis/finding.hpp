@@ -28,6 +28,9 @@ struct Finding {
 
   /// Takes verdict, set and the effects' probabilities from that comparison.
   void believe(Comparison known);
+  /// Weighs and tests all hypotheses anew by that likelihood, with its noise and its error of the mesh. The most probable
+  /// effect then leads the refits.
+  void judge_by(std::shared_ptr<const ModelComparison> likelihood);
   /// Replaces what was found without the `leader` by what was found beside it.
   void take_over(const std::string& leader, const std::vector<MissingEffect>& deeper);
 };

@@ -110,6 +110,25 @@ TEST(Diagnose, StartsTheGivenModelWhereARefitEnds) {
   EXPECT_TRUE(finding.to_repeat);
 }
 
+// A finding is judged anew when another round has shown the noise or the mesh's error to be different.
+TEST(Diagnose, JudgesAFindingByAnotherLikelihood) {
+  const Recording recording = film({"viscous_damping: {beta: 6.0e-3}"}, 1);
+  FittedModel base = fit_recording(
+      std::make_unique<RecordingFit>(box_settings(bar("{prior: 20.0e3, factor: 3}")), bar_mesh(), recording),
+      Eigen::VectorXd::Constant(1, std::log(kTruth)), 0.1);
+  Finding finding = diagnose_once(base, {}, {});
+  ASSERT_EQ(finding.verdict, Verdict::missing);
+  ASSERT_EQ(finding.refits.front().effect, "viscous_damping");
+  std::rotate(finding.refits.begin(), finding.refits.begin() + 1, finding.refits.end());
+  finding.judge_by(finding.models);
+  EXPECT_EQ(finding.verdict, Verdict::missing);
+  EXPECT_EQ(finding.refits.front().effect, "viscous_damping");
+  EXPECT_FALSE(finding.set.empty());
+  finding.judge_by(std::make_shared<const ModelComparison>(base, 10.0 * motion_of(base.rows)));
+  EXPECT_EQ(finding.verdict, Verdict::numerics);
+  EXPECT_TRUE(finding.set.empty());
+}
+
 TEST(Diagnose, DoesNotLookForWhatItIsToldToIgnore) {
   DiagnosisOptions options;
   options.ignore = {"viscous_damping", "mass_damping", "viscoelasticity"};

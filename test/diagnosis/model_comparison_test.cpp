@@ -416,8 +416,9 @@ TEST(Judge, NeedsBothAProbabilityAndAFit) {
   std::vector<Hypothesis> several{hypothesis({}, 0.0, false), hypothesis({"a"}, 50.0, true),
                                   hypothesis({}, 60.0, false, true), hypothesis({"b"}, 60.0, false, true)};
   several[1].z = 1.3;
-  several[2].log_prior_of_force = several[3].log_prior_of_force = -0.5;
+  several[2].log_prior_of_force = several[3].log_prior_of_force = 0.3 - log_bayes_factor_bound(1.3);
   EXPECT_EQ(compared(several).best().effects, std::vector<std::string>{"a"});
+  EXPECT_NEAR(compared(several).none_of_these(), 1.0 / (1.0 + std::exp(-0.3)), 1e-9);
   EXPECT_EQ(judge(compared(several)), Verdict::unexplained);
   EXPECT_EQ(judge(compared({hypothesis({}, 0.0, true), hypothesis({"a"}, 50.0, true)})), Verdict::missing);
   Comparison mesh = compared({hypothesis({}, 0.0, true)});
