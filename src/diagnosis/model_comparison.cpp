@@ -68,7 +68,8 @@ ModelComparison::ModelComparison(const FittedModel& base, const Eigen::VectorXd&
     : used_((base.rows.used.array() > 0.0).cast<double>()),
       nodes_(base.rows.nodes),
       offsets_(base.rows.offsets),
-      along_(lowest_modes(base)) {
+      along_(lowest_modes(base)),
+      base_cost_(base.rows.error.squaredNorm()) {
   allow_for_mesh(mesh_change);
   note(base.rows.error);
 }
@@ -197,6 +198,13 @@ MisfitTest ModelComparison::test_where(const Eigen::VectorXd& error, Eigen::Inde
     }
     out.add(residual, used, with_unit_columns(shapes, forces));
   }
+  return out;
+}
+
+ModelComparison common_likelihood(const ModelComparison& one, const ModelComparison& other) {
+  const bool first = one.base_cost() <= other.base_cost();
+  ModelComparison out = first ? one : other;
+  out.note(first ? other : one);
   return out;
 }
 

@@ -43,6 +43,7 @@ class ModelComparison {
   /// Takes over the noise that another comparison of this recording has noted, where it is less.
   void note(const ModelComparison& other);
   double noise_variance() const { return noise_variance_; }         ///< s
+  double base_cost() const { return base_cost_; }                   ///< sum of squared errors of the base, which D is of
   const Eigen::MatrixXd& mesh_directions() const { return mesh_; }  ///< D
   /// Returns the rows (N x k) in which the covariance is s I: along B_k they shrink by the root of s / (s + L_k).
   Eigen::MatrixXd whitened(const Eigen::MatrixXd& rows) const;
@@ -61,8 +62,13 @@ class ModelComparison {
   Eigen::MatrixXd mesh_;       ///< D
   Eigen::MatrixXd basis_;      ///< B, frame under frame
   Eigen::MatrixXd variances_;  ///< L, one column a frame
+  double base_cost_ = 0.0;
   double noise_variance_ = 0.0;
   double noise_level_ = MisfitTest::most_noise;  ///< v
 };
+
+/// Returns the likelihood for models of two rounds on one recording. The noise is what both have shown. D is that of the
+/// base that is closer to the recording, because what a mesh does to another motion is not what it does to the body's.
+ModelComparison common_likelihood(const ModelComparison& one, const ModelComparison& other);
 
 }  // namespace tissue_stiffness

@@ -96,7 +96,7 @@ class PairSearch {
     };
     if (!try_run(recording_, examine_rest)) return;
     leader.model = next;
-    if (deeper.models->noise_variance() < finding_.models->noise_variance()) finding_.models = deeper.models;
+    finding_.models = std::make_shared<const ModelComparison>(common_likelihood(*finding_.models, *deeper.models));
     Comparison all = finding_.comparison;
     all.merge({leader.effect}, deeper.comparison);
     all.assess(*finding_.models);

@@ -218,6 +218,22 @@ TEST_F(CleanBar, TestsAllModelsAgainstTheSameNoise) {
   EXPECT_TRUE(own.passes());
 }
 
+// A model that lacks something moves otherwise than the body, and so does what a finer mesh changes of it.
+TEST_F(CleanBar, TakesTheErrorOfTheMeshFromTheCloserBase) {
+  const Eigen::VectorXd large = slow(), small = 0.01 * slow();
+  const ModelComparison close(base_, small);
+  base_.rows.error += slow();
+  const ModelComparison far(base_, large);
+  base_.rows.error *= 0.5;
+  const ModelComparison quiet(base_, large);
+  for (const ModelComparison& both : {common_likelihood(close, far), common_likelihood(far, close)}) {
+    EXPECT_EQ(both.mesh_directions(), close.mesh_directions());
+    EXPECT_EQ(both.noise_variance(), std::min(close.noise_variance(), far.noise_variance()));
+  }
+  EXPECT_EQ(common_likelihood(far, quiet).noise_variance(), quiet.noise_variance());
+  EXPECT_EQ(common_likelihood(quiet, far).base_cost(), quiet.base_cost());
+}
+
 // Hypotheses of several rounds are weighed by one likelihood.
 TEST_F(CleanBar, AssessesAllHypothesesAlike) {
   const ModelComparison models(base_, Eigen::VectorXd::Zero(base_.rows.error.size()));
