@@ -54,7 +54,7 @@ Recording usable_part(const ModelSettings& settings, const TetMesh& mesh, const 
 Eigen::MatrixXd mesh_discrepancy_of_nonlinear(const FittedModel& fitted, const Recording& recording) {
   const Model& model = fitted.recording_fit->model();
   const Eigen::VectorXd& w = fitted.fit.w;
-  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(w.size(), w.size());
+  Eigen::MatrixXd none = Eigen::MatrixXd::Zero(w.size(), w.size());
   if (!model.nonlinear() || !MeshError::why_not(model).empty()) return none;
   const MeshError::Question question(model, recording.frames, w, fitted.fit.covariance.diagonal().cwiseSqrt(),
                                      model.parameters().prior_std());

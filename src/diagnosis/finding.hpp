@@ -43,6 +43,6 @@ using CandidatesSoFar = std::function<void(std::vector<MissingEffect>)>;
 /// it. There are no refits of wanted effects that the library does not propose, or that cannot be run.
 Finding diagnose_once(
     FittedModel& base, const std::vector<std::string>& wanted, const DiagnosisOptions& options,
-    const PreviousRound& previous = {}, const CandidatesSoFar& so_far = [](std::vector<MissingEffect>) {});
+    const PreviousRound& previous = {}, const CandidatesSoFar& so_far = [](const std::vector<MissingEffect>&) {});
 
 }  // namespace tissue_stiffness

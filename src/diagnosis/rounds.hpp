@@ -28,6 +28,6 @@ PreviousRound after_adding(const Finding& finding, const Library& library);
 /// Repeats rounds until the model fits nowhere better. `moved` says whether it does not stay where it was.
 Finding examine(
     FittedModel& model, const DiagnosisOptions& options, const PreviousRound& previous, bool& moved,
-    const CandidatesSoFar& so_far = [](std::vector<MissingEffect>) {});
+    const CandidatesSoFar& so_far = [](const std::vector<MissingEffect>&) {});
 
 }  // namespace tissue_stiffness
