@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 
@@ -234,27 +235,24 @@ void read_tangents(const RecordingFit& base, const Eigen::VectorXd& w, std::vect
                    [&] { read_about_run(are_read(Reading::about_run)); });
 }
 
-std::vector<EffectEntry> entries_of_time_steps(const RecordingFit& recording_fit, const Eigen::VectorXd& w) {
+std::unique_ptr<RecordingFit> with_time_steps(const RecordingFit& recording_fit, const Eigen::VectorXd& w) {
   const ProposalContext context = context_of(recording_fit, w);
   std::vector<EffectEntry> entries;
   for (const EffectSpec& spec : effect_specs()) {
     if (!spec.of_simulation) continue;
     for (const Proposal& proposal : spec.proposals(context)) entries.push_back(proposal.entry);
   }
-  return entries;
-}
-
-BasisOptions same_basis(const RecordingFit& recording_fit) {
-  BasisOptions out;
-  out.adopt = !recording_fit.model().nonlinear();
-  return out;
+  if (entries.empty()) return nullptr;
+  BasisOptions basis;
+  basis.adopt = !recording_fit.model().nonlinear();
+  return std::make_unique<RecordingFit>(extend_model(recording_fit.model().settings(), entries), recording_fit, basis);
 }
 
 Eigen::MatrixXd tangents_of_time_steps(const RecordingFit& recording_fit, const Eigen::VectorXd& w,
                                        const RecordingFit::Rows& rows) {
-  const std::vector<EffectEntry> entries = entries_of_time_steps(recording_fit, w);
-  if (entries.empty()) return Eigen::MatrixXd(rows.error.size(), 0);
-  RecordingFit extended(extend_model(recording_fit.model().settings(), entries), recording_fit, same_basis(recording_fit));
+  const std::unique_ptr<RecordingFit> stepped = with_time_steps(recording_fit, w);
+  if (!stepped) return Eigen::MatrixXd(rows.error.size(), 0);
+  RecordingFit& extended = *stepped;
   extended.borrow(recording_fit);
   const Eigen::VectorXd start = extended.extend(recording_fit, w), std = extended.model().parameters().prior_std();
   const std::vector<Eigen::Index> added = added_parameters(extended, recording_fit);

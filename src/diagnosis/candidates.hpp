@@ -51,11 +51,9 @@ std::vector<Candidate> propose_candidates(const RecordingFit& base, const Eigen:
 void read_tangents(const RecordingFit& base, const Eigen::VectorXd& w, std::vector<Candidate>& candidates,
                    const CountProgress& progress, Library& library);
 
-/// Returns entries for the time steps of a simulated recording, which the model does not allow for.
-std::vector<EffectEntry> entries_of_time_steps(const RecordingFit& recording_fit, const Eigen::VectorXd& w);
-
-/// Returns the options of a model that has time steps more than `recording_fit`, which need no vectors of their own.
-BasisOptions same_basis(const RecordingFit& recording_fit);
+/// Returns a fit that also has the time steps of a simulated recording, at their priors; null where the model allows for
+/// them already. They need no vectors of their own.
+std::unique_ptr<RecordingFit> with_time_steps(const RecordingFit& recording_fit, const Eigen::VectorXd& w);
 
 /// Returns what the time steps of a simulated recording do to the rows of a model that does not allow for them. Each column
 /// is for a prior standard deviation of the squared step [sigma]. There are no columns where the model has these steps.

@@ -4,7 +4,6 @@
 
 #include "diagnosis/candidates.hpp"
 #include "diagnosis/comparison_numbers.hpp"
-#include "settings/extend_model.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -71,9 +70,7 @@ Explained compared_residual(const FittedModel& fitted, const std::vector<std::st
   const bool linear = without - with > 2.0 * kComparison.worthwhile && u[own] > 0.0;
   if (!linear && !far) return out;
   FittedModel joint;
-  joint.recording_fit = std::make_unique<RecordingFit>(
-      extend_model(recording_fit.model().settings(), entries_of_time_steps(recording_fit, fitted.fit.w)), recording_fit,
-      same_basis(recording_fit));
+  joint.recording_fit = with_time_steps(recording_fit, fitted.fit.w);
   const RecordingFit& stepped = *joint.recording_fit;
   const Eigen::VectorXd at = stepped.extend(recording_fit, fitted.fit.w), prior = stepped.model().parameters().prior_std();
   const Eigen::VectorXd near = kSpread * prior;

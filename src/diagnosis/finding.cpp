@@ -87,8 +87,12 @@ void Finding::judge_by(std::shared_ptr<const ModelComparison> likelihood) {
   again.assess(*models);
   believe(std::move(again));
   const std::vector<std::string>& best = comparison.best().effects;
-  const auto leads = [&best](const Refit& refit) { return !best.empty() && refit.effect == best.front(); };
-  const auto leader = std::find_if(refits.begin(), refits.end(), leads);
+  if (!best.empty()) put_first(best.front());
+}
+
+void Finding::put_first(const std::string& effect) {
+  const auto is_it = [&effect](const Refit& refit) { return refit.effect == effect; };
+  const auto leader = std::find_if(refits.begin(), refits.end(), is_it);
   if (leader != refits.end()) std::rotate(refits.begin(), leader, leader + 1);
 }
 

@@ -31,6 +31,8 @@ struct Finding {
   /// Weighs and tests all hypotheses anew by that likelihood, with its noise and its error of the mesh. The most probable
   /// effect then leads the refits.
   void judge_by(std::shared_ptr<const ModelComparison> likelihood);
+  /// Lets the refit of that effect lead, if there is one.
+  void put_first(const std::string& effect);
   /// Replaces what was found without the `leader` by what was found beside it.
   void take_over(const std::string& leader, const std::vector<MissingEffect>& deeper);
 };

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "diagnosis/refit.hpp"
+#include "settings/extend_model.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
@@ -39,9 +40,8 @@ std::vector<Eigen::VectorXd> strengths(const RecordingFit& recording_fit, const 
 
 InitialSegmentFit fit_initial_segment(const FittedModel& base, const Candidate& candidate) {
   const RecordingFit& known = *base.recording_fit;
-  ModelSettings settings = known.model().settings();
-  add_effect(settings, candidate.proposal.refine);
-  const RecordingFit recording_fit(settings, known, ranking_basis());
+  const RecordingFit recording_fit(extend_model(known.model().settings(), {candidate.proposal.refine}), known,
+                                   ranking_basis());
   const Model& model = recording_fit.model();
   const Eigen::VectorXd w = recording_fit.extend(known, base.fit.w);
   const std::vector<Eigen::Index> tuning = recording_fit.scanned_shared_with(known);

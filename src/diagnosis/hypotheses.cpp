@@ -55,8 +55,7 @@ bool Hypothesis::holds(const std::string& effect) const {
 }
 
 bool Hypothesis::same_effects(const Hypothesis& other) const {
-  return effects.size() == other.effects.size() &&
-         std::is_permutation(effects.begin(), effects.end(), other.effects.begin());
+  return std::is_permutation(effects.begin(), effects.end(), other.effects.begin(), other.effects.end());
 }
 
 bool Hypothesis::extends(const Hypothesis& other) const {

@@ -31,10 +31,9 @@ class PairSearch {
     if (finding_.verdict != Verdict::missing) return std::nullopt;
     exchange(leaders);
     const std::string best = finding_.comparison.best().effects.front();
-    const auto is_best = [&best](const auto& x) { return x.effect == best; };
+    finding_.put_first(best);
+    const auto is_best = [&best](const Leader& l) { return l.effect == best; };
     const auto leader = std::find_if(leaders.begin(), leaders.end(), is_best);
-    const auto refit = std::find_if(finding_.refits.begin(), finding_.refits.end(), is_best);
-    std::rotate(finding_.refits.begin(), refit, refit + 1);
     if (leader == leaders.end()) return std::nullopt;  // one effect suffices with the noise that is known now
     finding_.take_over(best, leader->deeper.effects);
     finding_.believe(Comparison(finding_.comparison));

@@ -7,6 +7,7 @@
 
 #include "diagnosis/fit_entries.hpp"
 #include "diagnosis/model_comparison.hpp"
+#include "settings/extend_model.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
@@ -113,8 +114,7 @@ void borrow(RecordingFit& recording_fit, const FittedModel& base, const RefitTas
 // Fits the base with the task's proposal. `in_full` says whether a nonlinear model was run in full.
 FittedModel fit_extended(const FittedModel& base, const RefitTask& task, double rival, bool& in_full) {
   const RecordingFit& known = *base.recording_fit;
-  ModelSettings settings = known.model().settings();
-  add_effect(settings, task.candidate->proposal.refine);
+  const ModelSettings settings = extend_model(known.model().settings(), {task.candidate->proposal.refine});
   const bool at_first_order = !task.candidate->linear && !known.model().nonlinear();
   BasisOptions basis = RecordingFit::keeping_root();
   if (at_first_order) basis.nonlinear = BasisOptions::Nonlinear::first_order;
@@ -143,9 +143,9 @@ BasisOptions ranking_basis() {
 }
 
 double cost_at(const FittedModel& base, const Candidate& candidate, const std::map<std::string, double>& parameters) {
-  ModelSettings settings = base.recording_fit->model().settings();
-  add_effect(settings, candidate.proposal.refine);
-  const RecordingFit recording_fit(settings, *base.recording_fit, ranking_basis());
+  const RecordingFit& known = *base.recording_fit;
+  const RecordingFit recording_fit(extend_model(known.model().settings(), {candidate.proposal.refine}), known,
+                                   ranking_basis());
   return recording_fit.scan_near(start_of(recording_fit, parameters).w, {}).cost;
 }
 

@@ -33,7 +33,6 @@ constexpr double kProbe = 0.02;        // prior standard deviations: how far a p
 constexpr int kBorrowed = 48;          // displacements of another fit's runs that train a model
 constexpr int kSeen = 24;              // likewise, of the other model at first order
 constexpr Eigen::Index kShifted = 12;  // lowest modes whose frequencies tell by how much a parameter shifts them
-constexpr double kRigid = 1e-9;        // of the highest eigenvalue: below it a body moves freely
 constexpr int kMostSolves = 4;         // of a projection, whose robust weights follow the fit
 constexpr double kGainOfSolve = 0.01;  // relative fall of the cost that is worth another one
 
@@ -426,7 +425,8 @@ std::vector<Eigen::Index> RecordingFit::scanned_shared_with(const RecordingFit& 
   const Eigen::VectorXd w = model_.parameters().prior_mean(), std = model_.parameters().prior_std();
   const auto lowest = [&](const Eigen::VectorXd& there) {
     const Eigen::ArrayXd square = linear->modes(model_.parameters().theta(there))->square;
-    return Eigen::ArrayXd(square.head(std::min(kShifted, square.size())).max(kRigid * square.maxCoeff()).log());
+    return Eigen::ArrayXd(
+        square.head(std::min(kShifted, square.size())).max(ReducedModes::kRigid * square.maxCoeff()).log());
   };
   const Eigen::ArrayXd here = lowest(w);
   Eigen::VectorXd shift = Eigen::VectorXd::Zero(w.size());
