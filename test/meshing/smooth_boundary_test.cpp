@@ -8,6 +8,7 @@
 #include "meshing/elevate.hpp"
 #include "meshing/quality.hpp"
 #include "meshing/surface.hpp"
+#include "tube_mesh.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -39,6 +40,29 @@ TEST(SmoothBoundary, FindsTheBallBehindFlatFacets) {
   smooth_boundary(smooth);
   EXPECT_LT(mean_distance_from_sphere(smooth), 0.35 * mean_distance_from_sphere(flat));
   EXPECT_EQ(smooth.nodes.leftCols(flat.corner_count), flat.nodes.leftCols(flat.corner_count));
+  for (int t = 0; t < smooth.tet_count(); ++t) EXPECT_GT(node_jacobians(smooth, t).minCoeff(), 0.0);
+}
+
+// Sides that fold by 45 degrees are round, and so are the rims between them and the flat ends.
+TEST(SmoothBoundary, FindsTheTubeBehindEightSides) {
+  const TetMesh flat = tube_mesh(1.0, 1.75, 2.0, 8, 2, 2);
+  TetMesh smooth = flat;
+  smooth_boundary(smooth);
+  double most = 0.0, before = 0.0;
+  for (int f = 0; f < smooth.facet_count(); ++f) {
+    for (int side = 0; side < 3; ++side) {
+      const int node = smooth.facets(3 + side, f);
+      const auto radius = [f](const TetMesh& mesh, int i) { return mesh.nodes.col(mesh.facets(i, f)).head<2>().norm(); };
+      const double at_ends = radius(flat, side);
+      EXPECT_NEAR(smooth.nodes(2, node), flat.nodes(2, node), 1e-12);
+      const bool on_tube = std::abs(at_ends - 1.0) < 1e-9 || std::abs(at_ends - 1.75) < 1e-9;
+      if (!on_tube || std::abs(radius(flat, (side + 1) % 3) - at_ends) > 1e-9) continue;
+      most = std::max(most, std::abs(radius(smooth, 3 + side) / at_ends - 1.0));
+      before = std::max(before, std::abs(radius(flat, 3 + side) / at_ends - 1.0));
+    }
+  }
+  EXPECT_NEAR(before, 1.0 - std::cos(M_PI / 8.0), 1e-9);
+  EXPECT_LT(most, 0.5 * before);
   for (int t = 0; t < smooth.tet_count(); ++t) EXPECT_GT(node_jacobians(smooth, t).minCoeff(), 0.0);
 }
 
