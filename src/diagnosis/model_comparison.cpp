@@ -51,6 +51,32 @@ double along_modes(const Eigen::MatrixXd& parts) {
   return parts.cols() > 0 ? parts.leftCols(parts.cols() - 1).rowwise().sum().squaredNorm() : 0.0;
 }
 
+// Returns what such a part changes in each frame, in units of the mode's shape there.
+Eigen::VectorXd course_along(const Eigen::VectorXd& part, const Eigen::VectorXd& shape,
+                             const std::vector<Eigen::Index>& offsets) {
+  Eigen::VectorXd out(static_cast<Eigen::Index>(offsets.size()) - 1);
+  for (Eigen::Index k = 0; k < out.size(); ++k) {
+    const auto frame = static_cast<std::size_t>(k);
+    const Eigen::Index from = offsets[frame], size = offsets[frame + 1] - from;
+    const double square = shape.segment(from, size).squaredNorm();
+    out[k] = square > 0.0 ? shape.segment(from, size).dot(part.segment(from, size)) / square : 0.0;
+  }
+  return out;
+}
+
+// Returns how many frames count as one, by the autocorrelation of a course (Bartlett 1946).
+double repeated(const Eigen::VectorXd& course) {
+  const double square = course.squaredNorm();
+  double out = 1.0;
+  if (!(square > 0.0)) return out;
+  for (Eigen::Index lag = 1; lag < course.size(); ++lag) {
+    const Eigen::Index size = course.size() - lag;
+    const double correlation = course.head(size).dot(course.tail(size)) / square;
+    out += 2.0 * correlation * correlation;
+  }
+  return out;
+}
+
 // Returns the widths of the amplitudes' priors over the stated width.
 std::vector<double> scales_of(const Linearisation& model) {
   std::vector<double> out;
@@ -77,11 +103,14 @@ ModelComparison::ModelComparison(const FittedModel& base, const Eigen::VectorXd&
 void ModelComparison::allow_for_mesh(const Eigen::VectorXd& change) {
   mesh_ = parted(kComparison.whole_mesh * change, along_, offsets_);
   const Eigen::Index modes = mesh_.cols() - 1, frames = static_cast<Eigen::Index>(offsets_.size()) - 1;
-  // The amplitudes are independent from frame to frame and have the mean square of that part of D.
+  // The mesh's error has the mean square of that part of D, and D's memory. Amplitudes that are independent from frame to
+  // frame say as much of it if they have its spectral density.
   constexpr double part = kComparison.left_of_mesh / kComparison.whole_mesh;
+  const Eigen::VectorXd square = part * part * mesh_.leftCols(modes).colwise().squaredNorm().transpose();
+  Eigen::VectorXd memory(modes);
+  for (Eigen::Index i = 0; i < modes; ++i) memory[i] = repeated(course_along(mesh_.col(i), along_.col(i), offsets_));
   const Eigen::VectorXd size = along_.leftCols(modes).colwise().squaredNorm().transpose();
-  const Eigen::VectorXd std =
-      (part * mesh_.leftCols(modes).colwise().norm().transpose()).cwiseQuotient(size.cwiseSqrt().cwiseMax(kTiny));
+  const Eigen::VectorXd std = square.cwiseProduct(memory).cwiseQuotient(size.cwiseMax(kTiny * kTiny)).cwiseSqrt();
   basis_ = Eigen::MatrixXd::Zero(along_.rows(), modes);
   variances_ = Eigen::MatrixXd::Zero(modes, frames);
   for (Eigen::Index k = 0; k < frames; ++k) {
