@@ -38,7 +38,7 @@ std::vector<Eigen::VectorXd> strengths(const RecordingFit& recording_fit, const 
 
 }  // namespace
 
-InitialSegmentFit fit_initial_segment(const FittedModel& base, const Candidate& candidate) {
+RankedFit fit_initial_segment(const FittedModel& base, const Candidate& candidate) {
   const RecordingFit& known = *base.recording_fit;
   const RecordingFit recording_fit(extend_model(known.model().settings(), {candidate.proposal.refine}), known,
                                    ranking_basis());
@@ -61,7 +61,7 @@ InitialSegmentFit fit_initial_segment(const FittedModel& base, const Candidate& 
     BatchFit now = recording_fit.quick_fit(near, spread, kInitialSegment);
     if (fit.w.size() == 0 || now.cost < fit.cost) fit = std::move(now);
   }
-  InitialSegmentFit out;
+  RankedFit out;
   const auto added = static_cast<double>(model.parameters().free().size() - known.model().parameters().free().size());
   out.deviance = fit.cost + added * std::log(kInitialSegment * base.rows.count());
   out.parameters = model.parameters().values(fit.w);

@@ -142,11 +142,14 @@ BasisOptions ranking_basis() {
   return out;
 }
 
-double cost_at(const FittedModel& base, const Candidate& candidate, const std::map<std::string, double>& parameters) {
+RankedFit fit_variant(const FittedModel& base, const Candidate& candidate, const std::map<std::string, double>& start,
+                      double rival) {
   const RecordingFit& known = *base.recording_fit;
   const RecordingFit recording_fit(extend_model(known.model().settings(), {candidate.proposal.refine}), known,
                                    ranking_basis());
-  return recording_fit.scan_near(start_of(recording_fit, parameters).w, {}).cost;
+  const Start from = start_of(recording_fit, start);
+  const BatchFit fit = recording_fit.quick_fit(from.w, from.spread, 1.0, rival);
+  return {recording_fit.model().parameters().values(fit.w), fit.cost};
 }
 
 Refit refit_with(const FittedModel& base, const RefitTask& task, double rival) {

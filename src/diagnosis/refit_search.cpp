@@ -57,11 +57,10 @@ class RefitSearch {
   std::vector<const Candidate*> most_evident_initially() const;
   std::vector<Refit> leaders() const;
 
-  /// A fit may start here.
+  /// A refit may start here.
   struct Start {
     const Candidate* candidate = nullptr;
-    std::map<std::string, double> parameters;               ///< of the whole model, by name
-    double cost = std::numeric_limits<double>::infinity();  ///< of this place, or of a fit of the initial segment
+    RankedFit at{{}, std::numeric_limits<double>::infinity()};
   };
   static std::vector<RefitTask> warm_started(std::vector<Start> starts);
   static std::map<std::string, double> parameters_for(const Candidate& candidate, const Refit& leader);
@@ -134,22 +133,32 @@ std::vector<Refit> RefitSearch::leaders() const {
   return out;
 }
 
-// Tangents choose badly between the variants of an effect. So each other variant of the leaders runs where the leader fits,
-// and the best ones are fitted from there. A leader that fits better now is the next round's.
+// Tangents choose badly between the variants of an effect, and so do their costs where the leader fits. So each other
+// variant of the leaders is fitted from there in few vectors, and the best fits are made anew. A leader that fits better
+// now is the next round's.
 void RefitSearch::refit_other_variants(int rounds) {
   if (rounds == 0 || explained()) return;
-  std::vector<Start> starts;
+  struct Variant {
+    const Candidate* candidate;
+    std::map<std::string, double> from;
+    double rival;
+  };
+  std::vector<Variant> variants;
   for (const Refit& leader : leaders()) {
     if (!explored_.insert({leader.effect, leader.fitted}).second) continue;
     for (const Candidate& candidate : screening_.candidates) {
       if (candidate.effect == leader.effect && candidate.linear && &candidate != leader.candidate)
-        starts.push_back({&candidate, parameters_for(candidate, leader)});
+        variants.push_back({&candidate, parameters_for(candidate, leader), leader.fitted});
     }
   }
-  if (starts.empty()) return;
+  if (variants.empty()) return;
+  std::vector<Start> starts(variants.size());
   refits_.try_each(
-      starts.size(), [&](std::size_t i) { return "variants of " + starts[i].candidate->effect; },
-      [&](std::size_t i) { starts[i].cost = cost_at(screening_.base, *starts[i].candidate, starts[i].parameters); });
+      variants.size(), [&](std::size_t i) { return "variants of " + variants[i].candidate->effect; },
+      [&](std::size_t i) {
+        const Variant& variant = variants[i];
+        starts[i] = {variant.candidate, fit_variant(screening_.base, *variant.candidate, variant.from, variant.rival)};
+      });
   refits_.add(warm_started(std::move(starts)));
   refit_other_variants(rounds - 1);
 }
@@ -202,20 +211,20 @@ void RefitSearch::refit_from_initial_segment() {
   refits_.try_each(
       variants.size(), [&](std::size_t i) { return "initial segment with " + variants[i]->effect; },
       [&](std::size_t i) {
-        InitialSegmentFit fit = fit_initial_segment(screening_.base, *variants[i]);
-        starts[i] = {variants[i], std::move(fit.parameters), fit.deviance};
+        starts[i] = {variants[i], fit_initial_segment(screening_.base, *variants[i])};
       });
   refits_.add(warm_started(std::move(starts)));
 }
 
 // Returns fits from the best starts, of which at most kWarmStartsOf are of one effect.
 std::vector<RefitTask> RefitSearch::warm_started(std::vector<Start> starts) {
-  std::stable_sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.cost < b.cost; });
+  std::stable_sort(starts.begin(), starts.end(),
+                   [](const Start& a, const Start& b) { return a.at.deviance < b.at.deviance; });
   std::vector<RefitTask> out;
   std::map<std::string, std::size_t> taken;
   for (Start& start : starts) {
-    if (std::isfinite(start.cost) && out.size() < kWarmStarts && taken[start.candidate->effect]++ < kWarmStartsOf)
-      out.push_back({start.candidate, {}, std::move(start.parameters)});
+    if (std::isfinite(start.at.deviance) && out.size() < kWarmStarts && taken[start.candidate->effect]++ < kWarmStartsOf)
+      out.push_back({start.candidate, {}, std::move(start.at.parameters)});
   }
   return out;
 }

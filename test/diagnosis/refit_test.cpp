@@ -29,21 +29,20 @@ class RefitTest : public ::testing::Test {
       if (candidate.effect == "mass_damping") damping = candidate;
     }
   }
-  double cost(double young_modulus, double alpha) const {
-    return cost_at(base, damping, {{"elasticity.young_modulus", young_modulus}, {"mass_damping.alpha", alpha}});
-  }
-
   Recording recording;
   FittedModel base;
   Candidate damping;
 };
 
-TEST_F(RefitTest, CostsAtAPlaceWhatTheNoiseCostsAtTheTruth) {
+TEST_F(RefitTest, RanksAVariantByItsFit) {
   ASSERT_EQ(damping.effect, "mass_damping");
+  const std::map<std::string, double> start{{"elasticity.young_modulus", 0.97 * kTruth},
+                                            {"mass_damping.alpha", 0.5 * kDamping}};
+  const RankedFit fit = fit_variant(base, damping, start, no_rival);
   const double rows = base.rows.count() * static_cast<double>(recording.training().size()) / kFrames;
-  EXPECT_NEAR(cost(kTruth, kDamping) / rows, 1.0, 0.05);
-  EXPECT_GT(cost(kTruth, 0.5 * kDamping), 1.5 * rows);
-  EXPECT_GT(cost(1.1 * kTruth, kDamping), 1.5 * rows);
+  EXPECT_NEAR(fit.deviance / rows, 1.0, 0.05);
+  EXPECT_NEAR(fit.parameters.at("elasticity.young_modulus"), kTruth, 0.01 * kTruth);
+  EXPECT_NEAR(fit.parameters.at("mass_damping.alpha"), kDamping, 0.05 * kDamping);
 }
 
 TEST_F(RefitTest, FindsTheTruthFromThere) {
