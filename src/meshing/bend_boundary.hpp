@@ -5,9 +5,8 @@
 namespace tissue_stiffness {
 
 /// Moves the mid-edge nodes of a straight-edged 10-node mesh to `targets` (3 x nodes; NaN leaves a node free). Free ones
-/// follow their neighbours. Elements that this would bend too much are straightened again. Returns the number of nodes with
-/// a target that were put back.
-int bend_boundary(TetMesh& mesh, const Eigen::Matrix3Xd& targets);
+/// follow their neighbours. Elements that this would bend too much are straightened in steps.
+void bend_boundary(TetMesh& mesh, const Eigen::Matrix3Xd& targets);
 
 /// Estimates the smooth surface that flat facets approximate. The mid-edge nodes of boundary edges that fold by less than
 /// 60 degrees move to the middle of a cubic. It passes through both ends, normal to the mean normals there (the edges of PN

@@ -14,9 +14,8 @@ namespace tissue_stiffness {
 /// the profile, each divided into equal parts, and one vertex at each pole. The edges are about `edge_length` [m] long.
 TriangleSurface revolution_surface(const RevolutionProfile& profile, double edge_length);
 
-/// Moves the mid-edge nodes of the boundary onto the body of revolution. Nodes are put back where an element would lose its
-/// positive Jacobian. Returns how many were put back.
-int curve_boundary(TetMesh& mesh, const RevolutionProfile& profile);
+/// Moves the mid-edge nodes of the boundary onto the body of revolution, less far where an element would be bent too much.
+void curve_boundary(TetMesh& mesh, const RevolutionProfile& profile);
 
 /// Returns a prism of thickness `depth` [m] along the viewing direction. It is centred in the plane through the model's
 /// origin that faces the camera (for a slice in the image plane). Outline points where the body widens away from the
