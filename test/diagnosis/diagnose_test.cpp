@@ -40,6 +40,15 @@ Diagnosis diagnose_bar(const Recording& recording, const DiagnosisOptions& optio
   return diagnose(box_settings(bar("{prior: 35.0e3, factor: 3}")), bar_mesh(), recording, options);
 }
 
+// Returns the other effects of the library, so that a search takes less time.
+std::vector<std::string> all_but(const std::vector<std::string>& wanted) {
+  std::vector<std::string> out;
+  for (const EffectSpec& spec : effect_specs()) {
+    if (std::find(wanted.begin(), wanted.end(), spec.name) == wanted.end()) out.push_back(spec.name);
+  }
+  return out;
+}
+
 TEST(Diagnose, FindsNothingWhereNothingIsMissing) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     const Diagnosis d = diagnose_bar(film({}, seed), {});
@@ -113,9 +122,9 @@ TEST(Diagnose, StartsTheGivenModelWhereARefitEnds) {
 // A finding is judged anew when another round has shown the noise or the mesh's error to be different.
 TEST(Diagnose, JudgesAFindingByAnotherLikelihood) {
   const Recording recording = film({"viscous_damping: {beta: 6.0e-3}"}, 1);
-  FittedModel base = fit_recording(
-      std::make_unique<RecordingFit>(box_settings(bar("{prior: 20.0e3, factor: 3}")), bar_mesh(), recording),
-      Eigen::VectorXd::Constant(1, std::log(kTruth)), 0.1);
+  FittedModel base =
+      fit_recording(std::make_unique<RecordingFit>(box_settings(bar("{prior: 20.0e3, factor: 3}")), bar_mesh(), recording),
+                    Eigen::VectorXd::Constant(1, std::log(kTruth)), 0.1);
   Finding finding = diagnose_once(base, {}, {});
   ASSERT_EQ(finding.verdict, Verdict::missing);
   ASSERT_EQ(finding.refits.front().effect, "viscous_damping");
@@ -131,7 +140,7 @@ TEST(Diagnose, JudgesAFindingByAnotherLikelihood) {
 
 TEST(Diagnose, DoesNotLookForWhatItIsToldToIgnore) {
   DiagnosisOptions options;
-  options.ignore = {"viscous_damping", "mass_damping", "viscoelasticity"};
+  options.ignore = all_but({"foundation", "added_mass", "gravity", "time_offset"});
   options.automatic = true;
   const Diagnosis d = diagnose_bar(film({"viscous_damping: {beta: 6.0e-3}"}, 1), options);
   EXPECT_EQ(d.verdict, Verdict::unexplained);
@@ -292,6 +301,7 @@ TEST(Diagnose, AddsAnEffectAsTheSearchFittedIt) {
 TEST(Diagnose, ProposesWhatItAddedAsTheLastFitHasIt) {
   DiagnosisOptions options;
   options.add = {"mass_damping", "added_mass"};
+  options.ignore = all_but(options.add);
   const Diagnosis d =
       diagnose_bar(film({"mass_damping: {alpha: 1.5}", "added_mass: {region: tip, mass: 0.004}"}, 2), options);
   ASSERT_EQ(d.steps.size(), 3U);
