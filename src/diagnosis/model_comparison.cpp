@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "diagnosis/scores.hpp"
 #include "forward/reduced_trajectory.hpp"
@@ -30,18 +31,24 @@ Eigen::MatrixXd lowest_modes(const FittedModel& fitted) {
   return recording_fit.rows_along(fitted.fit.w, at_rest.mode_shapes(static_cast<int>(count)), fitted.rows);
 }
 
-// Divides the change of every frame into its shares along the lowest modes and the rest, one column each.
-Eigen::MatrixXd parted(const Eigen::VectorXd& change, const Eigen::MatrixXd& along,
-                       const std::vector<Eigen::Index>& offsets) {
+/// The change of every frame, divided into its shares along the lowest modes and the rest.
+struct Parted {
+  Eigen::MatrixXd columns;  ///< N x (modes + 1)
+  Eigen::MatrixXd shares;   ///< frames x modes, in units of the mode's rows in that frame
+};
+
+Parted parted(const Eigen::VectorXd& change, const Eigen::MatrixXd& along, const std::vector<Eigen::Index>& offsets) {
   const Eigen::Index modes = std::min<Eigen::Index>(kComparison.modes, along.cols());
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(change.size(), modes + 1);
+  Parted out{Eigen::MatrixXd::Zero(change.size(), modes + 1),
+             Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(offsets.size()) - 1, modes)};
   for (std::size_t k = 0; k + 1 < offsets.size(); ++k) {
     const Eigen::Index from = offsets[k], size = offsets[k + 1] - from;
     if (size == 0) continue;
     const Eigen::MatrixXd lowest = along.block(from, 0, size, modes);
     const Eigen::VectorXd own = change.segment(from, size), share = least_squares(lowest, own);
-    out.block(from, 0, size, modes) = lowest * share.asDiagonal();
-    out.block(from, modes, size, 1) = own - lowest * share;
+    out.columns.block(from, 0, size, modes) = lowest * share.asDiagonal();
+    out.columns.block(from, modes, size, 1) = own - lowest * share;
+    out.shares.row(static_cast<Eigen::Index>(k)) = share.transpose();
   }
   return out;
 }
@@ -49,19 +56,6 @@ Eigen::MatrixXd parted(const Eigen::VectorXd& change, const Eigen::MatrixXd& alo
 // Returns the sum of squares of what such parts have along the modes.
 double along_modes(const Eigen::MatrixXd& parts) {
   return parts.cols() > 0 ? parts.leftCols(parts.cols() - 1).rowwise().sum().squaredNorm() : 0.0;
-}
-
-// Returns what such a part changes in each frame, in units of the mode's shape there.
-Eigen::VectorXd course_along(const Eigen::VectorXd& part, const Eigen::VectorXd& shape,
-                             const std::vector<Eigen::Index>& offsets) {
-  Eigen::VectorXd out(static_cast<Eigen::Index>(offsets.size()) - 1);
-  for (Eigen::Index k = 0; k < out.size(); ++k) {
-    const auto frame = static_cast<std::size_t>(k);
-    const Eigen::Index from = offsets[frame], size = offsets[frame + 1] - from;
-    const double square = shape.segment(from, size).squaredNorm();
-    out[k] = square > 0.0 ? shape.segment(from, size).dot(part.segment(from, size)) / square : 0.0;
-  }
-  return out;
 }
 
 // Returns how many frames count as one, by the autocorrelation of a course (Bartlett 1946).
@@ -101,14 +95,15 @@ ModelComparison::ModelComparison(const FittedModel& base, const Eigen::VectorXd&
 }
 
 void ModelComparison::allow_for_mesh(const Eigen::VectorXd& change) {
-  mesh_ = parted(kComparison.whole_mesh * change, along_, offsets_);
+  Parted parts = parted(kComparison.whole_mesh * change, along_, offsets_);
+  mesh_ = std::move(parts.columns);
   const Eigen::Index modes = mesh_.cols() - 1, frames = static_cast<Eigen::Index>(offsets_.size()) - 1;
   // The mesh's error has the mean square of that part of D, and D's memory. Amplitudes that are independent from frame to
   // frame say as much of it if they have its spectral density.
   constexpr double part = kComparison.left_of_mesh / kComparison.whole_mesh;
   const Eigen::VectorXd square = part * part * mesh_.leftCols(modes).colwise().squaredNorm().transpose();
   Eigen::VectorXd memory(modes);
-  for (Eigen::Index i = 0; i < modes; ++i) memory[i] = repeated(course_along(mesh_.col(i), along_.col(i), offsets_));
+  for (Eigen::Index i = 0; i < modes; ++i) memory[i] = repeated(parts.shares.col(i));
   const Eigen::VectorXd size = along_.leftCols(modes).colwise().squaredNorm().transpose();
   const Eigen::VectorXd std = square.cwiseProduct(memory).cwiseQuotient(size.cwiseMax(kTiny * kTiny)).cwiseSqrt();
   basis_ = Eigen::MatrixXd::Zero(along_.rows(), modes);

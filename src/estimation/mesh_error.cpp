@@ -82,10 +82,7 @@ MeshError::Answer fit(const Run& run, PosteriorLinearizationFilter filter, const
 }  // namespace
 
 TetMesh refined_mesh(const TetMesh& mesh, const MeshSettings& settings) {
-  if (settings.faceted) return refine_mesh(mesh);
-  TetMesh smooth = mesh;
-  smooth_boundary(smooth);
-  return refine_mesh(smooth);
+  return refine_mesh(smooth_unless_faceted(settings, mesh));
 }
 
 BasisOptions basis_beside(const TetMesh& mesh, const TetMesh& finer) {

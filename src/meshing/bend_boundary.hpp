@@ -1,5 +1,6 @@
 #pragma once
 
+#include "tissue_stiffness/settings/model_settings.hpp"
 #include "tissue_stiffness/types/tet_mesh.hpp"
 
 namespace tissue_stiffness {
@@ -13,5 +14,7 @@ void bend_boundary(TetMesh& mesh, const Eigen::Matrix3Xd& targets);
 /// triangles: Vlachos et al. 2001). Two surfaces meet at an edge that folds more, which follows both. A mesh without
 /// mid-edge nodes, or one that is already curved, is not changed.
 void smooth_boundary(TetMesh& mesh);
+/// Returns the mesh with a smooth boundary, unless its facets are declared to be the body's own.
+TetMesh smooth_unless_faceted(const MeshSettings& settings, TetMesh mesh);
 
 }  // namespace tissue_stiffness

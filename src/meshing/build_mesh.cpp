@@ -32,22 +32,17 @@ void require_positive(const std::string& key, double value) {
   throw InputError("mesh." + key, std::to_string(value) + " m", "above 0 m for a mesh from a contour");
 }
 
-TetMesh with_boundary_of(const MeshSettings& settings, TetMesh mesh) {
-  if (!settings.faceted) smooth_boundary(mesh);
-  return mesh;
-}
-
 }  // namespace
 
 TetMesh build_mesh(const MeshSettings& settings, const std::function<void()>& checkpoint) {
   if (is_tet_file(settings.file))
-    return with_boundary_of(settings, load_tet_mesh(settings.file, settings.scale, settings.order));
+    return smooth_unless_faceted(settings, load_tet_mesh(settings.file, settings.scale, settings.order));
   const std::string where = "mesh file " + settings.file;
   if (!is_surface_file(settings.file)) {
     throw InputError(where, "ending '" + file_ending(settings.file) + "'", ".vtk, .node, .ele, .msh, .stl, .ply or .obj");
   }
   const TriangleSurface surface = load_surface(settings.file, settings.scale);
-  return with_boundary_of(settings, fill(surface, settings, false, where, checkpoint));
+  return smooth_unless_faceted(settings, fill(surface, settings, false, where, checkpoint));
 }
 
 TetMesh build_mesh(const MeshSettings& settings, const Contour& contour, const Camera& camera,
@@ -58,7 +53,7 @@ TetMesh build_mesh(const MeshSettings& settings, const Contour& contour, const C
   if (settings.source == MeshSettings::Source::extrude) {
     require_positive("depth", settings.depth);
     const TriangleSurface surface = extruded_surface(contour, camera, settings.depth, settings.max_edge_length);
-    return with_boundary_of(settings, fill(surface, settings, false, "mesh.extrude", checkpoint));
+    return smooth_unless_faceted(settings, fill(surface, settings, false, "mesh.extrude", checkpoint));
   }
   const ProfileFit fit = fit_profile(viewing_rays(contour, camera), camera, settings.axis);
   // The surface itself is made of such edges.

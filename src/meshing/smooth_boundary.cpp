@@ -112,4 +112,9 @@ void smooth_boundary(TetMesh& mesh) {
   bend_boundary(mesh, targets);
 }
 
+TetMesh smooth_unless_faceted(const MeshSettings& settings, TetMesh mesh) {
+  if (!settings.faceted) smooth_boundary(mesh);
+  return mesh;
+}
+
 }  // namespace tissue_stiffness
