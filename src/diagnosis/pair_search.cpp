@@ -46,15 +46,22 @@ class PairSearch {
   struct Leader {
     std::string effect;
     Finding deeper;
+
+    /// Returns what its best pair was fitted with.
+    double cost() const { return deeper.refits.empty() ? no_rival : deeper.refits.front().fitted; }
   };
+  static double best_cost(const std::vector<Leader>& leaders) {
+    double best = no_rival;
+    for (const Leader& leader : leaders) best = std::min(best, leader.cost());
+    return best;
+  }
 
   // The leader of a pair was fitted while the other effect was missing, which may have led it astray. So the pair that fits
   // best is fitted the other way round: all variants of its leader are tried beside the other effect, unless that one led,
   // too.
   void turn(std::vector<Leader>& leaders) {
-    const auto cost = [](const Leader& l) { return l.deeper.refits.empty() ? no_rival : l.deeper.refits.front().cost; };
     const auto best = std::min_element(leaders.begin(), leaders.end(),
-                                       [&](const Leader& a, const Leader& b) { return cost(a) < cost(b); });
+                                       [](const Leader& a, const Leader& b) { return a.cost() < b.cost(); });
     if (best == leaders.end() || best->deeper.refits.empty()) return;
     lead_in_turn(best->deeper.refits.front(), {best->effect}, leaders);
   }
@@ -88,7 +95,8 @@ class PairSearch {
     Finding deeper;
     const auto examine_rest = [&] {
       next = std::make_shared<FittedModel>(extended(model_, leader));
-      const PreviousRound previous = after_adding(finding_, library_for(model_, *next, finding_));
+      PreviousRound previous = after_adding(finding_, library_for(model_, *next, finding_));
+      previous.rival = best_cost(leaders);
       bool moved = false;
       deeper =
           wanted.empty() ? examine(*next, options_, previous, moved) : diagnose_once(*next, wanted, options_, previous);

@@ -15,7 +15,6 @@ namespace {
 
 constexpr double kSpread = 0.05;          // prior standard deviations, around a known place
 constexpr double kShares[] = {0.6, 1.0};  // of the training frames, fitted in turn from a known place
-constexpr int kRankingVectors = 12;       // for each effect, of models that only rank
 
 struct Start {
   Eigen::VectorXd w, spread;
@@ -135,22 +134,6 @@ FittedModel fit_extended(const FittedModel& base, const RefitTask& task, double 
 }
 
 }  // namespace
-
-BasisOptions ranking_basis() {
-  BasisOptions out;
-  out.per_part = out.released = kRankingVectors;
-  return out;
-}
-
-RankedFit fit_variant(const FittedModel& base, const Candidate& candidate, const std::map<std::string, double>& start,
-                      double rival) {
-  const RecordingFit& known = *base.recording_fit;
-  const RecordingFit recording_fit(extend_model(known.model().settings(), {candidate.proposal.refine}), known,
-                                   ranking_basis());
-  const Start from = start_of(recording_fit, start);
-  const BatchFit fit = recording_fit.quick_fit(from.w, from.spread, 1.0, rival);
-  return {recording_fit.model().parameters().values(fit.w), fit.cost};
-}
 
 Refit refit_with(const FittedModel& base, const RefitTask& task, double rival) {
   const RecordingFit& known = *base.recording_fit;

@@ -20,26 +20,6 @@ struct RefitTask {
   const std::string& effect() const { return candidate->effect; }
 };
 
-/// Returns the options of models that only rank starts of fits: a few vectors for each effect suffice.
-BasisOptions ranking_basis();
-
-/// This is a fit with one proposal more that only ranks starts of refits.
-struct RankedFit {
-  std::map<std::string, double> parameters;  ///< of the whole model, by name
-  double deviance = 0.0;                     ///< to compare it with others of its kind
-};
-constexpr double kInitialSegment = 0.3;  // share of the frames
-/// Fits the initial segment alone. The amplitude is scanned across its whole prior. Phases that drift apart hide the
-/// minimum from tangents and from fits of a whole recording, but not there. The deviance is the sum of squared errors over
-/// sigma, plus Schwarz's penalty for what was added. Throws NumericalError when no start can be run.
-RankedFit fit_initial_segment(const FittedModel& base, const Candidate& candidate);
-
-/// Fits the training frames of a linear base with the candidate's proposal, as it is refitted, from these parameters. They
-/// have names; the others are at their priors. The deviance is the fit's cost, and `rival` is explained at fit_batch.
-/// Throws NumericalError where the start cannot be run.
-RankedFit fit_variant(const FittedModel& base, const Candidate& candidate, const std::map<std::string, double>& start,
-                      double rival);
-
 /// A refit is a fit of the base model with one proposal more.
 struct Refit {
   std::string effect;

@@ -18,7 +18,6 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr double kSpread = 0.05;  // prior standard deviations, of the sigma points of the base's fit from a refit's
-constexpr double kReach = 1.05;   // times the best cost so far: fewer parameters may compensate for less than that
 
 }  // namespace
 
@@ -49,7 +48,7 @@ void RefitList::try_each(std::size_t count, const std::function<std::string(std:
 }
 
 void RefitList::add(std::vector<RefitTask> list) {
-  double rival = no_rival;
+  double rival = kReach * screening_.rival;
   for (const Refit& r : refits_) {
     if (r.candidate->linear) rival = std::min(rival, kReach * r.fitted);
   }

@@ -14,6 +14,9 @@
 
 namespace tissue_stiffness {
 
+/// Times the best cost so far: fewer parameters may compensate for less than that.
+constexpr double kReach = 1.05;
+
 /// Returns the number of parameters that are fitted besides the base's.
 std::ptrdiff_t parameters_of(const Candidate& candidate);
 

@@ -2,18 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <functional>
 #include <map>
-#include <set>
 #include <utility>
+
+#include "diagnosis/initial_segment.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
 constexpr double kSameVariant = 0.8;      // cosine above which two variants are one
+constexpr std::size_t kScanned = 8;       // candidates that are fitted to the initial segment where its scan ends
 constexpr std::size_t kWarmStarts = 6;    // places that a stage finds and from which the whole recording is fitted
 constexpr std::size_t kWarmStartsOf = 2;  // those of one effect
 constexpr std::size_t kLeaders = 3;       // refits whose other variants are tried
+constexpr std::size_t kVariants = 12;     // of each leader, those with most evidence in the initial segment
 constexpr int kRounds = 3;                // in which they are tried
 constexpr std::size_t kTogether = 2;      // nonlinear refits that are fitted side by side
 
@@ -30,7 +33,7 @@ class RefitSearch {
     }
     for (RefitTask& task : list) task.in_full = true;
     refits_.add(list);
-    if (screening_.beside_another && wide() && !explained()) refit_from_initial_segment();
+    if (screening_.beside_another && continues()) refit_from_initial_segment();
   }
 
   /// See search_refits.
@@ -38,11 +41,10 @@ class RefitSearch {
     const bool about_run = screening_.base.recording_fit->may_be_linearised();
     about_run ? refit_in_turn() : refit_from_tangents();
     if (!screening_.settled && refits_.move_to_better_base()) return !explained();
-    if (!wide()) return false;
-    if (!explained()) about_run ? refit_other_tangents() : refit_other_variants(1);
+    if (!continues()) return false;
+    if (about_run) refit_other_tangents();
     if (!explained()) refit_from_initial_segment();
     if (about_run) return false;
-    refit_other_variants(kRounds);  // of those that lead now
     if (!explained() && !screening_.beside_another) refit_faint_nonlinear_effects();
     return false;
   }
@@ -50,24 +52,31 @@ class RefitSearch {
  private:
   void refit_from_tangents();
   void refit_in_turn();
-  void refit_other_variants(int rounds);
   void refit_other_tangents();
   void refit_from_initial_segment();
   void refit_faint_nonlinear_effects();
-  std::vector<const Candidate*> most_evident_initially() const;
+  std::vector<const Candidate*> most_evident_initially();
   std::vector<Refit> leaders() const;
 
-  /// A refit may start here.
+  /// A candidate may be fitted from these places, best first.
   struct Start {
     const Candidate* candidate = nullptr;
-    RankedFit at{{}, std::numeric_limits<double>::infinity()};
+    std::vector<RankedFit> places;
+
+    double deviance() const { return places.empty() ? no_rival : places.front().deviance; }
   };
-  static std::vector<RefitTask> warm_started(std::vector<Start> starts);
+  static std::vector<Start> best_of(std::vector<Start> starts, std::size_t most);
+  std::vector<Start> scanned();
+  std::vector<Start> variants_of_leaders();
+  void fit(std::vector<Start>& starts);
   static std::map<std::string, double> parameters_for(const Candidate& candidate, const Refit& leader);
   /// Returns whether something is to be explained that tangents may not show. What a model that already has an effect
   /// leaves is small once it passes its test, and tangents are taken at the right place.
   bool wide() const {
     return screening_.beside_another ? !screening_.given.test.passes() : screening_.given.test.discrepancy() > 0.0;
+  }
+  bool continues() const {
+    return wide() && !explained() && !(!refits_.empty() && refits_.best().fitted > kReach * screening_.rival);
   }
   /// Returns whether the tangent of a nonlinear effect explains little. Fits of such effects take long.
   bool faint(const Ranked& r) const {
@@ -81,10 +90,12 @@ class RefitSearch {
   }
   Verdict verdict() const { return judge(refits_.compare()); }
   bool explained() const { return verdict() == Verdict::missing; }
+  const std::map<const Candidate*, double>& initial_evidence();
 
   const Screening& screening_;
   RefitList& refits_;
-  std::set<std::pair<std::string, double>> explored_;  ///< leaders whose variants were tried, with what they were `fitted`
+  std::map<const Candidate*, double> initial_evidence_;  ///< empty until it is needed
+  std::map<std::string, double> explored_;  ///< leaders whose variants were tried, with what they were `fitted`
 };
 
 // Refits every effect where something is to be explained. Elsewhere a tangent has to speak for some effect; then all that
@@ -133,36 +144,6 @@ std::vector<Refit> RefitSearch::leaders() const {
   return out;
 }
 
-// Tangents choose badly between the variants of an effect, and so do their costs where the leader fits. So each other
-// variant of the leaders is fitted from there in few vectors, and the best fits are made anew. A leader that fits better
-// now is the next round's.
-void RefitSearch::refit_other_variants(int rounds) {
-  if (rounds == 0 || explained()) return;
-  struct Variant {
-    const Candidate* candidate;
-    std::map<std::string, double> from;
-    double rival;
-  };
-  std::vector<Variant> variants;
-  for (const Refit& leader : leaders()) {
-    if (!explored_.insert({leader.effect, leader.fitted}).second) continue;
-    for (const Candidate& candidate : screening_.candidates) {
-      if (candidate.effect == leader.effect && candidate.linear && &candidate != leader.candidate)
-        variants.push_back({&candidate, parameters_for(candidate, leader), leader.fitted});
-    }
-  }
-  if (variants.empty()) return;
-  std::vector<Start> starts(variants.size());
-  refits_.try_each(
-      variants.size(), [&](std::size_t i) { return "variants of " + variants[i].candidate->effect; },
-      [&](std::size_t i) {
-        const Variant& variant = variants[i];
-        starts[i] = {variant.candidate, fit_variant(screening_.base, *variant.candidate, variant.from, variant.rival)};
-      });
-  refits_.add(warm_started(std::move(starts)));
-  refit_other_variants(rounds - 1);
-}
-
 // Returns where a variant starts: where its leader fits. If they differ in a place, the leader's place is not taken over.
 std::map<std::string, double> RefitSearch::parameters_for(const Candidate& candidate, const Refit& leader) {
   if (candidate.proposal.is_other_kind_of(leader.candidate->proposal)) return leader.parameters;
@@ -204,44 +185,103 @@ void RefitSearch::refit_faint_nonlinear_effects() {
 }
 
 // Where phases have drifted apart a tangent says little: what is unexplained may be any effect's, of any direction and
-// strength. The best fits of the initial segment tell where to start.
+// strength. The best fits of the initial segment tell where to start. A leader that fits better then has its variants tried
+// anew.
 void RefitSearch::refit_from_initial_segment() {
-  const std::vector<const Candidate*> variants = most_evident_initially();
-  std::vector<Start> starts(variants.size());
-  refits_.try_each(
-      variants.size(), [&](std::size_t i) { return "initial segment with " + variants[i]->effect; },
-      [&](std::size_t i) {
-        starts[i] = {variants[i], fit_initial_segment(screening_.base, *variants[i])};
-      });
-  refits_.add(warm_started(std::move(starts)));
+  std::vector<Start> starts = scanned();
+  for (int round = 0; round < kRounds && !explained(); ++round) {
+    for (Start& variant : variants_of_leaders()) starts.push_back(std::move(variant));
+    if (starts.empty()) return;
+    fit(starts);
+    std::vector<RefitTask> list;
+    for (Start& start : best_of(std::move(starts), kWarmStarts))
+      list.push_back({start.candidate, {}, std::move(start.places.front().parameters)});
+    refits_.add(list);
+    starts.clear();
+  }
 }
 
-// Returns fits from the best starts, of which at most kWarmStartsOf are of one effect.
-std::vector<RefitTask> RefitSearch::warm_started(std::vector<Start> starts) {
-  std::stable_sort(starts.begin(), starts.end(),
-                   [](const Start& a, const Start& b) { return a.at.deviance < b.at.deviance; });
-  std::vector<RefitTask> out;
-  std::map<std::string, std::size_t> taken;
-  for (Start& start : starts) {
-    if (std::isfinite(start.at.deviance) && out.size() < kWarmStarts && taken[start.candidate->effect]++ < kWarmStartsOf)
-      out.push_back({start.candidate, {}, std::move(start.at.parameters)});
+// Scans one candidate of each effect and kind, and returns those that explain the initial segment best.
+std::vector<RefitSearch::Start> RefitSearch::scanned() {
+  const std::vector<const Candidate*> candidates = most_evident_initially();
+  std::vector<Start> starts(candidates.size());
+  refits_.try_each(
+      starts.size(), [&](std::size_t i) { return "scan of the initial segment with " + candidates[i]->effect; },
+      [&](std::size_t i) {
+        starts[i] = {candidates[i], scan_initial_segment(screening_.base, *candidates[i])};
+      });
+  return best_of(std::move(starts), kScanned);
+}
+
+// Tangents choose badly between the variants of an effect, and so do their costs where the leader fits. So each other
+// variant of the leaders is fitted from there.
+std::vector<RefitSearch::Start> RefitSearch::variants_of_leaders() {
+  std::vector<Start> out;
+  const double gain = 2.0 * kComparison.worthwhile * refits_.comparison().noise_variance();
+  for (std::size_t i = 0; i < std::min(kLeaders, refits_.all().size()); ++i) {
+    const Refit& leader = refits_.all()[i];
+    const auto known = explored_.find(leader.effect);
+    if (known != explored_.end() && leader.fitted > known->second - gain) continue;
+    explored_[leader.effect] = leader.fitted;
+    std::vector<std::pair<double, const Candidate*>> variants;
+    for (const auto& [candidate, evidence] : initial_evidence()) {
+      if (candidate->effect == leader.effect && candidate != leader.candidate) variants.emplace_back(evidence, candidate);
+    }
+    std::sort(variants.begin(), variants.end(), std::greater<>());
+    variants.resize(std::min(variants.size(), kVariants));
+    for (const auto& [evidence, candidate] : variants) out.push_back({candidate, {{parameters_for(*candidate, leader)}}});
   }
   return out;
 }
 
-// Returns for each effect and kind the candidate with most evidence in the initial segment.
-std::vector<const Candidate*> RefitSearch::most_evident_initially() const {
+// Fits each start's candidate to the initial segment. What falls behind the best scan is not fitted to the end.
+void RefitSearch::fit(std::vector<Start>& starts) {
+  double rival = no_rival;
+  for (const Start& start : starts) rival = std::min(rival, start.deviance());
+  refits_.try_each(
+      starts.size(), [&](std::size_t i) { return "initial segment with " + starts[i].candidate->effect; },
+      [&](std::size_t i) {
+        std::vector<std::map<std::string, double>> from;
+        for (RankedFit& place : starts[i].places) from.push_back(std::move(place.parameters));
+        starts[i].places.clear();
+        starts[i].places.push_back(fit_initial_segment(screening_.base, *starts[i].candidate, from, rival));
+      });
+}
+
+// Returns the best starts, of which at most kWarmStartsOf are of one effect.
+std::vector<RefitSearch::Start> RefitSearch::best_of(std::vector<Start> starts, std::size_t most) {
+  std::stable_sort(starts.begin(), starts.end(),
+                   [](const Start& a, const Start& b) { return a.deviance() < b.deviance(); });
+  std::vector<Start> out;
+  std::map<std::string, std::size_t> taken;
+  for (Start& start : starts) {
+    if (std::isfinite(start.deviance()) && out.size() < most && taken[start.candidate->effect]++ < kWarmStartsOf)
+      out.push_back(std::move(start));
+  }
+  return out;
+}
+
+// Returns the evidence of each linear candidate's tangent in the initial segment.
+const std::map<const Candidate*, double>& RefitSearch::initial_evidence() {
+  if (!initial_evidence_.empty()) return initial_evidence_;
   const std::vector<Eigen::Index>& offsets = screening_.base.rows.offsets;
   const Eigen::Index rows = offsets[static_cast<std::size_t>(kInitialSegment * static_cast<double>(offsets.size() - 1))];
   const Scorer scorer(screening_.error.head(rows), screening_.nuisance_tangents.topRows(rows),
                       screening_.comparison.noise_variance());
-  std::map<std::string, std::pair<double, const Candidate*>> best;
   for (const Candidate& candidate : screening_.candidates) {
     if (!candidate.linear) continue;
     const Tangent initial{candidate.tangent.columns.topRows(rows), candidate.tangent.prior_std};
-    const double evidence = scorer.score(initial).log_bayes_factor;
-    auto& known = best[candidate.effect + " " + candidate.proposal.kind()];
-    if (known.second == nullptr || evidence > known.first) known = {evidence, &candidate};
+    initial_evidence_[&candidate] = scorer.score(initial).log_bayes_factor;
+  }
+  return initial_evidence_;
+}
+
+// Returns for each effect and kind the candidate with most evidence in the initial segment.
+std::vector<const Candidate*> RefitSearch::most_evident_initially() {
+  std::map<std::string, std::pair<double, const Candidate*>> best;
+  for (const auto& [candidate, evidence] : initial_evidence()) {
+    auto& known = best[candidate->effect + " " + candidate->proposal.kind()];
+    if (known.second == nullptr || evidence > known.first) known = {evidence, candidate};
   }
   std::vector<const Candidate*> out;
   for (const auto& [kind, known] : best) out.push_back(known.second);

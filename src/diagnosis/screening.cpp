@@ -47,6 +47,7 @@ Screening::Screening(FittedModel& fitted, const DiagnosisOptions& options, Previ
       cost(fitted.rows.error.squaredNorm()),
       beside_another(previous.beside_another),
       settled(previous.settled),
+      rival(previous.rival),
       library(wanted.empty() ? std::move(previous.library) : Library()),
       explained(compared_residual(base)),
       comparison(base, Eigen::VectorXd::Zero(base.rows.error.size())),

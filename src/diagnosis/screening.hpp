@@ -20,6 +20,7 @@ struct PreviousRound {
   Library library = {};                                     ///< see read_tangents
   bool beside_another = false;  ///< the model has an effect that was found: less of the search is repeated
   bool settled = false;         ///< the model keeps its fit, even where another would be better
+  double rival = no_rival;      ///< what a known pair was `fitted` with: what is far behind it is not continued
 };
 
 /// A screening shows what a fitted model's error tells before anything is refitted: the library, ranked by its tangents,
@@ -35,6 +36,7 @@ struct Screening {
   FittedModel& base;
   double cost;                         ///< sum of squared errors [sigma^2]
   const bool beside_another, settled;  ///< see PreviousRound
+  const double rival;                  ///< likewise
   std::size_t effect_count = 0;        ///< number of effects that the library proposes, wanted or not
   std::vector<Candidate> candidates;   ///< their tangents are whitened
   Library library;                     ///< of models that the tangents were read from

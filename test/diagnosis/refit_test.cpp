@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "../estimation/bar.hpp"
+#include "diagnosis/initial_segment.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
@@ -34,15 +36,23 @@ class RefitTest : public ::testing::Test {
   Candidate damping;
 };
 
-TEST_F(RefitTest, RanksAVariantByItsFit) {
+TEST_F(RefitTest, FitsTheInitialSegmentFromAKnownPlace) {
   ASSERT_EQ(damping.effect, "mass_damping");
-  const std::map<std::string, double> start{{"elasticity.young_modulus", 0.97 * kTruth},
-                                            {"mass_damping.alpha", 0.5 * kDamping}};
-  const RankedFit fit = fit_variant(base, damping, start, no_rival);
-  const double rows = base.rows.count() * static_cast<double>(recording.training().size()) / kFrames;
-  EXPECT_NEAR(fit.deviance / rows, 1.0, 0.05);
-  EXPECT_NEAR(fit.parameters.at("elasticity.young_modulus"), kTruth, 0.01 * kTruth);
-  EXPECT_NEAR(fit.parameters.at("mass_damping.alpha"), kDamping, 0.05 * kDamping);
+  const RankedFit fit = fit_initial_segment(
+      base, damping, {{{"elasticity.young_modulus", 0.97 * kTruth}, {"mass_damping.alpha", 0.5 * kDamping}}});
+  const double rows = kInitialSegment * base.rows.count() * static_cast<double>(recording.training().size()) / kFrames;
+  EXPECT_NEAR((fit.deviance - std::log(kInitialSegment * base.rows.count())) / rows, 1.0, 0.15);
+  EXPECT_NEAR(fit.parameters.at("elasticity.young_modulus"), kTruth, 0.02 * kTruth);
+  EXPECT_NEAR(fit.parameters.at("mass_damping.alpha"), kDamping, 0.2 * kDamping);
+}
+
+TEST_F(RefitTest, ScansTheInitialSegmentAcrossThePriors) {
+  const std::vector<RankedFit> places = scan_initial_segment(base, damping);
+  ASSERT_EQ(places.size(), 2U);
+  EXPECT_LE(places[0].deviance, places[1].deviance);
+  EXPECT_NEAR(places[0].parameters.at("elasticity.young_modulus"), kTruth, 0.2 * kTruth);
+  EXPECT_GT(places[0].parameters.at("mass_damping.alpha"), 0.25 * kDamping);
+  EXPECT_LT(places[0].deviance, base.fit.cost);
 }
 
 TEST_F(RefitTest, FindsTheTruthFromThere) {

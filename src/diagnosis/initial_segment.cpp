@@ -1,0 +1,94 @@
+#include "diagnosis/initial_segment.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "settings/extend_model.hpp"
+#include "tissue_stiffness/types/error.hpp"
+
+namespace tissue_stiffness {
+namespace {
+
+constexpr std::size_t kMostPlaces = 2;
+constexpr int kRankingVectors = 12;  // for each effect, of models that only rank
+// An amplitude is tried at its prior's mean and at these prior standard deviations beside it: a positive one, whose prior
+// speaks of a strong effect, and a signed one.
+constexpr double kPositive[] = {-3.0, -2.25, -1.5, -0.75, 0.75, 1.5}, kSigned[] = {-1.0, -0.3, 0.3, 1.0};
+
+// Returns starts from the base's fit and the proposal's prior, at several strengths.
+std::vector<Eigen::VectorXd> strengths(const RecordingFit& recording_fit, const Eigen::VectorXd& w,
+                                       const Candidate& candidate) {
+  std::vector<Eigen::VectorXd> out{w};
+  const auto& free = recording_fit.model().parameters().free();
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    if (free[i].name.rfind(candidate.effect + "." + candidate.proposal.amplitude, 0) != 0) continue;
+    const auto try_at = [&](double deviations) {
+      const auto k = static_cast<Eigen::Index>(i);
+      Eigen::VectorXd there = w;
+      there[k] += deviations * recording_fit.model().parameters().prior_std()[k];
+      const double value = free[i].to_value(there[k]);
+      if (free[i].lower < value && value < free[i].upper) out.push_back(std::move(there));
+    };
+    if (free[i].prior.kind == Quantity::Kind::log_normal) {
+      std::for_each(std::begin(kPositive), std::end(kPositive), try_at);
+    } else {
+      std::for_each(std::begin(kSigned), std::end(kSigned), try_at);
+    }
+  }
+  return out;
+}
+
+// Returns the base with the candidate's proposal in a few vectors for each effect, which suffice to rank.
+RecordingFit extended(const FittedModel& base, const Candidate& candidate) {
+  BasisOptions basis;
+  basis.per_part = basis.released = kRankingVectors;
+  const RecordingFit& known = *base.recording_fit;
+  return {extend_model(known.model().settings(), {candidate.proposal.refine}), known, basis};
+}
+
+// Returns Schwarz's penalty for the parameters that the base does not have.
+double penalty(const FittedModel& base, const RecordingFit& recording_fit) {
+  const std::size_t all = recording_fit.model().parameters().free().size();
+  const auto added = static_cast<double>(all - base.recording_fit->model().parameters().free().size());
+  return added * std::log(kInitialSegment * base.rows.count());
+}
+
+}  // namespace
+
+std::vector<RankedFit> scan_initial_segment(const FittedModel& base, const Candidate& candidate) {
+  const RecordingFit& known = *base.recording_fit;
+  const RecordingFit recording_fit = extended(base, candidate);
+  const std::vector<Eigen::Index> tuning = recording_fit.scanned_shared_with(known);
+  const std::vector<Eigen::Index> acting = recording_fit.acting_shared_with(known);
+  const double complexity = penalty(base, recording_fit);
+  std::vector<RankedFit> out;
+  for (const Eigen::VectorXd& start : strengths(recording_fit, recording_fit.extend(known, base.fit.w), candidate)) {
+    const RecordingFit::Place loaded = recording_fit.project({start}, acting, kInitialSegment);
+    const RecordingFit::Place tuned = recording_fit.scan_prior(loaded.w, tuning, kInitialSegment);
+    const RecordingFit::Place place = recording_fit.project(tuned, acting, kInitialSegment);
+    out.push_back({recording_fit.model().parameters().values(place.w), place.cost + complexity});
+  }
+  std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.deviance < b.deviance; });
+  out.resize(std::min(out.size(), kMostPlaces));
+  return out;
+}
+
+RankedFit fit_initial_segment(const FittedModel& base, const Candidate& candidate,
+                              const std::vector<std::map<std::string, double>>& starts, double rival) {
+  const RecordingFit& known = *base.recording_fit;
+  const RecordingFit recording_fit = extended(base, candidate);
+  const ParameterSpace& parameters = recording_fit.model().parameters();
+  const std::vector<Eigen::Index> tuning = recording_fit.scanned_shared_with(known);
+  const Eigen::VectorXd spread = recording_fit.spread_beyond(known);
+  const double complexity = penalty(base, recording_fit);
+  RankedFit out;
+  for (const std::map<std::string, double>& start : starts) {
+    const Eigen::VectorXd w = parameters.coordinates(start, parameters.prior_mean());
+    const Eigen::VectorXd near = recording_fit.scan_near(w, tuning, kInitialSegment).w;
+    const BatchFit fit = recording_fit.quick_fit(near, spread, kInitialSegment, std::min(rival, out.deviance) - complexity);
+    if (fit.cost + complexity < out.deviance) out = {parameters.values(fit.w), fit.cost + complexity};
+  }
+  return out;
+}
+
+}  // namespace tissue_stiffness
