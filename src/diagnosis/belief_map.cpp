@@ -17,7 +17,7 @@ constexpr double kLeast = 0.1, kMost = 100.0;
 constexpr int kExcesses = 16;
 
 // Returns for each row that says something the part that it sees, else -1.
-std::vector<int> part_rows(const TetMesh& mesh, const RecordingFit::Rows& rows, BeliefMap& out) {
+std::vector<int> part_rows(const TetMesh& mesh, const RecordingRows& rows, BeliefMap& out) {
   std::map<int, int> part_of;  // nearest centre of each node that is seen
   for (Eigen::Index r = 0; r < rows.error.size(); ++r) {
     if (rows.tells_length(r)) part_of[rows.nodes[r]] = 0;
@@ -63,7 +63,7 @@ double log_evidence_of_excess(double x, double degrees_of_freedom) {
 
 BeliefMap belief_map(const FittedModel& model, const Eigen::VectorXd& left, const ModelComparison& comparison) {
   BeliefMap out;
-  const RecordingFit::Rows& rows = model.rows;
+  const RecordingRows& rows = model.rows;
   const std::vector<int> seen = part_rows(model.recording_fit->model().mesh(), rows, out);
   if (out.nodes.empty()) return out;
   const Eigen::VectorXd white = comparison.whitened(left);

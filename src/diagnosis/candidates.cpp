@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "effects/registry.hpp"
+#include "fit/shared_parameters.hpp"
 #include "forward/extra_force.hpp"
 #include "forward/for_each_index.hpp"
 #include "forward/linearised_model.hpp"
@@ -55,12 +56,12 @@ bool can_be_written(const Proposal& proposal) {
   }
 }
 
-Eigen::VectorXd difference(const Eigen::VectorXd& changed, const RecordingFit::Rows& base, double amplitude) {
+Eigen::VectorXd difference(const Eigen::VectorXd& changed, const RecordingRows& base, double amplitude) {
   return base.used.cwiseProduct(changed - base.predicted) / amplitude;
 }
 
 // Returns how far the rows go from those of the first frame, rms over all [sigma].
-double motion(const RecordingFit::Rows& rows) {
+double motion(const RecordingRows& rows) {
   return motion_of(rows).norm() / std::sqrt(static_cast<double>(rows.predicted.size()));
 }
 
@@ -76,7 +77,7 @@ std::optional<Eigen::VectorXd> prediction(const RecordingFit& recording_fit, con
 
 // Returns d rows / d w_j. A slender body answers to what leaves a stout one alone. So the step is cut until the answer is
 // small compared with `moves`, the motion of `rest`.
-Eigen::VectorXd tangent(const RecordingFit& recording_fit, const RecordingFit::Rows& rest, double moves,
+Eigen::VectorXd tangent(const RecordingFit& recording_fit, const RecordingRows& rest, double moves,
                         const Eigen::VectorXd& start, Eigen::Index j) {
   double amplitude = kProbe * recording_fit.model().parameters().prior_std()[j];
   for (int probe = 1;; ++probe) {
@@ -101,8 +102,8 @@ std::vector<Eigen::Index> added_parameters(const RecordingFit& recording_fit, co
 // Reads the tangents of the added parameters of one recording fit; each candidate in turn has `components` columns.
 void read_added_tangents(const RecordingFit& recording_fit, const RecordingFit& base, const Eigen::VectorXd& w,
                          const std::vector<Candidate*>& candidates, const std::function<void(double)>& over) {
-  const Eigen::VectorXd start = recording_fit.extend(base, w);
-  const RecordingFit::Rows rest = recording_fit.rows(start);
+  const Eigen::VectorXd start = SharedParameters(recording_fit, base).extend(w);
+  const RecordingRows rest = recording_fit.rows(start);
   const double moves = motion(rest);
   const std::vector<Eigen::Index> added = added_parameters(recording_fit, base);
   Eigen::MatrixXd columns(rest.error.size(), static_cast<Eigen::Index>(added.size()));
@@ -249,16 +250,17 @@ std::unique_ptr<RecordingFit> with_time_steps(const RecordingFit& recording_fit,
 }
 
 Eigen::MatrixXd tangents_of_time_steps(const RecordingFit& recording_fit, const Eigen::VectorXd& w,
-                                       const RecordingFit::Rows& rows) {
+                                       const RecordingRows& rows) {
   const std::unique_ptr<RecordingFit> stepped = with_time_steps(recording_fit, w);
   if (!stepped) return Eigen::MatrixXd(rows.error.size(), 0);
   RecordingFit& extended = *stepped;
   extended.borrow(recording_fit);
-  const Eigen::VectorXd start = extended.extend(recording_fit, w), std = extended.model().parameters().prior_std();
+  const Eigen::VectorXd start = SharedParameters(extended, recording_fit).extend(w),
+                        std = extended.model().parameters().prior_std();
   const std::vector<Eigen::Index> added = added_parameters(extended, recording_fit);
   const std::optional<Eigen::VectorXd> predicted = prediction(extended, start);
   if (!predicted) return Eigen::MatrixXd(rows.error.size(), 0);
-  RecordingFit::Rows rest = rows;
+  RecordingRows rest = rows;
   rest.predicted = *predicted;
   const double moves = motion(rest);
   Eigen::MatrixXd out(rows.error.size(), static_cast<Eigen::Index>(added.size()));
@@ -269,7 +271,7 @@ Eigen::MatrixXd tangents_of_time_steps(const RecordingFit& recording_fit, const 
 }
 
 Eigen::MatrixXd base_tangents(const RecordingFit& base, const Eigen::VectorXd& w, const Eigen::VectorXd& std,
-                              const RecordingFit::Rows& rows) {
+                              const RecordingRows& rows) {
   Eigen::MatrixXd out(rows.error.size(), w.size());
   for_each_index(static_cast<std::size_t>(w.size()), [&](std::size_t k) {
     const auto i = static_cast<Eigen::Index>(k);

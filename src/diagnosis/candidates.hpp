@@ -58,10 +58,10 @@ std::unique_ptr<RecordingFit> with_time_steps(const RecordingFit& recording_fit,
 /// Returns what the time steps of a simulated recording do to the rows of a model that does not allow for them. Each column
 /// is for a prior standard deviation of the squared step [sigma]. There are no columns where the model has these steps.
 Eigen::MatrixXd tangents_of_time_steps(const RecordingFit& recording_fit, const Eigen::VectorXd& w,
-                                       const RecordingFit::Rows& rows);
+                                       const RecordingRows& rows);
 
 /// Returns d rows / d w of the fitted base model, in sigmas: N x free parameters.
 Eigen::MatrixXd base_tangents(const RecordingFit& base, const Eigen::VectorXd& w, const Eigen::VectorXd& std,
-                              const RecordingFit::Rows& rows);
+                              const RecordingRows& rows);
 
 }  // namespace tissue_stiffness

@@ -27,7 +27,7 @@ DiagnosisStep describe_step(const FittedModel& model, const Explained& explained
   DiagnosisStep step;
   step.effects = effects;
   step.parameters = model.recording_fit->model().parameters().values(model.fit.w);
-  RecordingFit::Rows compared = model.rows;
+  RecordingRows compared = model.rows;
   compared.error = explained.error;
   step.train_rms = rms_error(compared, recording, false);
   step.held_out_rms = rms_error(compared, recording, true);

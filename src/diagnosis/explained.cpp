@@ -4,6 +4,7 @@
 
 #include "diagnosis/candidates.hpp"
 #include "diagnosis/comparison_numbers.hpp"
+#include "fit/shared_parameters.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -24,7 +25,7 @@ Eigen::VectorXd most_probable(const Linearisation& model, const Eigen::VectorXd&
 
 }  // namespace
 
-double log_root_weights(const RecordingFit::Rows& rows) {
+double log_root_weights(const RecordingRows& rows) {
   return (rows.used.array() > 0.0).select(rows.used.array().log(), 0.0).sum();
 }
 
@@ -72,16 +73,17 @@ Explained compared_residual(const FittedModel& fitted, const std::vector<std::st
   FittedModel joint;
   joint.recording_fit = with_time_steps(recording_fit, fitted.fit.w);
   const RecordingFit& stepped = *joint.recording_fit;
-  const Eigen::VectorXd at = stepped.extend(recording_fit, fitted.fit.w), prior = stepped.model().parameters().prior_std();
+  const SharedParameters shared(stepped, recording_fit);
+  const Eigen::VectorXd at = shared.extend(fitted.fit.w), prior = stepped.model().parameters().prior_std();
   const Eigen::VectorXd near = kSpread * prior;
   if (linear) joint.fit = stepped.quick_fit(at + prior.cwiseProduct(u), near);
   // Long steps lead a body that rings into another minimum, which no tangent shows.
-  const std::vector<Eigen::Index> tuning = stepped.scanned_shared_with(recording_fit);
+  const std::vector<Eigen::Index> tuning = shared.scanned();
   for (const double length : kSteps) {
     if (!far) break;
     Eigen::VectorXd start = at;
     start.tail(all - own) = length * prior.tail(all - own);
-    const BatchFit fit = stepped.quick_fit(stepped.scan_near(start, tuning).w, stepped.spread_beyond(recording_fit));
+    const BatchFit fit = stepped.quick_fit(stepped.scan_near(start, tuning).w, shared.spread());
     if (joint.fit.w.size() == 0 || fit.cost < joint.fit.cost) joint.fit = fit;
   }
   joint.rows = stepped.rows(joint.fit.w);

@@ -19,7 +19,7 @@ struct Linearisation {
   double log_root_weights = 0.0;         ///< sum of log sqrt(weight): a row of weight q has the noise's variance over q
 };
 /// Returns the sum of the logarithms of the roots of the rows' robust weights.
-double log_root_weights(const RecordingFit::Rows& rows);
+double log_root_weights(const RecordingRows& rows);
 /// Linearises a model about its fit. `amplitudes` are given by name.
 Linearisation linearise_model(const FittedModel& fitted, const std::vector<std::string>& amplitudes = {});
 /// Returns the free parameters with normal priors that a model with fewer effects does not have.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/shared_parameters.hpp"
 #include "settings/extend_model.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
@@ -58,11 +59,11 @@ double penalty(const FittedModel& base, const RecordingFit& recording_fit) {
 std::vector<RankedFit> scan_initial_segment(const FittedModel& base, const Candidate& candidate) {
   const RecordingFit& known = *base.recording_fit;
   const RecordingFit recording_fit = extended(base, candidate);
-  const std::vector<Eigen::Index> tuning = recording_fit.scanned_shared_with(known);
-  const std::vector<Eigen::Index> acting = recording_fit.acting_shared_with(known);
+  const SharedParameters shared(recording_fit, known);
+  const std::vector<Eigen::Index> tuning = shared.scanned(), acting = shared.acting();
   const double complexity = penalty(base, recording_fit);
   std::vector<RankedFit> out;
-  for (const Eigen::VectorXd& start : strengths(recording_fit, recording_fit.extend(known, base.fit.w), candidate)) {
+  for (const Eigen::VectorXd& start : strengths(recording_fit, shared.extend(base.fit.w), candidate)) {
     const RecordingFit::Place loaded = recording_fit.project({start}, acting, kInitialSegment);
     const RecordingFit::Place tuned = recording_fit.scan_prior(loaded.w, tuning, kInitialSegment);
     const RecordingFit::Place place = recording_fit.project(tuned, acting, kInitialSegment);
@@ -78,8 +79,9 @@ RankedFit fit_initial_segment(const FittedModel& base, const Candidate& candidat
   const RecordingFit& known = *base.recording_fit;
   const RecordingFit recording_fit = extended(base, candidate);
   const ParameterSpace& parameters = recording_fit.model().parameters();
-  const std::vector<Eigen::Index> tuning = recording_fit.scanned_shared_with(known);
-  const Eigen::VectorXd spread = recording_fit.spread_beyond(known);
+  const SharedParameters shared(recording_fit, known);
+  const std::vector<Eigen::Index> tuning = shared.scanned();
+  const Eigen::VectorXd spread = shared.spread();
   const double complexity = penalty(base, recording_fit);
   RankedFit out;
   for (const std::map<std::string, double>& start : starts) {

@@ -139,7 +139,7 @@ MissingForce missing_force(const RecordingFit& recording_fit, const Eigen::Vecto
   const Recording& recording = recording_fit.recording();
   const TetMesh& mesh = recording_fit.model().mesh();
   const Modes modes = modes_of(recording_fit, w);
-  const RecordingFit::Rows rows = recording_fit.rows(w);
+  const RecordingRows rows = recording_fit.rows(w);
   const std::vector<FrameEvidence> evidence =
       evidence_of(rows.error, recording_fit.rows_along(w, modes.shapes, rows), rows.offsets, 1.0);
   const ForcePrior prior = likeliest_force_prior(modes.transitions, evidence, modes.scale());

@@ -18,7 +18,7 @@ struct Frames {
   Eigen::VectorXd time, square, count, motion;  ///< motion: rms since the first frame [m]; NaN where rows differ
 };
 
-Frames by_frame(const RecordingFit& recording_fit, const RecordingFit::Rows& rows) {
+Frames by_frame(const RecordingFit& recording_fit, const RecordingRows& rows) {
   const auto n = static_cast<Eigen::Index>(rows.offsets.size()) - 1;
   Frames out{Eigen::VectorXd(n), Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n), Eigen::VectorXd(n)};
   const Eigen::Index first = rows.offsets[1];
@@ -43,7 +43,7 @@ double rms(double square, double count) {
   return count > 0.0 ? std::sqrt(square / count) : std::numeric_limits<double>::quiet_NaN();
 }
 
-void places(const RecordingFit::Rows& rows, ResidualViews& out) {
+void places(const RecordingRows& rows, ResidualViews& out) {
   std::map<int, std::pair<double, double>> sums;
   for (Eigen::Index r = 0; r < rows.error.size(); ++r) {
     if (!rows.tells_length(r)) continue;
@@ -71,7 +71,7 @@ void amplitudes(const Frames& frames, ResidualViews& out) {
 }
 
 // Returns the sum over rows of |Fourier transform|^2 at each frequency, of the rows' deviations from their means.
-Eigen::VectorXd spectrum(const Eigen::VectorXd& values, const RecordingFit::Rows& rows, const Eigen::VectorXd& time,
+Eigen::VectorXd spectrum(const Eigen::VectorXd& values, const RecordingRows& rows, const Eigen::VectorXd& time,
                          const std::vector<double>& frequency) {
   const Eigen::Index n = time.size(), size = rows.offsets[1], stride = std::max<Eigen::Index>(1, size / kMostRows);
   const Eigen::Index kept = (size + stride - 1) / stride;
@@ -89,7 +89,7 @@ Eigen::VectorXd spectrum(const Eigen::VectorXd& values, const RecordingFit::Rows
   return power;
 }
 
-void frequencies(const RecordingFit::Rows& rows, const Frames& frames, ResidualViews& out) {
+void frequencies(const RecordingRows& rows, const Frames& frames, ResidualViews& out) {
   const Eigen::Index n = frames.time.size();
   const double duration = frames.time[n - 1] - frames.time[0];
   const int count = std::min(kMostFrequencies, static_cast<int>(n / 2));
@@ -115,7 +115,7 @@ void frequencies(const RecordingFit::Rows& rows, const Frames& frames, ResidualV
 
 }  // namespace
 
-ResidualViews residual_views(const RecordingFit& recording_fit, const RecordingFit::Rows& rows) {
+ResidualViews residual_views(const RecordingFit& recording_fit, const RecordingRows& rows) {
   ResidualViews out;
   const Frames frames = by_frame(recording_fit, rows);
   for (Eigen::Index t = 0; t < frames.time.size(); ++t) {

@@ -22,7 +22,7 @@ std::string format(const char* pattern, double a, double b = 0.0, double c = 0.0
 }
 
 // Returns the mean square error in sigmas of each mesh node that was seen.
-std::map<int, double> node_errors(const RecordingFit::Rows& rows) {
+std::map<int, double> node_errors(const RecordingRows& rows) {
   std::map<int, std::pair<double, double>> sums;
   for (Eigen::Index r = 0; r < rows.error.size(); ++r) {
     if (!rows.tells_length(r)) continue;
@@ -46,7 +46,7 @@ std::string region_around(const RecordingFit& recording_fit, const std::vector<i
 
 }  // namespace
 
-std::string where_it_fails(const RecordingFit& recording_fit, const RecordingFit::Rows& rows) {
+std::string where_it_fails(const RecordingFit& recording_fit, const RecordingRows& rows) {
   const std::map<int, double> errors = node_errors(rows);
   double mean = 0.0;
   for (const auto& [node, error] : errors) mean += error / static_cast<double>(errors.size());
@@ -68,7 +68,7 @@ std::string where_it_fails(const RecordingFit& recording_fit, const RecordingFit
          format(": %.1f sigma rms there, %.1f over the body", std::sqrt(square), std::sqrt(mean));
 }
 
-std::string when_it_fails(const RecordingFit& recording_fit, const RecordingFit::Rows& rows) {
+std::string when_it_fails(const RecordingFit& recording_fit, const RecordingRows& rows) {
   const auto frames = static_cast<Eigen::Index>(rows.offsets.size()) - 1;
   Eigen::VectorXd error(frames), motion(frames);
   for (Eigen::Index t = 0; t < frames; ++t) {

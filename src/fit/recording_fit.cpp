@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "fit/coordinate_scan.hpp"
+#include "fit/shared_parameters.hpp"
 #include "fit/variable_projection.hpp"
 #include "forward/basis_seed_vectors.hpp"
 #include "forward/extra_force.hpp"
@@ -27,12 +28,9 @@ constexpr double kSettled = 0.2;       // posterior standard deviations: shorter
 constexpr double kWorthwhile = 2e-3;   // relative fall of the cost that quick runs must promise before another full one
 constexpr double kGain = 1e-4;         // relative fall of the cost that a full run must bring
 constexpr double kNarrower = 4.0;      // posterior standard deviations: span of the next fit's sigma points
-constexpr double kBaseSpread = 0.05;   // prior standard deviations, for parameters that a smaller model has too
-constexpr double kAddedSpread = 0.25;  // prior standard deviations, for the others
 constexpr double kProbe = 0.02;        // prior standard deviations: how far a parameter is moved for its sensitivity
 constexpr int kBorrowed = 48;          // displacements of another fit's runs that train a model
 constexpr int kSeen = 24;              // likewise, of the other model at first order
-constexpr Eigen::Index kShifted = 12;  // lowest modes whose frequencies tell by how much a parameter shifts them
 constexpr int kMostSolves = 4;         // of a projection, whose robust weights follow the fit
 constexpr double kGainOfSolve = 0.01;  // relative fall of the cost that is worth another one
 
@@ -124,7 +122,7 @@ std::shared_ptr<const RecordingFit> RecordingFit::linearised(const ModelSettings
   std::vector<DynamicState> run = FullModel(model_, full).states(own, start, instants, recording_.checkpoint);
   const std::shared_ptr<RecordingFit> out(new RecordingFit(settings, *this, static_cast<const BasisOptions*>(nullptr)));
   const ParameterSpace& parameters = out->model_.parameters();
-  const Eigen::VectorXd at = out->extend(*this, w), theta = parameters.theta(at);
+  const Eigen::VectorXd at = SharedParameters(*out, *this).extend(w), theta = parameters.theta(at);
   LinearisedModel::Options options;
   options.stride = std::max<std::size_t>(1, instants.size() / recording_.frames.size());
   options.checkpoint = recording_.checkpoint;
@@ -190,32 +188,13 @@ FitProblem RecordingFit::problem(const ForwardModel& forward, const std::vector<
   return {model_, forward, operators_, frames, start, recording_.checkpoint};
 }
 
-RecordingFit::Rows RecordingFit::rows(const Eigen::VectorXd& w) const {
-  const FitProblem all = problem(quick(), recording_.frames);
+RecordingRows RecordingFit::rows(const Eigen::VectorXd& w) const {
   std::vector<Prediction> predictions;
-  Rows out;
-  out.offsets.push_back(0);
-  run_freely(all, w, [&](const Frame& frame, const Eigen::VectorXd& theta, const Eigen::Ref<const Eigen::VectorXd>& u) {
-    predictions.push_back(predict_frame(model_, operators_, frame, theta, u));
-    out.offsets.push_back(out.offsets.back() + predictions.back().measured.size());
-  });
-  for (Eigen::VectorXd* v : {&out.error, &out.predicted, &out.used, &out.sigma})
-    *v = Eigen::VectorXd::Zero(out.offsets.back());
-  out.nodes = Eigen::VectorXi::Zero(out.offsets.back());
-  for (std::size_t k = 0; k < predictions.size(); ++k) {
-    const Prediction& p = predictions[k];
-    const Eigen::VectorXd weight = row_weights(p);
-    for (Eigen::Index i = 0; i < p.measured.size(); ++i) {
-      const Eigen::Index row = out.offsets[k] + i;
-      if (!(weight[i] > 0.0) || !std::isfinite(p.sigma[i])) continue;
-      out.sigma[row] = p.sigma[i];
-      out.nodes[row] = p.nodes[i];
-      out.used[row] = std::sqrt(weight[i]);
-      out.predicted[row] = p.predicted[i] / p.sigma[i];
-      out.error[row] = out.used[row] * (p.measured[i] - p.predicted[i]) / p.sigma[i];
-    }
-  }
-  return out;
+  run_freely(problem(quick(), recording_.frames), w,
+             [&](const Frame& frame, const Eigen::VectorXd& theta, const Eigen::Ref<const Eigen::VectorXd>& u) {
+               predictions.push_back(predict_frame(model_, operators_, frame, theta, u));
+             });
+  return recording_rows(predictions);
 }
 
 Eigen::VectorXd RecordingFit::predicted(const Eigen::VectorXd& w) const {
@@ -241,7 +220,8 @@ std::vector<Misfit> RecordingFit::show(const Eigen::VectorXd& w, const FreeFrame
                   });
 }
 
-Eigen::MatrixXd RecordingFit::rows_along(const Eigen::VectorXd& w, const Eigen::MatrixXd& shapes, const Rows& rows) const {
+Eigen::MatrixXd RecordingFit::rows_along(const Eigen::VectorXd& w, const Eigen::MatrixXd& shapes,
+                                         const RecordingRows& rows) const {
   const FitProblem all = problem(quick(), recording_.frames);
   const Eigen::VectorXd theta = model_.parameters().theta(w);
   const auto run = quick().begin(theta, all.start);
@@ -399,70 +379,6 @@ std::function<double(const Eigen::VectorXd&)> RecordingFit::cost_of(double share
   return [this, room, &frames](const Eigen::VectorXd& w) { return free_fit(problem(quick(), frames), w).cost; };
 }
 
-std::vector<Eigen::Index> RecordingFit::shared_with(const RecordingFit& base) const {
-  std::vector<Eigen::Index> shared;
-  for (std::size_t i = 0; i < model_.parameters().free().size(); ++i) {
-    if (base.index(model_.parameters().free()[i].name) >= 0) shared.push_back(static_cast<Eigen::Index>(i));
-  }
-  return shared;
-}
-
-std::vector<Eigen::Index> RecordingFit::tuning_shared_with(const RecordingFit& base) const {
-  const Eigen::VectorXd w = model_.parameters().prior_mean(), std = model_.parameters().prior_std();
-  std::vector<Eigen::Index> tuning;
-  for (const Eigen::Index i : shared_with(base)) {
-    if (!model_.same_answer(model_.parameters().theta(w),
-                            model_.parameters().theta(w + std[i] * Eigen::VectorXd::Unit(w.size(), i))))
-      tuning.push_back(i);
-  }
-  return tuning;
-}
-
-std::vector<Eigen::Index> RecordingFit::scanned_shared_with(const RecordingFit& base) const {
-  std::vector<Eigen::Index> tuning = tuning_shared_with(base);
-  const auto* const linear = dynamic_cast<const ReducedModel*>(forward_.get());
-  if (linear == nullptr || tuning.size() < 2) return tuning;
-  const Eigen::VectorXd w = model_.parameters().prior_mean(), std = model_.parameters().prior_std();
-  const auto lowest = [&](const Eigen::VectorXd& there) {
-    const Eigen::ArrayXd square = linear->modes(model_.parameters().theta(there))->square;
-    return Eigen::ArrayXd(
-        square.head(std::min(kShifted, square.size())).max(ReducedModes::kRigid * square.maxCoeff()).log());
-  };
-  const Eigen::ArrayXd here = lowest(w);
-  Eigen::VectorXd shift = Eigen::VectorXd::Zero(w.size());
-  for (const Eigen::Index i : tuning) {
-    const Eigen::ArrayXd there = lowest(w + std[i] * Eigen::VectorXd::Unit(w.size(), i));
-    const Eigen::Index modes = std::min(here.size(), there.size());
-    shift[i] = (there.head(modes) - here.head(modes)).abs().mean();
-  }
-  Eigen::Index most = 0;
-  shift.maxCoeff(&most);
-  const auto weaker = [&](Eigen::Index i) { return i != most && shift[i] > 0.0; };
-  tuning.erase(std::remove_if(tuning.begin(), tuning.end(), weaker), tuning.end());
-  return tuning;
-}
-
-std::vector<Eigen::Index> RecordingFit::acting_shared_with(const RecordingFit& base) const {
-  std::vector<Eigen::Index> acting = shared_with(base);
-  for (const Eigen::Index i : tuning_shared_with(base)) acting.erase(std::find(acting.begin(), acting.end(), i));
-  return acting;
-}
-
-Eigen::VectorXd RecordingFit::extend(const RecordingFit& base, const Eigen::VectorXd& w) const {
-  Eigen::VectorXd out = model_.parameters().prior_mean();
-  for (const Eigen::Index i : shared_with(base)) {
-    out[i] = w[base.index(model_.parameters().free()[static_cast<std::size_t>(i)].name)];
-  }
-  return out;
-}
-
-Eigen::VectorXd RecordingFit::spread_beyond(const RecordingFit& base) const {
-  const Eigen::VectorXd prior = model_.parameters().prior_std();
-  Eigen::VectorXd spread = kAddedSpread * prior;
-  for (const Eigen::Index i : shared_with(base)) spread[i] = kBaseSpread * prior[i];
-  return spread;
-}
-
 Eigen::Index RecordingFit::index(const std::string& parameter) const {
   const auto& free = model_.parameters().free();
   for (std::size_t i = 0; i < free.size(); ++i) {
@@ -477,55 +393,6 @@ FittedModel fit_recording(std::unique_ptr<RecordingFit> recording_fit, const Eig
   out.rows = recording_fit->rows(out.fit.w);
   out.recording_fit = std::move(recording_fit);
   return out;
-}
-
-Eigen::VectorXd motion_of(const RecordingFit::Rows& rows) {
-  Eigen::VectorXd out = Eigen::VectorXd::Zero(rows.predicted.size());
-  const Eigen::Index first = rows.offsets[1];
-  for (std::size_t k = 0; k + 1 < rows.offsets.size(); ++k) {
-    const Eigen::Index from = rows.offsets[k], size = rows.offsets[k + 1] - from;
-    if (size == first) out.segment(from, size) = rows.predicted.segment(from, size) - rows.predicted.head(first);
-  }
-  return out;
-}
-
-double structured_squares(const RecordingFit::Rows& rows) {
-  return std::max(0.0, rows.error.squaredNorm() - rows.count());
-}
-
-namespace {
-
-// Returns the root mean square of a value [m] over the rows of lengths that `counts` takes.
-template <typename Counts, typename Value>
-double rms_of_lengths(const RecordingFit::Rows& rows, const Counts& counts, const Value& value) {
-  double sum = 0.0, count = 0.0;
-  for (std::size_t k = 0; k + 1 < rows.offsets.size(); ++k) {
-    if (!counts(k)) continue;
-    for (Eigen::Index r = rows.offsets[k]; r < rows.offsets[k + 1]; ++r) {
-      if (!rows.tells_length(r)) continue;
-      sum += std::pow(value(r), 2);
-      count += 1.0;
-    }
-  }
-  return count > 0.0 ? std::sqrt(sum / count) : 0.0;
-}
-
-}  // namespace
-
-double rms_error(const RecordingFit::Rows& rows, const Recording& recording, bool held_out) {
-  return rms_of_lengths(
-      rows, [&](std::size_t frame) { return recording.held_out(frame) == held_out; },
-      [&](Eigen::Index r) { return rows.sigma[r] * rows.error[r]; });
-}
-
-double rms_error(const RecordingFit::Rows& rows) {
-  return rms_of_lengths(
-      rows, [](std::size_t) { return true; }, [&](Eigen::Index r) { return rows.sigma[r] * rows.error[r]; });
-}
-
-double noise_floor(const RecordingFit::Rows& rows) {
-  return rms_of_lengths(
-      rows, [](std::size_t) { return true; }, [&](Eigen::Index r) { return rows.sigma[r]; });
 }
 
 }  // namespace tissue_stiffness

@@ -9,6 +9,7 @@
 #include "fit/batch_fit.hpp"
 #include "fit/corrected_surrogate.hpp"
 #include "fit/free_run.hpp"
+#include "fit/recording_rows.hpp"
 #include "forward/hyper_basis.hpp"
 #include "forward/reduced_model.hpp"
 #include "tissue_stiffness/fit/recording.hpp"
@@ -43,23 +44,9 @@ class RecordingFit {
   const Model& model() const { return model_; }
   const Recording& recording() const { return recording_; }
 
-  /// These are all rows of all frames, in sigmas. `used` is 0 where a row says nothing, else the root of its robust weight.
-  struct Rows {
-    Eigen::VectorXd error;      ///< (measured - predicted) / sigma, times used
-    Eigen::VectorXd predicted;  ///< predicted / sigma
-    Eigen::VectorXd used;
-    Eigen::VectorXd sigma;              ///< [m], or [N] of a force
-    Eigen::VectorXi nodes;              ///< nearest mesh node, or kForceRow
-    std::vector<Eigen::Index> offsets;  ///< first row of each frame, and the number of rows at the end
-
-    /// Returns the number of rows that say something.
-    double count() const { return static_cast<double>((used.array() > 0.0).count()); }
-    /// Returns whether a row says something of a length, and not of a force.
-    bool tells_length(Eigen::Index row) const { return used[row] > 0.0 && nodes[row] != kForceRow; }
-  };
   /// Returns the rows of the free run at w. A nonlinear model takes a quick run, corrected by what quick runs were off at
   /// the last full run. Only fit() and borrow() change which run that is.
-  Rows rows(const Eigen::VectorXd& w) const;
+  RecordingRows rows(const Eigen::VectorXd& w) const;
   /// Returns what the free run at w predicts for each row, over sigma; 0 where that is not finite.
   Eigen::VectorXd predicted(const Eigen::VectorXd& w) const;
   /// Shows `visit` each frame of the free run at w, with the displacement of every node. A nonlinear model runs in full.
@@ -76,7 +63,7 @@ class RecordingFit {
   }
   /// Returns d rows / d amplitude of each of `shapes` (3n x count), as a further displacement of the free run at w, N x
   /// count.
-  Eigen::MatrixXd rows_along(const Eigen::VectorXd& w, const Eigen::MatrixXd& shapes, const Rows& rows) const;
+  Eigen::MatrixXd rows_along(const Eigen::VectorXd& w, const Eigen::MatrixXd& shapes, const RecordingRows& rows) const;
   /// Fits the training frames. `rival` is explained at fit_batch. A nonlinear model ends where quick runs promise no
   /// better.
   BatchFit fit(const Eigen::VectorXd& start, const Eigen::VectorXd& spread, double rival = no_rival);
@@ -108,25 +95,11 @@ class RecordingFit {
 
   /// Returns what is linear in the model, in a reduced basis.
   std::shared_ptr<const ReducedModel> reduced() const;
+  /// Returns whether all runs are those of reduced().
+  bool linear() const { return dynamic_cast<const ReducedModel*>(forward_.get()) != nullptr; }
 
   /// Returns the index of a free parameter by name; -1 when there is none.
   Eigen::Index index(const std::string& parameter) const;
-  /// Returns the indices of the free parameters that `base`, a model with fewer effects, has too.
-  std::vector<Eigen::Index> shared_with(const RecordingFit& base) const;
-  /// Returns those of them that change how the body answers a load, or when that is seen. What acts on the body is left
-  /// out.
-  std::vector<Eigen::Index> tuning_shared_with(const RecordingFit& base) const;
-  /// Returns those of them along which a fit's start is scanned. A run that rings has other minima where its frequencies
-  /// shift. Among the parameters that shift frequencies, only the one whose prior shifts them most is scanned, because the
-  /// fit moves the others from there.
-  std::vector<Eigen::Index> scanned_shared_with(const RecordingFit& base) const;
-  /// Returns those that are not tuning: what acts on the body.
-  std::vector<Eigen::Index> acting_shared_with(const RecordingFit& base) const;
-  /// Converts `w` of `base` to the coordinates of this model; parameters that `base` lacks stay at their prior.
-  Eigen::VectorXd extend(const RecordingFit& base, const Eigen::VectorXd& w) const;
-  /// Returns the spread of the sigma points for a first fit from the fit of `base`: narrow in its parameters, wide in the
-  /// others.
-  Eigen::VectorXd spread_beyond(const RecordingFit& base) const;
 
  private:
   RecordingFit(const ModelSettings& settings, const RecordingFit& relative, const BasisOptions* basis);
@@ -166,25 +139,11 @@ class RecordingFit {
 struct FittedModel {
   std::unique_ptr<RecordingFit> recording_fit;
   BatchFit fit;
-  RecordingFit::Rows rows;
+  RecordingRows rows;
 };
 
 /// Fits the training frames from `start`, with sigma points `spread` prior standard deviations wide, and runs freely at the
 /// fit.
 FittedModel fit_recording(std::unique_ptr<RecordingFit> recording_fit, const Eigen::VectorXd& start, double spread);
-
-/// Returns by how much the rows' predictions differ from the first frame's [sigma]; 0 in frames with another number of
-/// rows.
-Eigen::VectorXd motion_of(const RecordingFit::Rows& rows);
-
-/// Returns the sum of the rows' squared errors beyond the stated noise [sigma^2], or 0.
-double structured_squares(const RecordingFit::Rows& rows);
-
-/// Returns the root mean square of the lengths' errors over held-out (true) or training (false) frames [m]; 0 without any.
-double rms_error(const RecordingFit::Rows& rows, const Recording& recording, bool held_out);
-/// Returns the same over all frames.
-double rms_error(const RecordingFit::Rows& rows);
-/// Returns the root mean square of the noise that the model file states [m].
-double noise_floor(const RecordingFit::Rows& rows);
 
 }  // namespace tissue_stiffness

@@ -29,8 +29,8 @@ std::string report_html(const Results& results, const Showing& showing);
 /// Returns the report's table of several recordings; empty when there is one.
 std::string recordings_table(const std::vector<RecordingRecord>& recordings);
 
-/// Writes the three files, but no `estimates.csv` of several recordings, each completely or not at all, with results.json last. Makes the folder when it is missing.
-/// Throws InputError when a file cannot be written.
+/// Writes the three files, but no `estimates.csv` of several recordings, each completely or not at all, with results.json
+/// last. Makes the folder when it is missing. Throws InputError when a file cannot be written.
 void write_results(const Results& results, const Showing& showing, const std::string& directory);
 
 /// Makes the folder when it is missing. Throws InputError when that is not possible.

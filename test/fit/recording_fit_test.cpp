@@ -1,4 +1,4 @@
-// A model's free run against a recording, and what is told of its rows.
+// A model's free run against a recording.
 #include "fit/recording_fit.hpp"
 
 #include <gtest/gtest.h>
@@ -6,58 +6,13 @@
 #include <cmath>
 
 #include "../estimation/bar.hpp"
+#include "fit/shared_parameters.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
 constexpr int kFrames = 36;
 constexpr double kTruth = 30e3;
-
-// Five frames of two rows each, of which the last has three; two rows say nothing, one is of a force.
-RecordingFit::Rows some_rows() {
-  RecordingFit::Rows rows;
-  rows.offsets = {0, 2, 4, 6, 8, 11};
-  rows.error = (Eigen::VectorXd(11) << 1, 2, 3, 4, 0, 6, 7, 8, 9, 10, 11).finished();
-  rows.predicted = (Eigen::VectorXd(11) << 1, 1, 2, 3, 5, 8, 13, 21, 34, 55, 89).finished();
-  rows.used = (Eigen::VectorXd(11) << 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 0).finished();
-  rows.sigma = (Eigen::VectorXd(11) << 2, 2, 2, 2, 0, 1, 1, 1, 1, 1, 0).finished();
-  rows.nodes = (Eigen::VectorXi(11) << 0, 1, 2, 3, 0, kForceRow, 4, 5, 6, 7, 0).finished();
-  return rows;
-}
-
-TEST(RecordingRows, AreCountedWhereTheySaySomething) {
-  EXPECT_EQ(some_rows().count(), 9.0);
-}
-
-TEST(RecordingRows, MoveFromTheFirstFrame) {
-  const Eigen::VectorXd expected = (Eigen::VectorXd(11) << 0, 0, 1, 2, 4, 7, 12, 20, 0, 0, 0).finished();
-  EXPECT_EQ(motion_of(some_rows()), expected);
-}
-
-TEST(RecordingRows, LeaveBeyondTheNoiseWhatTheirErrorsAreBeyondOne) {
-  RecordingFit::Rows rows = some_rows();
-  EXPECT_NEAR(structured_squares(rows), rows.error.squaredNorm() - 9.0, 1e-12);
-  rows.error *= 0.01;
-  EXPECT_EQ(structured_squares(rows), 0.0);
-}
-
-TEST(RecordingRows, HaveErrorsInMetresThatLeaveOutForces) {
-  const RecordingFit::Rows rows = some_rows();
-  const double first = 4.0 * (1.0 + 4.0 + 9.0 + 16.0), last = 49.0 + 64.0 + 81.0 + 100.0;
-  EXPECT_NEAR(rms_error(rows), std::sqrt((first + last) / 8.0), 1e-12);
-  EXPECT_NEAR(noise_floor(rows), std::sqrt((4.0 * 4.0 + 4.0) / 8.0), 1e-12);
-  Recording recording;
-  recording.frames.resize(5);  // of which 9 * 2 / 5 is the third ninth's, and 9 * 3 / 5 the sixth's
-  EXPECT_NEAR(rms_error(rows, recording, true), std::sqrt((49.0 + 64.0) / 2.0), 1e-12);
-  EXPECT_NEAR(rms_error(rows, recording, false), std::sqrt((first + 81.0 + 100.0) / 6.0), 1e-12);
-}
-
-TEST(RecordingRows, OfNoLengthHaveNoError) {
-  RecordingFit::Rows rows = some_rows();
-  rows.used.setZero();
-  EXPECT_EQ(rms_error(rows), 0.0);
-  EXPECT_EQ(noise_floor(rows), 0.0);
-}
 
 class RecordingFitTest : public ::testing::Test {
  protected:
@@ -80,7 +35,7 @@ class RecordingFitTest : public ::testing::Test {
 TEST_F(RecordingFitTest, HasRowsOfTheNoiseAtTheTruth) {
   const Recording recording = film({}, kNoise);
   const RecordingFit fit(model(), bar_mesh(), recording);
-  const RecordingFit::Rows rows = fit.rows(at(kTruth));
+  const RecordingRows rows = fit.rows(at(kTruth));
   EXPECT_EQ(rows.offsets.size(), static_cast<std::size_t>(kFrames + 1));
   EXPECT_EQ(rows.offsets.back(), rows.error.size());
   EXPECT_EQ(rows.count(), static_cast<double>(rows.error.size()));
@@ -94,7 +49,7 @@ TEST_F(RecordingFitTest, HasRowsOfTheNoiseAtTheTruth) {
 TEST_F(RecordingFitTest, HasRowsAlongADisplacement) {
   const Recording recording = film({}, kNoise);
   const RecordingFit fit(model(), bar_mesh(), recording);
-  const RecordingFit::Rows rows = fit.rows(at(kTruth));
+  const RecordingRows rows = fit.rows(at(kTruth));
   Eigen::MatrixXd shapes = Eigen::MatrixXd::Zero(3 * bar_mesh().node_count(), 2);
   for (Eigen::Index i = 0; i < shapes.rows(); i += 3) shapes(i, 0) = 1.0;
   shapes.col(1).setConstant(-2.0);
@@ -109,9 +64,9 @@ TEST_F(RecordingFitTest, HasRowsAlongADisplacement) {
 TEST_F(RecordingFitTest, SolvesForWhatActsOnTheBody) {
   const Recording recording = film({"gravity: {acceleration: [0.5, 0, -0.3]}"}, 0.01 * kNoise);
   const RecordingFit fit(model({"gravity: {acceleration: {mean: [0, 0, 0], std: 2}}"}), bar_mesh(), recording);
-  const std::vector<Eigen::Index> acting = fit.acting_shared_with(fit);
+  const std::vector<Eigen::Index> acting = SharedParameters(fit, fit).acting();
   ASSERT_EQ(acting, (std::vector<Eigen::Index>{1, 2, 3}));
-  ASSERT_EQ(fit.tuning_shared_with(fit), std::vector<Eigen::Index>{0});
+  ASSERT_EQ(SharedParameters(fit, fit).tuning(), std::vector<Eigen::Index>{0});
   const auto start = [](double young_modulus) { return Eigen::Vector4d(std::log(young_modulus), 0.0, 0.0, 0.0); };
   const RecordingFit::Place found = fit.project({start(kTruth)}, acting, 1.0);
   EXPECT_LT((found.w - start(kTruth) - Eigen::Vector4d(0.0, 0.5, 0.0, -0.3)).cwiseAbs().maxCoeff(), 0.02);
@@ -132,8 +87,8 @@ TEST_F(RecordingFitTest, ScansWhatShiftsTheFrequenciesMost) {
     effects.push_back("added_mass: {region: tip, mass: {prior: 0.02, factor: " + mass_factor + "}}");
     effects.emplace_back("mass_damping: {alpha: {prior: 2, factor: 2}}");
     const RecordingFit fit(box_settings(effects), bar_mesh(), recording);
-    EXPECT_EQ(fit.tuning_shared_with(fit), (std::vector<Eigen::Index>{0, 1, 2}));
-    return fit.scanned_shared_with(fit);
+    EXPECT_EQ(SharedParameters(fit, fit).tuning(), (std::vector<Eigen::Index>{0, 1, 2}));
+    return SharedParameters(fit, fit).scanned();
   };
   EXPECT_EQ(scanned(3.0, "1.1"), (std::vector<Eigen::Index>{0, 2}));
   EXPECT_EQ(scanned(1.1, "9"), (std::vector<Eigen::Index>{1, 2}));
@@ -162,12 +117,12 @@ TEST_F(RecordingFitTest, KeepsWhatTwoModelsShare) {
   const RecordingFit more(model({"viscous_damping: {beta: {prior: 1.0e-3, factor: 2}}"}), base);
   EXPECT_EQ(more.index("elasticity.young_modulus"), 0);
   EXPECT_EQ(base.index("viscous_damping.beta"), -1);
-  EXPECT_EQ(more.shared_with(base), std::vector<Eigen::Index>{0});
-  EXPECT_EQ(more.tuning_shared_with(base), std::vector<Eigen::Index>{0});
-  const Eigen::VectorXd w = more.extend(base, at(22e3)), prior = more.model().parameters().prior_mean();
+  EXPECT_EQ(SharedParameters(more, base).all(), std::vector<Eigen::Index>{0});
+  EXPECT_EQ(SharedParameters(more, base).tuning(), std::vector<Eigen::Index>{0});
+  const Eigen::VectorXd w = SharedParameters(more, base).extend(at(22e3)), prior = more.model().parameters().prior_mean();
   EXPECT_EQ(w[0], std::log(22e3));
   EXPECT_EQ(w[1], prior[1]);
-  const Eigen::VectorXd ratio = more.spread_beyond(base).cwiseQuotient(more.model().parameters().prior_std());
+  const Eigen::VectorXd ratio = SharedParameters(more, base).spread().cwiseQuotient(more.model().parameters().prior_std());
   EXPECT_NEAR(ratio[0], 0.05, 1e-12);
   EXPECT_NEAR(ratio[1], 0.25, 1e-12);
 }
@@ -187,7 +142,7 @@ TEST_F(RecordingFitTest, FindsTheModulusUnderFiniteStrain) {
   EXPECT_LT(rms_error(fit.rows(found.w)), 2e-6) << "quick runs agree with the last one in full";
   RecordingFit wider(model({large[0], large[1], "viscous_damping: {beta: {prior: 1.0e-4, factor: 2}}"}), fit);
   wider.borrow(fit);
-  Eigen::VectorXd w = wider.extend(fit, found.w);
+  Eigen::VectorXd w = SharedParameters(wider, fit).extend(found.w);
   EXPECT_TRUE(wider.rows(w).predicted.allFinite());
 }
 
