@@ -44,7 +44,7 @@ RecordingFit extended(const FittedModel& base, const Candidate& candidate) {
   BasisOptions basis;
   basis.per_part = basis.released = kRankingVectors;
   const RecordingFit& known = *base.recording_fit;
-  return {extend_model(known.model().settings(), {candidate.proposal.refine}), known, basis};
+  return {extend_model(known.model().settings(), {candidate.proposal.with_given_shape()}), known, basis};
 }
 
 // Returns Schwarz's penalty for the parameters that the base does not have.

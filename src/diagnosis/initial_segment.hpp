@@ -13,7 +13,7 @@ constexpr double kInitialSegment = 0.3;  // share of the frames
 
 /// A fit of the initial segment only ranks the places where fits of the whole recording may start. Phases that drift apart
 /// hide the minimum from tangents and from fits of a whole recording, but not there. What explains a recording also
-/// explains its initial segment.
+/// explains its initial segment. The shape of what is added stays as proposed (Proposal::with_given_shape).
 struct RankedFit {
   std::map<std::string, double> parameters;  ///< of the base with one proposal more, by name
   /// Sum of squared errors over sigma, plus Schwarz's penalty for what was added to the base.
@@ -24,7 +24,7 @@ struct RankedFit {
 /// places, best first. Throws NumericalError when no place can be run.
 std::vector<RankedFit> scan_initial_segment(const FittedModel& base, const Candidate& candidate);
 
-/// Fits the base with the candidate's proposal, as it is refitted, from each of these places, and returns the best fit.
+/// Fits the base with the candidate's proposal from each of these places, and returns the best fit.
 /// Parameters without a value start at their priors. `rival` is a deviance to be beaten (fit_batch). Throws NumericalError
 /// when a start cannot be run.
 RankedFit fit_initial_segment(const FittedModel& base, const Candidate& candidate,

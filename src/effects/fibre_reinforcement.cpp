@@ -56,6 +56,7 @@ std::vector<Proposal> propose(const ProposalContext& context) {
                            log_normal_prior(scale, 3.0))};
     // Tangents choose between straight directions, because a fit turns them.
     if (!trial.straight) proposal.kind_keys = {"direction"};
+    proposal.shape_keys = {"angle", "tilt"};
     list.push_back(std::move(proposal));
   };
   for (const FibreField::Trial& trial : FibreField::trials(context.mesh)) add(trial);

@@ -77,6 +77,14 @@ std::string Proposal::form() const {
   return out;
 }
 
+EffectEntry Proposal::with_given_shape() const {
+  EffectEntry out = refine;
+  for (auto& [key, argument] : out.arguments) {
+    if (std::count(shape_keys.begin(), shape_keys.end(), key) > 0) argument = *entry.find(key);
+  }
+  return out;
+}
+
 bool Proposal::is_other_kind_of(const Proposal& other) const {
   if (kind_keys.empty() || kind() == other.kind()) return false;
   EffectEntry own = refine, others = other.refine;

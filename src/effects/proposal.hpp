@@ -50,11 +50,15 @@ struct Proposal {
   /// The keys of a direction or a region, which a refit does not change; empty where there is only one. An entry without
   /// such a key is a kind, too: a foundation without a region is the one on the whole surface.
   std::vector<std::string> kind_keys = {};
+  /// The keys of a place or a direction that a refit estimates, and at each value of which a stiffness is projected anew.
+  std::vector<std::string> shape_keys = {};
 
   /// Returns the arguments of these keys as in a model file; empty where there are none.
   std::string kind() const;
   /// Returns the keys of the refit's arguments: a mass on a region has another form than one at a place that is fitted.
   std::string form() const;
+  /// Returns the refit's entry with place and direction as proposed, for fits that only rank.
+  EffectEntry with_given_shape() const;
   /// Returns whether the proposals differ only in their kind.
   bool is_other_kind_of(const Proposal& other) const;
 };

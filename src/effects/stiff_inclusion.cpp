@@ -118,8 +118,11 @@ std::vector<Proposal> propose(const ProposalContext& context) {
         return EffectEntry{"stiff_inclusion", {{"center", center}, {"radius", radius}, {"excess", excess}}};
       };
       list.push_back(
-          {with(center, radius, normal_prior(0.0, 2.0)), "excess",
-           with(normal_prior(center, 0.5 * places.distance), log_normal_prior(radius, 1.5), normal_prior(1.0, 3.0))});
+          {with(center, radius, normal_prior(0.0, 2.0)),
+           "excess",
+           with(normal_prior(center, 0.5 * places.distance), log_normal_prior(radius, 1.5), normal_prior(1.0, 3.0)),
+           {},
+           {"center", "radius"}});
     }
   }
   return list;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <random>
+#include <set>
 
 #include "../box_model.hpp"
 #include "effects/fibre_field.hpp"
@@ -102,6 +103,29 @@ TEST(Proposals, StartARefitThatMovesTheModel) {
       EXPECT_EQ(proposal.refine.effect, spec.name);
     }
   }
+}
+
+// Fits that only rank would project a stiffness anew at each sigma point of a place or a direction.
+TEST(Proposals, AreRankedWithoutAnEstimatedShape) {
+  const TetMesh mesh = bar_mesh(2);
+  const Model base(box_settings(kBase, kObservations), mesh);
+  std::set<std::string> shaped;
+  for (const EffectSpec& spec : effect_specs()) {
+    for (const Proposal& proposal : proposals_of(spec, base)) {
+      const EffectEntry entry = proposal.with_given_shape();
+      const Model model(box_settings(with(entry), kObservations), mesh);
+      EXPECT_TRUE(model.parameters().free().size() >= 2U || model.nonlinear()) << to_yaml(entry);
+      if (!entry.same(proposal.refine)) shaped.insert(spec.name);
+      const Eigen::VectorXd w = model.parameters().prior_mean(), std = model.parameters().prior_std();
+      const Eigen::VectorXd theta = model.parameters().theta(w), moved = model.parameters().theta(w + std);
+      for (const Model::Part& part : model.parts()) {
+        for (const StrainTerm& term : part.terms.strain_stiffness) {
+          for (const int k : term.shape) EXPECT_EQ(part.parameters(moved)[k], part.parameters(theta)[k]) << to_yaml(entry);
+        }
+      }
+    }
+  }
+  EXPECT_EQ(shaped, (std::set<std::string>{"fibre_reinforcement", "stiff_inclusion"}));
 }
 
 TEST(Proposals, AreNotMadeForWhatIsThere) {
