@@ -4,6 +4,7 @@ import collections
 import json
 import multiprocessing
 import os
+import random
 import shutil
 import subprocess
 import sys
@@ -32,10 +33,14 @@ def truth_folder(arguments, name):
     return os.path.join(arguments.output, 'truths', name)
 
 
+def simulated(arguments, name):
+    return os.path.exists(os.path.join(truth_folder(arguments, name), 'truth.json'))
+
+
 def simulate_truths(arguments, names):
     """One after the other; one that is there stays."""
     script = os.path.join(arguments.root, 'benchmark/hidden_effects/foreign_truths.py')
-    todo = [name for name in names if not os.path.exists(os.path.join(truth_folder(arguments, name), 'truth.json'))]
+    todo = [name for name in names if not simulated(arguments, name)]
     for k, name in enumerate(todo):
         folder = truth_folder(arguments, name)
         os.makedirs(folder, exist_ok=True)
@@ -309,21 +314,24 @@ def page(arguments, rows, doc):
     figures_page = figures(good)
     classes = collections.Counter(row['class'] for row in good)
     bins, _ = reliability(statements(good))
+    name = 'hidden_effects_foreign' + ('' if arguments.sample is None else '_sample')
+    which = '' if arguments.sample is None else ' --sample %d' % arguments.sample
     lines = ['# How honest a diagnosis of foreign recordings is', '',
-             '`scripts/hidden_effects foreign` writes this page. `benchmark/hidden_effects/foreign_truths.py` says what is '
+             '`scripts/hidden_effects foreign%s` writes this page. ' % which +
+             '`benchmark/hidden_effects/foreign_truths.py` says what is '
              'simulated. `foreign_draws.py` says what is made wrong and what an honest answer is. '
-             '`doc/hidden_effects_foreign.json` holds the result of each draw.', '',
+             '`doc/%s.json` holds the result of each draw.' % name, '',
              'Draws: %s.' % ', '.join('%d %s' % (count, name) for name, count in classes.items()),
              '', *figures_page, '', '* failed: %d of %d' % (len(broken), len(rows))]
     lines += ['  * draw %d, %s, %s: %s' % (row['number'], row['truth'], row['kind'], row['failed']) for row in broken]
     lines += ['', '## By what is wrong', ''] + by_kind(good)
     lines += ['', '## What is named first', '', 'The table counts all clean recordings, and the others '
               'where the given model leaves a misfit.', '',
-              '![confusion](hidden_effects_foreign.png)', ''] + confusion_table(names, found, counts)
-    lines += ['', '## What is stated and what is so', '', '![reliability](hidden_effects_foreign_reliability.png)', '',
+              '![confusion](%s.png)' % name, ''] + confusion_table(names, found, counts)
+    lines += ['', '## What is stated and what is so', '', '![reliability](%s_reliability.png)' % name, '',
               '| stated | is so | statements |', '|---|---|---|'] + ['| %.2f | %.2f | %d |' % row for row in bins]
     lines += ['', '## Every draw that went wrong', ''] + failures(good)
-    base = os.path.join(doc, 'hidden_effects_foreign')
+    base = os.path.join(doc, name)
     with open(base + '.md', 'w') as file:
         file.write('\n'.join(lines) + '\n')
     with open(base + '.json', 'w') as file:
@@ -346,6 +354,8 @@ def read_rows(path):
 def parse():
     parser = argparse.ArgumentParser(prog='hidden_effects foreign')
     parser.add_argument('--draws', type=int, help='only the first so many')
+    parser.add_argument('--sample', type=int, metavar='SEED',
+                        help='a random order, of the truths that are there: what is done by any time is a random sample')
     parser.add_argument('--classes', help='only these: %s' % ','.join(foreign_draws.COUNTS))
     parser.add_argument('--jobs', type=int, default=os.cpu_count())
     parser.add_argument('--simulate-only', action='store_true', help='only the truths that the draws need')
@@ -361,13 +371,17 @@ def main():
     arguments = parse()
     os.makedirs(arguments.output, exist_ok=True)
     classes = (arguments.classes or ','.join(foreign_draws.COUNTS)).split(',')
-    planned = [drawn for drawn in foreign_draws.draw_list() if drawn['class'] in classes][:arguments.draws]
+    planned = [drawn for drawn in foreign_draws.draw_list() if drawn['class'] in classes]
+    if arguments.sample is not None:
+        planned = [drawn for drawn in planned if simulated(arguments, drawn['truth'])]
+        random.Random(arguments.sample).shuffle(planned)
+    planned = planned[:arguments.draws]
     needed = {drawn['truth'] for drawn in planned}
     if not arguments.page_only:
         simulate_truths(arguments, [row[0] for row in truth_list() if row[0] in needed])
     if arguments.simulate_only:
         return
-    kept = os.path.join(arguments.output, 'foreign.jsonl')
+    kept = os.path.join(arguments.output, 'foreign.jsonl' if arguments.sample is None else 'foreign_sample.jsonl')
     if arguments.fresh and os.path.exists(kept):
         os.remove(kept)
     rows = {number: row for number, row in read_rows(kept).items() if number in {drawn['number'] for drawn in planned}}

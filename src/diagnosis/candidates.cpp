@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "effects/registry.hpp"
-#include "fit/shared_parameters.hpp"
+#include "fit/nested_parameters.hpp"
 #include "forward/extra_force.hpp"
 #include "forward/for_each_index.hpp"
 #include "forward/linearised_model.hpp"
@@ -102,7 +102,7 @@ std::vector<Eigen::Index> added_parameters(const RecordingFit& recording_fit, co
 // Reads the tangents of the added parameters of one recording fit; each candidate in turn has `components` columns.
 void read_added_tangents(const RecordingFit& recording_fit, const RecordingFit& base, const Eigen::VectorXd& w,
                          const std::vector<Candidate*>& candidates, const std::function<void(double)>& over) {
-  const Eigen::VectorXd start = SharedParameters(recording_fit, base).extend(w);
+  const Eigen::VectorXd start = NestedParameters(recording_fit, base).extend(w);
   const RecordingRows rest = recording_fit.rows(start);
   const double moves = motion(rest);
   const std::vector<Eigen::Index> added = added_parameters(recording_fit, base);
@@ -255,7 +255,7 @@ Eigen::MatrixXd tangents_of_time_steps(const RecordingFit& recording_fit, const 
   if (!stepped) return Eigen::MatrixXd(rows.error.size(), 0);
   RecordingFit& extended = *stepped;
   extended.borrow(recording_fit);
-  const Eigen::VectorXd start = SharedParameters(extended, recording_fit).extend(w),
+  const Eigen::VectorXd start = NestedParameters(extended, recording_fit).extend(w),
                         std = extended.model().parameters().prior_std();
   const std::vector<Eigen::Index> added = added_parameters(extended, recording_fit);
   const std::optional<Eigen::VectorXd> predicted = prediction(extended, start);

@@ -4,7 +4,7 @@
 
 #include "diagnosis/candidates.hpp"
 #include "diagnosis/comparison_numbers.hpp"
-#include "fit/shared_parameters.hpp"
+#include "fit/nested_parameters.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -73,7 +73,7 @@ Explained compared_residual(const FittedModel& fitted, const std::vector<std::st
   FittedModel joint;
   joint.recording_fit = with_time_steps(recording_fit, fitted.fit.w);
   const RecordingFit& stepped = *joint.recording_fit;
-  const SharedParameters shared(stepped, recording_fit);
+  const NestedParameters shared(stepped, recording_fit);
   const Eigen::VectorXd at = shared.extend(fitted.fit.w), prior = stepped.model().parameters().prior_std();
   const Eigen::VectorXd near = kSpread * prior;
   if (linear) joint.fit = stepped.quick_fit(at + prior.cwiseProduct(u), near);

@@ -5,7 +5,7 @@
 #include "diagnosis/candidates.hpp"
 #include "estimation/mesh_error.hpp"
 #include "fit/coordinate_scan.hpp"
-#include "fit/shared_parameters.hpp"
+#include "fit/nested_parameters.hpp"
 #include "meshing/refine.hpp"
 
 namespace tissue_stiffness {
@@ -45,7 +45,7 @@ FinerMesh finer_mesh(const FittedModel& base, const RecordingFit* known) {
   };
   const auto cost = [&](const Eigen::VectorXd& w) { return change_at(w).squaredNorm(); };
   Eigen::VectorXd w =
-      scan_around(cost, base.fit.w, prior, SharedParameters(*base.recording_fit, *base.recording_fit).tuning()).best;
+      scan_around(cost, base.fit.w, prior, NestedParameters(*base.recording_fit, *base.recording_fit).tuning()).best;
   out.change = change_at(w);
   for (int k = 0; k < kMostMoves; ++k) {
     const Eigen::MatrixXd j = base_tangents(*out.recording_fit, w, kStep * prior, base.rows) * prior.asDiagonal();

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fit/shared_parameters.hpp"
+#include "fit/nested_parameters.hpp"
 #include "settings/extend_model.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
@@ -59,7 +59,7 @@ double penalty(const FittedModel& base, const RecordingFit& recording_fit) {
 std::vector<RankedFit> scan_initial_segment(const FittedModel& base, const Candidate& candidate) {
   const RecordingFit& known = *base.recording_fit;
   const RecordingFit recording_fit = extended(base, candidate);
-  const SharedParameters shared(recording_fit, known);
+  const NestedParameters shared(recording_fit, known);
   const std::vector<Eigen::Index> tuning = shared.scanned(), acting = shared.acting();
   const double complexity = penalty(base, recording_fit);
   std::vector<RankedFit> out;
@@ -79,7 +79,7 @@ RankedFit fit_initial_segment(const FittedModel& base, const Candidate& candidat
   const RecordingFit& known = *base.recording_fit;
   const RecordingFit recording_fit = extended(base, candidate);
   const ParameterSpace& parameters = recording_fit.model().parameters();
-  const SharedParameters shared(recording_fit, known);
+  const NestedParameters shared(recording_fit, known);
   const std::vector<Eigen::Index> tuning = shared.scanned();
   const Eigen::VectorXd spread = shared.spread();
   const double complexity = penalty(base, recording_fit);

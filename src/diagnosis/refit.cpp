@@ -7,7 +7,7 @@
 
 #include "diagnosis/fit_entries.hpp"
 #include "diagnosis/model_comparison.hpp"
-#include "fit/shared_parameters.hpp"
+#include "fit/nested_parameters.hpp"
 #include "settings/extend_model.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
@@ -33,7 +33,7 @@ double tangent_value(const FreeParameter& parameter, const RefitTask& task, Eige
 std::vector<Start> starts(const RecordingFit& recording_fit, const RecordingFit& base, const Eigen::VectorXd& w,
                           const RefitTask& task) {
   const auto& free = recording_fit.model().parameters().free();
-  const SharedParameters shared(recording_fit, base);
+  const NestedParameters shared(recording_fit, base);
   Start prior{shared.extend(w), shared.spread(), {}};
   Start tangent = prior;
   Eigen::Index taken = 0;
@@ -63,7 +63,7 @@ Start start_of(const RecordingFit& recording_fit, const std::map<std::string, do
 // minimum.
 std::optional<Start> quick_start(const RecordingFit& recording_fit, const RecordingFit& base,
                                  const std::vector<Start>& starts, double rival, std::string& reason) {
-  const std::vector<Eigen::Index> tuning = SharedParameters(recording_fit, base).scanned();
+  const std::vector<Eigen::Index> tuning = NestedParameters(recording_fit, base).scanned();
   std::optional<Start> best;
   for (Start start : starts) {
     try {
@@ -107,7 +107,7 @@ void borrow(RecordingFit& recording_fit, const FittedModel& base, const RefitTas
   const RecordingFit& known = *base.recording_fit;
   if (!candidate.linearised) return recording_fit.borrow(known);
   const Eigen::VectorXd w = starts(recording_fit, known, base.fit.w, task).front().w;
-  Eigen::VectorXd seen = SharedParameters(*candidate.linearised, known).extend(base.fit.w);
+  Eigen::VectorXd seen = NestedParameters(*candidate.linearised, known).extend(base.fit.w);
   seen.segment(candidate.parameter, task.amplitude.size()) += task.amplitude;
   recording_fit.borrow(known, w, candidate.linearised.get(), seen);
 }

@@ -11,7 +11,7 @@
 #include "diagnosis/missing_force.hpp"
 #include "diagnosis/try_run.hpp"
 #include "effects/registry.hpp"
-#include "fit/shared_parameters.hpp"
+#include "fit/nested_parameters.hpp"
 #include "forward/for_each_index.hpp"
 #include "types/stop_request.hpp"
 
@@ -129,7 +129,7 @@ bool RefitList::move_to_better_base() {
   const RecordingFit& recording_fit = *screening_.base.recording_fit;
   if (recording_fit.model().nonlinear()) return false;
   RecordingFit::Place start =
-      recording_fit.scan_near(screening_.base.fit.w, SharedParameters(recording_fit, recording_fit).scanned());
+      recording_fit.scan_near(screening_.base.fit.w, NestedParameters(recording_fit, recording_fit).scanned());
   for (const Refit& refit : refits_) {
     RecordingFit::Place place = recording_fit.scan_near(
         recording_fit.model().parameters().coordinates(refit.parameters, screening_.base.fit.w), {});

@@ -10,6 +10,7 @@
 #include "effects/load_error.hpp"
 #include "estimation/force_noise.hpp"
 #include "estimation/mesh_error.hpp"
+#include "estimation/normal_equations.hpp"
 #include "forward/study_model.hpp"
 #include "observation/observation_operator.hpp"
 
@@ -26,25 +27,6 @@ struct InputModels {
 
   explicit InputModels(const Model& model);
   const ReducedModel& linear_form() const { return linear_form_of(*runs); }
-};
-
-/// These are the normal equations of the rows r = y - h(z), z = [w; eta]. z holds the p parameters, then the inputs' errors
-/// in units of their tolerances, then the mesh's. The sums go over the frames, with the noise's precision R^-1.
-struct NormalEquations {
-  Eigen::MatrixXd information;            ///< Z^T R^-1 Z
-  Eigen::VectorXd gradient;               ///< Z^T R^-1 r
-  Eigen::MatrixXd constants;              ///< Z^T R^-1 C; each column of C is one constant's tolerance
-  Eigen::MatrixXd constants_information;  ///< C^T R^-1 C
-  Eigen::VectorXd constants_gradient;     ///< C^T R^-1 r
-  double cost = 0.0;                      ///< r^T R^-1 r
-  double rows = 0.0;
-  std::map<int, double> force_noise;  ///< of each force sensor, its noise's variance over the stated one
-
-  NormalEquations(Eigen::Index size, Eigen::Index constant_count);
-  /// Multiplies all sums, because every frame stands for those that were left out.
-  void repeat(double times);
-  /// Adds the sums of another recording, so many times.
-  void add(const NormalEquations& other, double times);
 };
 
 /// Columns of z that hold one kind of error of one input, in units of its tolerance.

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "fit/coordinate_scan.hpp"
-#include "fit/shared_parameters.hpp"
+#include "fit/nested_parameters.hpp"
 #include "fit/variable_projection.hpp"
 #include "forward/basis_seed_vectors.hpp"
 #include "forward/extra_force.hpp"
@@ -122,7 +122,7 @@ std::shared_ptr<const RecordingFit> RecordingFit::linearised(const ModelSettings
   std::vector<DynamicState> run = FullModel(model_, full).states(own, start, instants, recording_.checkpoint);
   const std::shared_ptr<RecordingFit> out(new RecordingFit(settings, *this, static_cast<const BasisOptions*>(nullptr)));
   const ParameterSpace& parameters = out->model_.parameters();
-  const Eigen::VectorXd at = SharedParameters(*out, *this).extend(w), theta = parameters.theta(at);
+  const Eigen::VectorXd at = NestedParameters(*out, *this).extend(w), theta = parameters.theta(at);
   LinearisedModel::Options options;
   options.stride = std::max<std::size_t>(1, instants.size() / recording_.frames.size());
   options.checkpoint = recording_.checkpoint;

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "../estimation/bar.hpp"
-#include "fit/shared_parameters.hpp"
+#include "fit/nested_parameters.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -64,9 +64,9 @@ TEST_F(RecordingFitTest, HasRowsAlongADisplacement) {
 TEST_F(RecordingFitTest, SolvesForWhatActsOnTheBody) {
   const Recording recording = film({"gravity: {acceleration: [0.5, 0, -0.3]}"}, 0.01 * kNoise);
   const RecordingFit fit(model({"gravity: {acceleration: {mean: [0, 0, 0], std: 2}}"}), bar_mesh(), recording);
-  const std::vector<Eigen::Index> acting = SharedParameters(fit, fit).acting();
+  const std::vector<Eigen::Index> acting = NestedParameters(fit, fit).acting();
   ASSERT_EQ(acting, (std::vector<Eigen::Index>{1, 2, 3}));
-  ASSERT_EQ(SharedParameters(fit, fit).tuning(), std::vector<Eigen::Index>{0});
+  ASSERT_EQ(NestedParameters(fit, fit).tuning(), std::vector<Eigen::Index>{0});
   const auto start = [](double young_modulus) { return Eigen::Vector4d(std::log(young_modulus), 0.0, 0.0, 0.0); };
   const RecordingFit::Place found = fit.project({start(kTruth)}, acting, 1.0);
   EXPECT_LT((found.w - start(kTruth) - Eigen::Vector4d(0.0, 0.5, 0.0, -0.3)).cwiseAbs().maxCoeff(), 0.02);
@@ -87,8 +87,8 @@ TEST_F(RecordingFitTest, ScansWhatShiftsTheFrequenciesMost) {
     effects.push_back("added_mass: {region: tip, mass: {prior: 0.02, factor: " + mass_factor + "}}");
     effects.emplace_back("mass_damping: {alpha: {prior: 2, factor: 2}}");
     const RecordingFit fit(box_settings(effects), bar_mesh(), recording);
-    EXPECT_EQ(SharedParameters(fit, fit).tuning(), (std::vector<Eigen::Index>{0, 1, 2}));
-    return SharedParameters(fit, fit).scanned();
+    EXPECT_EQ(NestedParameters(fit, fit).tuning(), (std::vector<Eigen::Index>{0, 1, 2}));
+    return NestedParameters(fit, fit).scanned();
   };
   EXPECT_EQ(scanned(3.0, "1.1"), (std::vector<Eigen::Index>{0, 2}));
   EXPECT_EQ(scanned(1.1, "9"), (std::vector<Eigen::Index>{1, 2}));
@@ -117,12 +117,12 @@ TEST_F(RecordingFitTest, KeepsWhatTwoModelsShare) {
   const RecordingFit more(model({"viscous_damping: {beta: {prior: 1.0e-3, factor: 2}}"}), base);
   EXPECT_EQ(more.index("elasticity.young_modulus"), 0);
   EXPECT_EQ(base.index("viscous_damping.beta"), -1);
-  EXPECT_EQ(SharedParameters(more, base).all(), std::vector<Eigen::Index>{0});
-  EXPECT_EQ(SharedParameters(more, base).tuning(), std::vector<Eigen::Index>{0});
-  const Eigen::VectorXd w = SharedParameters(more, base).extend(at(22e3)), prior = more.model().parameters().prior_mean();
+  EXPECT_EQ(NestedParameters(more, base).all(), std::vector<Eigen::Index>{0});
+  EXPECT_EQ(NestedParameters(more, base).tuning(), std::vector<Eigen::Index>{0});
+  const Eigen::VectorXd w = NestedParameters(more, base).extend(at(22e3)), prior = more.model().parameters().prior_mean();
   EXPECT_EQ(w[0], std::log(22e3));
   EXPECT_EQ(w[1], prior[1]);
-  const Eigen::VectorXd ratio = SharedParameters(more, base).spread().cwiseQuotient(more.model().parameters().prior_std());
+  const Eigen::VectorXd ratio = NestedParameters(more, base).spread().cwiseQuotient(more.model().parameters().prior_std());
   EXPECT_NEAR(ratio[0], 0.05, 1e-12);
   EXPECT_NEAR(ratio[1], 0.25, 1e-12);
 }
@@ -142,7 +142,7 @@ TEST_F(RecordingFitTest, FindsTheModulusUnderFiniteStrain) {
   EXPECT_LT(rms_error(fit.rows(found.w)), 2e-6) << "quick runs agree with the last one in full";
   RecordingFit wider(model({large[0], large[1], "viscous_damping: {beta: {prior: 1.0e-4, factor: 2}}"}), fit);
   wider.borrow(fit);
-  Eigen::VectorXd w = SharedParameters(wider, fit).extend(found.w);
+  Eigen::VectorXd w = NestedParameters(wider, fit).extend(found.w);
   EXPECT_TRUE(wider.rows(w).predicted.allFinite());
 }
 

@@ -1,4 +1,4 @@
-#include "fit/shared_parameters.hpp"
+#include "fit/nested_parameters.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -12,13 +12,13 @@ constexpr Eigen::Index kShifted = 12;  // lowest modes whose frequencies tell by
 
 }  // namespace
 
-SharedParameters::SharedParameters(const RecordingFit& fit, const RecordingFit& base) : fit_(fit), base_(base) {
+NestedParameters::NestedParameters(const RecordingFit& fit, const RecordingFit& base) : fit_(fit), base_(base) {
   for (std::size_t i = 0; i < fit_.model().parameters().free().size(); ++i) {
     if (base_.index(fit_.model().parameters().free()[i].name) >= 0) all_.push_back(static_cast<Eigen::Index>(i));
   }
 }
 
-std::vector<Eigen::Index> SharedParameters::tuning() const {
+std::vector<Eigen::Index> NestedParameters::tuning() const {
   const Eigen::VectorXd w = fit_.model().parameters().prior_mean(), std = fit_.model().parameters().prior_std();
   std::vector<Eigen::Index> out;
   for (const Eigen::Index i : all_) {
@@ -29,7 +29,7 @@ std::vector<Eigen::Index> SharedParameters::tuning() const {
   return out;
 }
 
-std::vector<Eigen::Index> SharedParameters::scanned() const {
+std::vector<Eigen::Index> NestedParameters::scanned() const {
   std::vector<Eigen::Index> out = tuning();
   if (!fit_.linear() || out.size() < 2) return out;
   const std::shared_ptr<const ReducedModel> linear = fit_.reduced();
@@ -53,13 +53,13 @@ std::vector<Eigen::Index> SharedParameters::scanned() const {
   return out;
 }
 
-std::vector<Eigen::Index> SharedParameters::acting() const {
+std::vector<Eigen::Index> NestedParameters::acting() const {
   std::vector<Eigen::Index> out = all_;
   for (const Eigen::Index i : tuning()) out.erase(std::find(out.begin(), out.end(), i));
   return out;
 }
 
-Eigen::VectorXd SharedParameters::extend(const Eigen::VectorXd& w) const {
+Eigen::VectorXd NestedParameters::extend(const Eigen::VectorXd& w) const {
   Eigen::VectorXd out = fit_.model().parameters().prior_mean();
   for (const Eigen::Index i : all_) {
     out[i] = w[base_.index(fit_.model().parameters().free()[static_cast<std::size_t>(i)].name)];
@@ -67,7 +67,7 @@ Eigen::VectorXd SharedParameters::extend(const Eigen::VectorXd& w) const {
   return out;
 }
 
-Eigen::VectorXd SharedParameters::spread() const {
+Eigen::VectorXd NestedParameters::spread() const {
   const Eigen::VectorXd prior = fit_.model().parameters().prior_std();
   Eigen::VectorXd out = kAddedSpread * prior;
   for (const Eigen::Index i : all_) out[i] = kBaseSpread * prior[i];

@@ -9,9 +9,9 @@ namespace tissue_stiffness {
 
 /// What a model's free parameters have in common with those of `base`, a model with fewer effects or the model itself. Both
 /// fits have to outlive it.
-class SharedParameters {
+class NestedParameters {
  public:
-  SharedParameters(const RecordingFit& fit, const RecordingFit& base);
+  NestedParameters(const RecordingFit& fit, const RecordingFit& base);
 
   /// Returns the indices, in the model, of the free parameters that the base has too.
   const std::vector<Eigen::Index>& all() const { return all_; }
