@@ -284,6 +284,7 @@ std::vector<const Candidate*> RefitSearch::most_evident_initially() {
     if (known.second == nullptr || evidence > known.first) known = {evidence, candidate};
   }
   std::vector<const Candidate*> out;
+  out.reserve(best.size());
   for (const auto& [kind, known] : best) out.push_back(known.second);
   return out;
 }
