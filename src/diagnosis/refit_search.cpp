@@ -56,7 +56,7 @@ class RefitSearch {
   void refit_from_initial_segment();
   void refit_faint_nonlinear_effects();
   std::vector<const Candidate*> most_evident_initially();
-  std::vector<Refit> leaders() const;
+  std::vector<const Refit*> leaders() const;
 
   /// A candidate may be fitted from these places, best first.
   struct Start {
@@ -75,8 +75,9 @@ class RefitSearch {
   bool wide() const {
     return screening_.beside_another ? !screening_.given.test.passes() : screening_.given.test.discrepancy() > 0.0;
   }
+  /// Returns whether to go beyond the tangents: something is to be explained, and a known pair is not far ahead.
   bool continues() const {
-    return wide() && !explained() && !(!refits_.empty() && refits_.best().fitted > kReach * screening_.rival);
+    return wide() && !explained() && (refits_.empty() || refits_.best().fitted <= kReach * screening_.rival);
   }
   /// Returns whether the tangent of a nonlinear effect explains little. Fits of such effects take long.
   bool faint(const Ranked& r) const {
@@ -135,11 +136,11 @@ void RefitSearch::refit_in_turn() {
   refits_.add(rivals);
 }
 
-// Returns up to kLeaders refits, best first. They are copies, because the list changes while they are used.
-std::vector<Refit> RefitSearch::leaders() const {
-  std::vector<Refit> out;
+// Returns up to kLeaders refits, best first. They are valid until more are added.
+std::vector<const Refit*> RefitSearch::leaders() const {
+  std::vector<const Refit*> out;
   for (const Refit& refit : refits_.all()) {
-    if (out.size() < kLeaders) out.push_back(refit);
+    if (out.size() < kLeaders) out.push_back(&refit);
   }
   return out;
 }
@@ -158,12 +159,12 @@ std::map<std::string, double> RefitSearch::parameters_for(const Candidate& candi
 // A variant of a nonlinear model is too slow to run only to be ranked, so its tangent ranks it.
 void RefitSearch::refit_other_tangents() {
   std::vector<RefitTask> list;
-  for (const Refit& leader : leaders()) {
-    const Score known = screening_.scorer->score(leader.candidate->tangent);
+  for (const Refit* leader : leaders()) {
+    const Score known = screening_.scorer->score(leader->candidate->tangent);
     const Candidate* other = nullptr;
     Score best;
     for (const Candidate& candidate : screening_.candidates) {
-      if (candidate.effect != leader.effect || &candidate == leader.candidate) continue;
+      if (candidate.effect != leader->effect || &candidate == leader->candidate) continue;
       Score score = screening_.scorer->score(candidate.tangent);
       if (score.cosine_with(known) > kSameVariant || !candidate.allows(score.amplitude)) continue;
       if (other != nullptr && score.log_bayes_factor <= best.log_bayes_factor) continue;
@@ -218,18 +219,17 @@ std::vector<RefitSearch::Start> RefitSearch::scanned() {
 std::vector<RefitSearch::Start> RefitSearch::variants_of_leaders() {
   std::vector<Start> out;
   const double gain = 2.0 * kComparison.worthwhile * refits_.comparison().noise_variance();
-  for (std::size_t i = 0; i < std::min(kLeaders, refits_.all().size()); ++i) {
-    const Refit& leader = refits_.all()[i];
-    const auto known = explored_.find(leader.effect);
-    if (known != explored_.end() && leader.fitted > known->second - gain) continue;
-    explored_[leader.effect] = leader.fitted;
+  for (const Refit* leader : leaders()) {
+    const auto known = explored_.find(leader->effect);
+    if (known != explored_.end() && leader->fitted > known->second - gain) continue;
+    explored_[leader->effect] = leader->fitted;
     std::vector<std::pair<double, const Candidate*>> variants;
     for (const auto& [candidate, evidence] : initial_evidence()) {
-      if (candidate->effect == leader.effect && candidate != leader.candidate) variants.emplace_back(evidence, candidate);
+      if (candidate->effect == leader->effect && candidate != leader->candidate) variants.emplace_back(evidence, candidate);
     }
     std::sort(variants.begin(), variants.end(), std::greater<>());
     variants.resize(std::min(variants.size(), kVariants));
-    for (const auto& [evidence, candidate] : variants) out.push_back({candidate, {{parameters_for(*candidate, leader)}}});
+    for (const auto& [evidence, candidate] : variants) out.push_back({candidate, {{parameters_for(*candidate, *leader)}}});
   }
   return out;
 }

@@ -4,6 +4,24 @@
 #include <cmath>
 
 namespace tissue_stiffness {
+namespace {
+
+// Returns the root mean square of a value [m] over the rows of lengths that `counts` takes.
+template <typename Counts, typename Value>
+double rms_of_lengths(const RecordingRows& rows, const Counts& counts, const Value& value) {
+  double sum = 0.0, count = 0.0;
+  for (std::size_t k = 0; k + 1 < rows.offsets.size(); ++k) {
+    if (!counts(k)) continue;
+    for (Eigen::Index r = rows.offsets[k]; r < rows.offsets[k + 1]; ++r) {
+      if (!rows.tells_length(r)) continue;
+      sum += std::pow(value(r), 2);
+      count += 1.0;
+    }
+  }
+  return count > 0.0 ? std::sqrt(sum / count) : 0.0;
+}
+
+}  // namespace
 
 RecordingRows recording_rows(const std::vector<Prediction>& predictions) {
   RecordingRows out;
@@ -41,25 +59,6 @@ Eigen::VectorXd motion_of(const RecordingRows& rows) {
 double structured_squares(const RecordingRows& rows) {
   return std::max(0.0, rows.error.squaredNorm() - rows.count());
 }
-
-namespace {
-
-// Returns the root mean square of a value [m] over the rows of lengths that `counts` takes.
-template <typename Counts, typename Value>
-double rms_of_lengths(const RecordingRows& rows, const Counts& counts, const Value& value) {
-  double sum = 0.0, count = 0.0;
-  for (std::size_t k = 0; k + 1 < rows.offsets.size(); ++k) {
-    if (!counts(k)) continue;
-    for (Eigen::Index r = rows.offsets[k]; r < rows.offsets[k + 1]; ++r) {
-      if (!rows.tells_length(r)) continue;
-      sum += std::pow(value(r), 2);
-      count += 1.0;
-    }
-  }
-  return count > 0.0 ? std::sqrt(sum / count) : 0.0;
-}
-
-}  // namespace
 
 double rms_error(const RecordingRows& rows, const Recording& recording, bool held_out) {
   return rms_of_lengths(

@@ -63,6 +63,8 @@ ModalStep::ModalStep(Eigen::VectorXd square, Eigen::VectorXd damping, std::vecto
     throw InputError("viscoelasticity", std::to_string(branches_.size()) + " branches",
                      "at most " + std::to_string(kMostBranches));
   }
+  transition_.assign(static_cast<std::size_t>(states() * (states() + 2)), Eigen::ArrayXd(square_.size()));
+  spectra_.resize(static_cast<std::size_t>(square_.size()));
 }
 
 // Returns the matrix A of (q, q', z)' = A (q, q', z) + (0, f, 0).
@@ -128,7 +130,6 @@ void ModalStep::prepare(double step) {
   if (std::abs(step - step_) < kSameStep) return;
   step_ = step;
   const Eigen::Index n = states();
-  transition_.assign(static_cast<std::size_t>(n * (n + 2)), Eigen::ArrayXd(square_.size()));
   // `e` has columns for the states, for a constant force, and for one that grows from 0 to 1 over the step.
   const auto keep = [&](const auto& e, Eigen::Index mode) {
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -137,7 +138,6 @@ void ModalStep::prepare(double step) {
       entry(i, n + 1)[mode] = e(i, n + 1);
     }
   };
-  spectra_.resize(static_cast<std::size_t>(square_.size()));
   Eigen::MatrixXd sum(n, n + 2);
   for (Eigen::Index mode = 0; mode < square_.size(); ++mode) {
     if (branches_.empty() && oscillates(square_[mode], damping_[mode], step)) {
