@@ -33,6 +33,11 @@ def truth_folder(arguments, name):
     return os.path.join(arguments.output, 'truths', name)
 
 
+def suffix(arguments):
+    """Of the files of a sample, which are kept beside those of all draws."""
+    return '' if arguments.sample is None else '_sample'
+
+
 def simulated(arguments, name):
     return os.path.exists(os.path.join(truth_folder(arguments, name), 'truth.json'))
 
@@ -314,24 +319,24 @@ def page(arguments, rows, doc):
     figures_page = figures(good)
     classes = collections.Counter(row['class'] for row in good)
     bins, _ = reliability(statements(good))
-    name = 'hidden_effects_foreign' + ('' if arguments.sample is None else '_sample')
-    which = '' if arguments.sample is None else ' --sample %d' % arguments.sample
+    base = 'hidden_effects_foreign' + suffix(arguments)
+    option = ' --sample %d' % arguments.sample if suffix(arguments) else ''
     lines = ['# How honest a diagnosis of foreign recordings is', '',
-             '`scripts/hidden_effects foreign%s` writes this page. ' % which +
+             '`scripts/hidden_effects foreign%s` writes this page. ' % option +
              '`benchmark/hidden_effects/foreign_truths.py` says what is '
              'simulated. `foreign_draws.py` says what is made wrong and what an honest answer is. '
-             '`doc/%s.json` holds the result of each draw.' % name, '',
+             '`doc/%s.json` holds the result of each draw.' % base, '',
              'Draws: %s.' % ', '.join('%d %s' % (count, name) for name, count in classes.items()),
              '', *figures_page, '', '* failed: %d of %d' % (len(broken), len(rows))]
     lines += ['  * draw %d, %s, %s: %s' % (row['number'], row['truth'], row['kind'], row['failed']) for row in broken]
     lines += ['', '## By what is wrong', ''] + by_kind(good)
     lines += ['', '## What is named first', '', 'The table counts all clean recordings, and the others '
               'where the given model leaves a misfit.', '',
-              '![confusion](%s.png)' % name, ''] + confusion_table(names, found, counts)
-    lines += ['', '## What is stated and what is so', '', '![reliability](%s_reliability.png)' % name, '',
+              '![confusion](%s.png)' % base, ''] + confusion_table(names, found, counts)
+    lines += ['', '## What is stated and what is so', '', '![reliability](%s_reliability.png)' % base, '',
               '| stated | is so | statements |', '|---|---|---|'] + ['| %.2f | %.2f | %d |' % row for row in bins]
     lines += ['', '## Every draw that went wrong', ''] + failures(good)
-    base = os.path.join(doc, name)
+    base = os.path.join(doc, base)
     with open(base + '.md', 'w') as file:
         file.write('\n'.join(lines) + '\n')
     with open(base + '.json', 'w') as file:
@@ -381,7 +386,7 @@ def main():
         simulate_truths(arguments, [row[0] for row in truth_list() if row[0] in needed])
     if arguments.simulate_only:
         return
-    kept = os.path.join(arguments.output, 'foreign.jsonl' if arguments.sample is None else 'foreign_sample.jsonl')
+    kept = os.path.join(arguments.output, 'foreign%s.jsonl' % suffix(arguments))
     if arguments.fresh and os.path.exists(kept):
         os.remove(kept)
     rows = {number: row for number, row in read_rows(kept).items() if number in {drawn['number'] for drawn in planned}}
