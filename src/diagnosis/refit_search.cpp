@@ -40,7 +40,7 @@ class RefitSearch {
   bool all() {
     const bool about_run = screening_.base.recording_fit->may_be_linearised();
     about_run ? refit_in_turn() : refit_from_tangents();
-    if (!screening_.settled && refits_.move_to_better_base()) return !explained();
+    if (!screening_.settled && refits_.move_to_better_base() && !screening_.beside_another) return !explained();
     if (!continues()) return false;
     if (about_run) refit_other_tangents();
     if (!explained()) refit_from_initial_segment();
@@ -99,14 +99,12 @@ class RefitSearch {
   std::map<std::string, double> explored_;  ///< leaders whose variants were tried, with what they were `fitted`
 };
 
-// Refits every effect where something is to be explained. Elsewhere a tangent has to speak for some effect; then all that
-// tangents hardly tell from it are refitted. The first one goes alone: what falls behind it need not be fitted to the end.
+// Refits every effect where something is to be explained. Elsewhere an effect's tangent has to speak for it. The first one
+// goes alone: what falls behind it need not be fitted to the end.
 void RefitSearch::refit_from_tangents() {
   std::vector<RefitTask> first, others;
-  const double most = screening_.ranked.empty() ? 0.0 : screening_.ranked.front().evidence;
-  const double least = most > kComparison.worthwhile ? most - 2.0 * kComparison.worthwhile : most + 1.0;
   for (const Ranked& r : screening_.ranked) {
-    if (faint(r) || (!wide() && r.evidence < least)) continue;
+    if (faint(r) || (!wide() && !(r.evidence > kComparison.worthwhile))) continue;
     for (RefitTask& task : tasks_of(r)) (first.empty() ? first : others).push_back(std::move(task));
   }
   refits_.add(first);

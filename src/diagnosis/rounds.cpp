@@ -43,12 +43,11 @@ PreviousRound after_adding(const Finding& finding, const Library& library) {
 
 Finding examine(FittedModel& model, const DiagnosisOptions& options, const PreviousRound& previous, bool& moved,
                 const CandidatesSoFar& so_far) {
-  const int most = previous.beside_another ? 1 : kMostBases;
   Finding out = diagnose_once(model, {}, options, previous, so_far);
   moved = out.base_moved;
   for (int k = 1; out.to_repeat; ++k) {
     PreviousRound next = out.previous;
-    next.settled = k == most;
+    next.settled = k == kMostBases;
     out = diagnose_once(model, {}, options, next, so_far);
     moved = true;
   }
