@@ -19,15 +19,13 @@ void find_probabilities_of(std::vector<Hypothesis>& hypotheses) {
   for (Hypothesis& h : hypotheses) h.probability /= sum;
 }
 
-// Returns the weight at which no extension gains more than the residual of the model shows. Named effects have its whole
-// structure to explain. Something unknown beside the given model has only what the test does not tolerate. What gains more
-// gains it from the mesh's error, across the lowest modes or by its memory.
+// Returns the weight at which no extension gains more than the residual of the model shows. What gains more gains it from
+// the mesh's error, across the lowest modes or by its memory.
 double least_weight(const Hypothesis& model, const std::vector<Hypothesis>& all) {
   double least = -std::numeric_limits<double>::infinity();
   for (const Hypothesis& h : all) {
     if (!h.extends(model) || (h.random_force && !model.effects.empty())) continue;
-    const double shown = h.random_force ? model.z : model.structure;
-    if (std::isfinite(shown)) least = std::max(least, h.log_weight - h.log_prior - log_bayes_factor_bound(shown));
+    least = std::max(least, h.log_weight - h.log_prior - log_bayes_factor_bound(model.z));
   }
   return least + model.log_prior;
 }
@@ -73,7 +71,6 @@ void Hypothesis::weigh(const Assessment& assessment, const ModelComparison& mode
   z = assessment.test.z();
   passes = !random_force && assessment.test.passes();
   structured = random_force || assessment.test.discrepancy() > 0.0;
-  structure = assessment.test.structure();
 }
 
 const Hypothesis& Comparison::best() const {

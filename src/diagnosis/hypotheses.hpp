@@ -1,6 +1,5 @@
 #pragma once
 
-#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -24,8 +23,7 @@ struct Hypothesis {
   double z = 0.0;                              ///< of the residual's test; with a random force, of the test without it
   bool passes = false;                         ///< that test; false with a random force
   bool structured = true;                      ///< something beyond chance is left, or a random force acts
-  double structure = std::numeric_limits<double>::infinity();  ///< of the residual, in standard deviations beyond chance
-  bool superfluous = false;                                    ///< another hypothesis already suffices
+  bool superfluous = false;                    ///< another hypothesis already suffices
   double probability = 0.0;
   bool holds(const std::string& effect) const;
   bool same_effects(const Hypothesis& other) const;  ///< in whichever order they were added

@@ -9,6 +9,7 @@
 
 #include "diagnosis/scores.hpp"
 #include "forward/reduced_trajectory.hpp"
+#include "observation/neighbour_differences.hpp"
 #include "tissue_stiffness/types/prediction.hpp"
 #include "types/least_squares.hpp"
 
@@ -29,6 +30,17 @@ Eigen::MatrixXd lowest_modes(const FittedModel& fitted) {
   const ReducedTrajectory at_rest(*reduced, recording_fit.model().parameters().theta(fitted.fit.w), start);
   const Eigen::Index count = std::min<Eigen::Index>(kComparison.modes, at_rest.frequencies().size());
   return recording_fit.rows_along(fitted.fit.w, at_rest.mode_shapes(static_cast<int>(count)), fitted.rows);
+}
+
+std::vector<SparseMatrix> differences_of(const RecordingRows& rows) {
+  std::vector<SparseMatrix> out;
+  for (std::size_t k = 0; k + 1 < rows.offsets.size(); ++k) {
+    const Eigen::Index from = rows.offsets[k], size = rows.offsets[k + 1] - from;
+    Eigen::VectorXd used = rows.used.segment(from, size);
+    used = (rows.nodes.segment(from, size).array() == kForceRow).select(0.0, used);
+    out.push_back(neighbour_differences(rows.places.middleCols(from, size), rows.sigma.segment(from, size), used));
+  }
+  return out;
 }
 
 /// The change of every frame, divided into its shares along the lowest modes and the rest.
@@ -88,6 +100,7 @@ ModelComparison::ModelComparison(const FittedModel& base, const Eigen::VectorXd&
     : used_((base.rows.used.array() > 0.0).cast<double>()),
       nodes_(base.rows.nodes),
       offsets_(base.rows.offsets),
+      differences_(differences_of(base.rows)),
       along_(lowest_modes(base)),
       base_cost_(base.rows.error.squaredNorm()) {
   allow_for_mesh(mesh_change);
@@ -193,8 +206,12 @@ Assessment ModelComparison::assess(const Explained& explained) const {
 }
 
 MisfitTest ModelComparison::test_of(const Eigen::VectorXd& error, double fitted) const {
-  MisfitTest out = test_where(error, 0, static_cast<Eigen::Index>(offsets_.size()) - 1, [](Eigen::Index) { return true; });
+  const auto frames = static_cast<Eigen::Index>(offsets_.size()) - 1;
+  MisfitTest out = test_where(error, 0, frames, [](Eigen::Index) { return true; });
+  for (std::size_t k = 0; k < differences_.size(); ++k)
+    out.add_differences(differences_[k] * error.segment(offsets_[k], offsets_[k + 1] - offsets_[k]));
   out.set_fitted(fitted);
+  out.set_numerics(0.0);
   return out;
 }
 

@@ -23,14 +23,14 @@ struct Assessment {
 /// stated standard deviations times the roots of their robust weights q:
 ///   e ~ N(J u, s I + sum_k B_k L_k B_k^T),  u ~ N(prior, I),  J = [columns, D],  s = v (1 + m) / (1 - m),
 ///   log p += sum log sqrt(q).
-/// D is what a finer mesh changes, divided into its shares along the lowest modes and the rest. v is the mean square across
-/// the lowest modes, which missing physics hardly moves, and m is that part's memory from frame to frame. Both are those of
-/// the model that leaves least there. B_k L_k B_k^T, of frame k, is a displacement along the lowest modes, because the
-/// mesh's error has directions that D does not hold. Its mean square is that of `left_of_mesh` times what a refinement
-/// changes along each mode. The test allows for as much. No coefficient of the numerics is believed beyond `most_numerics`
-/// standard deviations. The evidence is Laplace's approximation (MacKay 2003, eq. 28.10) with the numerics as further
-/// unknowns. An added amplitude's prior is an even mixture of normal ones from its stated width down to `smallest` of it.
-/// So an effect pays for the order of its size and not for the width that a proposal happens to state.
+/// D is what a finer mesh changes, divided into its shares along the lowest modes and the rest. v is the mean square of
+/// the differences between neighbouring points, which missing physics hardly moves, and m is their memory from frame to
+/// frame. Both are those of the model that leaves least there. B_k L_k B_k^T, of frame k, is a displacement along the
+/// lowest modes, because the mesh's error has directions that D does not hold. Its mean square is that of `left_of_mesh`
+/// times what a refinement changes along each mode. The test allows for as much. No coefficient of the numerics is believed
+/// beyond `most_numerics` standard deviations. The evidence is Laplace's approximation (MacKay 2003, eq. 28.10) with the
+/// numerics as further unknowns. An added amplitude's prior is an even mixture of normal ones from its stated width down to
+/// `smallest` of it. So an effect pays for the order of its size and not for the width that a proposal happens to state.
 class ModelComparison {
  public:
   /// `mesh_change` is what a finer mesh changes of the base's rows [sigma].
@@ -38,7 +38,7 @@ class ModelComparison {
 
   /// Replaces that change.
   void allow_for_mesh(const Eigen::VectorXd& change);
-  /// Takes note of how little a residual leaves across the lowest modes, because all models share one noise.
+  /// Takes note of how little noise a residual shows, because all models share one noise.
   void note(const Eigen::VectorXd& error);
   /// Takes over the noise that another comparison of this recording has noted, where it is less.
   void note(const ModelComparison& other);
@@ -48,7 +48,8 @@ class ModelComparison {
   /// Returns the rows (N x k) in which the covariance is s I: along B_k they shrink by the root of s / (s + L_k).
   Eigen::MatrixXd whitened(const Eigen::MatrixXd& rows) const;
   Assessment assess(const Explained& model) const;
-  /// Tests a residual itself, of a model with `fitted` parameters, against the noise that is known so far.
+  /// Tests a residual itself, of a model with `fitted` parameters, against the noise that is known so far. It allows for no
+  /// error of the numerics.
   MisfitTest test_of(const Eigen::VectorXd& error, double fitted) const;
   /// Tests those of its rows that are `inside`, in the frames from `first` to before `last`.
   MisfitTest test_where(const Eigen::VectorXd& error, Eigen::Index first, Eigen::Index last,
@@ -58,10 +59,11 @@ class ModelComparison {
   Eigen::VectorXd used_;   ///< 1 where a row says something, else 0
   Eigen::VectorXi nodes_;  ///< of each row, or kForceRow
   std::vector<Eigen::Index> offsets_;
-  Eigen::MatrixXd along_;      ///< rows / amplitude of each mode
-  Eigen::MatrixXd mesh_;       ///< D
-  Eigen::MatrixXd basis_;      ///< B, frame under frame
-  Eigen::MatrixXd variances_;  ///< L, one column a frame
+  std::vector<SparseMatrix> differences_;  ///< between neighbouring points, of each frame
+  Eigen::MatrixXd along_;                  ///< rows / amplitude of each mode
+  Eigen::MatrixXd mesh_;                   ///< D
+  Eigen::MatrixXd basis_;                  ///< B, frame under frame
+  Eigen::MatrixXd variances_;              ///< L, one column a frame
   double base_cost_ = 0.0;
   double noise_variance_ = 0.0;
   double noise_level_ = MisfitTest::most_noise;  ///< v

@@ -35,16 +35,29 @@ void MisfitTest::add(const Eigen::VectorXd& residual, const Eigen::VectorXd& pre
   rest_ += rotated.squaredNorm();
   rest_dof_ += used - static_cast<double>(rank);
   rows_ += used;
-  if (last_.size() == rotated.size()) {
-    product_ += last_.dot(rotated);
-    square_ += 0.5 * (last_.squaredNorm() + rotated.squaredNorm());
-  }
-  last_ = rotated;
+  rests_.add(rotated);
   ++frames_;
 }
 
+void MisfitTest::add_differences(const Eigen::VectorXd& differences) {
+  difference_square_ += differences.squaredNorm();
+  difference_count_ += static_cast<double>((differences.array() != 0.0).count());
+  differences_.add(differences);
+}
+
+void MisfitTest::Successive::add(const Eigen::VectorXd& next) {
+  if (last.size() == next.size()) {
+    product += last.dot(next);
+    square += 0.5 * (last.squaredNorm() + next.squaredNorm());
+  }
+  last = next;
+}
+
 double MisfitTest::noise_level() const {
-  return rest_dof_ > 0.0 ? std::min(std::clamp(rest_ / rest_dof_, 1.0, most_noise), known_noise_) : 1.0;
+  if (!(rest_dof_ > 0.0)) return 1.0;
+  double level = rest_ / rest_dof_;
+  if (difference_count_ > 0.0) level = std::min(level, difference_square_ / difference_count_);
+  return std::min(std::clamp(level, 1.0, most_noise), known_noise_);
 }
 
 double MisfitTest::excess() const {
@@ -53,7 +66,8 @@ double MisfitTest::excess() const {
 }
 
 double MisfitTest::lag1_autocorrelation() const {
-  return square_ > 0.0 ? std::clamp(product_ / square_, 0.0, kMostAutocorrelation) : 0.0;
+  const Successive& known = difference_count_ > 0.0 ? differences_ : rests_;
+  return known.square > 0.0 ? std::clamp(known.product / known.square, 0.0, kMostAutocorrelation) : 0.0;
 }
 
 double MisfitTest::deviation() const {
@@ -61,16 +75,13 @@ double MisfitTest::deviation() const {
 }
 
 double MisfitTest::z() const {
-  return frames_ > 0 ? std::max((excess() - tolerated * noise_level()) / deviation(), z_across()) : 0.0;
-}
-
-double MisfitTest::structure() const {
-  return frames_ > 0 ? std::max(excess() / deviation(), z_across()) : 0.0;
+  return frames_ > 0 ? std::max((excess() - tolerated_ * noise_level()) / deviation(), z_across()) : 0.0;
 }
 
 // Only what is far above the known noise counts, because less is known of the mesh's error there.
 double MisfitTest::z_across() const {
-  if (known_noise_ >= most_noise || !(rest_dof_ > 0.0)) return -std::numeric_limits<double>::infinity();
+  const bool known = known_noise_ < most_noise || difference_count_ > 0.0;
+  if (!known || !(rest_dof_ > 0.0)) return -std::numeric_limits<double>::infinity();
   return (excess_across() / noise_level() - tolerated) / std::sqrt(2.0 * repeated() / rest_dof_);
 }
 

@@ -30,9 +30,11 @@ RecordingRows recording_rows(const std::vector<Prediction>& predictions) {
   for (Eigen::VectorXd* v : {&out.error, &out.predicted, &out.used, &out.sigma})
     *v = Eigen::VectorXd::Zero(out.offsets.back());
   out.nodes = Eigen::VectorXi::Zero(out.offsets.back());
+  out.places = Eigen::Matrix3Xd::Zero(3, out.offsets.back());
   for (std::size_t k = 0; k < predictions.size(); ++k) {
     const Prediction& p = predictions[k];
     const Eigen::VectorXd weight = row_weights(p);
+    out.places.middleCols(out.offsets[k], p.places.cols()) = p.places;
     for (Eigen::Index i = 0; i < p.measured.size(); ++i) {
       const Eigen::Index row = out.offsets[k] + i;
       if (!(weight[i] > 0.0) || !std::isfinite(p.sigma[i])) continue;

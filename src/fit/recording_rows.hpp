@@ -16,6 +16,7 @@ struct RecordingRows {
   Eigen::VectorXd used;
   Eigen::VectorXd sigma;              ///< [m], or [N] of a force
   Eigen::VectorXi nodes;              ///< nearest mesh node, or kForceRow
+  Eigen::Matrix3Xd places;            ///< where each row was measured [m]
   std::vector<Eigen::Index> offsets;  ///< first row of each frame, and the number of rows at the end
 
   /// Returns the number of rows that say something.

@@ -231,9 +231,9 @@ TEST(Diagnose, TakesTheTimeStepsOfASimulationForNumerics) {
   EXPECT_NEAR(known.at("elasticity.young_modulus") / kTruth, 1.0, 0.003);
 }
 
-// Late fast swings resemble the other damping more.
+// Late fast swings resemble the other damping, so both explain the same share.
 TEST(Diagnose, TellsEquivalentEffectsApartBesideTheTimeStepsOfASimulation) {
-  for (const std::string alpha : {"2", "3"}) {
+  for (const std::string alpha : {"2", "4"}) {
     const Diagnosis d = diagnose_bar(simulate({"mass_damping: {alpha: " + alpha + "}"}, 0.02, 9), {});
     const auto explained = [&](const std::string& effect) {
       const auto found = std::find_if(d.candidates.begin(), d.candidates.end(),
@@ -242,7 +242,7 @@ TEST(Diagnose, TellsEquivalentEffectsApartBesideTheTimeStepsOfASimulation) {
     };
     std::printf("mass damping of %s/s in steps of a frame: it explains %.2f %%, viscous damping %.2f %%\n", alpha.c_str(),
                 100.0 * explained("mass_damping"), 100.0 * explained("viscous_damping"));
-    EXPECT_GT(explained("viscous_damping"), explained("mass_damping")) << "no test: the right one explains more anyway";
+    EXPECT_NEAR(explained("viscous_damping"), explained("mass_damping"), 2e-3) << "no test: one explains more anyway";
     EXPECT_EQ(d.verdict, Verdict::missing);
     ASSERT_FALSE(d.set.empty());
     EXPECT_EQ(d.set.front(), "mass_damping") << alpha;

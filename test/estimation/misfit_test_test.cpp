@@ -63,6 +63,31 @@ TEST(MisfitTest, KnowsTheNoiseFromAnotherModel) {
   EXPECT_NEAR(louder.noise_level(), 1.0, 0.1) << "its own is less";
 }
 
+// What is missed may lie across the modes as well. Differences between neighbours do not hold it, so it is no noise.
+TEST(MisfitTest, KnowsTheNoiseFromDifferencesBetweenNeighbours) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  const auto noise = [&](double level) {
+    Eigen::VectorXd out(kRows);
+    for (int i = 0; i < kRows; ++i) out[i] = level * normal(random);
+    return out;
+  };
+  MisfitTest missing = test_of(1.0, 4.0), noisy = test_of(4.0, 4.0);
+  Eigen::VectorXd last = noise(1.0);
+  for (int k = 0; k < kFrames; ++k) {
+    last = 0.8 * last + 0.6 * noise(1.0);
+    missing.add_differences(last);
+    noisy.add_differences(noise(2.0));
+  }
+  EXPECT_NEAR(missing.noise_level(), 1.0, 0.05);
+  EXPECT_NEAR(missing.lag1_autocorrelation(), 0.8, 0.05);
+  EXPECT_GT(missing.z(), 20.0);
+  EXPECT_NEAR(missing.discrepancy(), 3.0 * (kRows - kModes) / kRows, 0.3);
+  EXPECT_NEAR(noisy.noise_level(), 4.0, 0.2);
+  EXPECT_LT(noisy.lag1_autocorrelation(), 0.05);
+  EXPECT_TRUE(noisy.passes());
+}
+
 // A force has no rows across the modes, which would make noise of whatever it misses.
 TEST(MisfitTest, CountsAllThatAForceMisses) {
   const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(3, 2);
