@@ -286,7 +286,7 @@ def main():
     parser.add_argument('--resume', action='store_true', help='keep the draws that are in doc/hidden_effects.json already: of the same search')
     parser.add_argument('--page-only', action='store_true', help='write the page from those draws, without new ones')
     arguments = parser.parse_args()
-    arguments.output = arguments.output or os.path.join(arguments.root, 'output', 'hidden_effects')
+    arguments.output = os.path.abspath(arguments.output or os.path.join(arguments.root, 'output', 'hidden_effects'))
     for tool in ('simulate', 'diagnose'):
         setattr(arguments, tool, os.path.join(arguments.root, 'build/devel/lib/tissue_stiffness', tool))
     os.makedirs(arguments.output, exist_ok=True)

@@ -10,7 +10,7 @@ def study_arguments(parser, program, output):
     parser.add_argument('--' + program, help='the program that is studied')
     arguments = parser.parse_args()
     arguments.simulator = os.path.join(arguments.root, '..', 'shared', 'simulator')
-    arguments.output = arguments.output or os.path.join(arguments.root, 'output', output)
+    arguments.output = os.path.abspath(arguments.output or os.path.join(arguments.root, 'output', output))
     if getattr(arguments, program) is None:
         setattr(arguments, program, os.path.join(arguments.root, 'build/devel/lib/tissue_stiffness', program))
     return arguments

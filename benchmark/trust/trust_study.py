@@ -284,7 +284,7 @@ def main():
     parser.add_argument('--resume', action='store_true', help='keep the draws that are in doc/trust.json already')
     parser.add_argument('--page-only', action='store_true', help='write the page from those draws, without new ones')
     arguments = parser.parse_args()
-    arguments.output = arguments.output or os.path.join(arguments.root, 'output', 'trust')
+    arguments.output = os.path.abspath(arguments.output or os.path.join(arguments.root, 'output', 'trust'))
     arguments.shared = os.path.join(arguments.root, '..', 'shared')
     for tool in ('simulate', 'estimate'):
         setattr(arguments, tool, os.path.join(arguments.root, 'build/devel/lib/tissue_stiffness', tool))
