@@ -44,6 +44,16 @@ TEST(MisfitTest, SeesWhatTheModesHaveBeyondTheRest) {
   EXPECT_TRUE(allowed.passes());
 }
 
+TEST(MisfitTest, ToleratesNothingWhereTheNumericsAreKnown) {
+  MisfitTest test = test_of(1.7, 1.0);
+  EXPECT_TRUE(test.passes());
+  test.set_numerics(0.0);
+  EXPECT_FALSE(test.passes());
+  EXPECT_NEAR(test.z(), test.excess() / test.deviation(), 1e-12);
+  test.set_numerics(0.7 * kModes / kRows);
+  EXPECT_TRUE(test.passes());
+}
+
 // Noise that another model has shown not to be there is a misfit, both where the modes see it and where they do not.
 TEST(MisfitTest, KnowsTheNoiseFromAnotherModel) {
   MisfitTest test = test_of(1.0, 4.0);
