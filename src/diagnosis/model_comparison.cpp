@@ -135,6 +135,12 @@ void ModelComparison::allow_for_mesh(const Eigen::VectorXd& change) {
   }
 }
 
+void ModelComparison::move_base(const Eigen::VectorXd& error, const Eigen::VectorXd& mesh_change) {
+  base_cost_ = error.squaredNorm();
+  allow_for_mesh(mesh_change);
+  note(error);
+}
+
 Eigen::MatrixXd ModelComparison::whitened(const Eigen::MatrixXd& rows) const {
   Eigen::MatrixXd out = rows;
   const double s = noise_variance_;

@@ -38,6 +38,8 @@ class ModelComparison {
 
   /// Replaces that change.
   void allow_for_mesh(const Eigen::VectorXd& change);
+  /// Replaces the base by one with this residual, and that change. The lowest modes stay those of the first base.
+  void move_base(const Eigen::VectorXd& error, const Eigen::VectorXd& mesh_change);
   /// Takes note of how little noise a residual shows, because all models share one noise.
   void note(const Eigen::VectorXd& error);
   /// Takes over the noise that another comparison of this recording has noted, where it is less.

@@ -138,7 +138,7 @@ bool RefitList::move_to_better_base() {
   const BatchFit fit = recording_fit.quick_fit(start.w, kSpread * recording_fit.model().parameters().prior_std());
   if (!(screening_.base.fit.cost - fit.cost > 2.0 * kComparison.worthwhile * comparison_.noise_variance())) return false;
   base_moved_ = true;
-  screening_.move_base(fit);
+  screening_.move_base(fit, comparison_);
   base_ = std::make_shared<const Explained>(screening_.explained);
   base_force_.reset();
   comparison_.note(base_->error);

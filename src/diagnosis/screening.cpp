@@ -81,12 +81,14 @@ Screening::Screening(FittedModel& fitted, const DiagnosisOptions& options, Previ
   ranked = rank_effects(*scorer, candidates);
 }
 
-void Screening::move_base(const BatchFit& fit) {
+void Screening::move_base(const BatchFit& fit, ModelComparison& models) {
   base.fit = fit;
   base.rows = base.recording_fit->rows(fit.w);
   cost = base.rows.error.squaredNorm();
   explained = compared_residual(base, {}, given.test.passes() ? FittedNumerics::evident : FittedNumerics::far);
-  comparison.note(base.rows.error);
+  finer = finer_mesh(base, finer.recording_fit.get());
+  discretisation_error = finer.change.norm() / std::sqrt(base.rows.count());
+  models.move_base(base.rows.error, mesh_change(base, finer));
 }
 
 }  // namespace tissue_stiffness

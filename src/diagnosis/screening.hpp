@@ -30,8 +30,9 @@ struct Screening {
   Screening(FittedModel& fitted, const DiagnosisOptions& options, PreviousRound previous = {},
             const std::vector<std::string>& wanted = {});
 
-  /// Moves the base to another fit. Tangents, and the base's assessment, stay those of the first place.
-  void move_base(const BatchFit& fit);
+  /// Moves the base of these models to another fit, with what a finer mesh changes there. Tangents, and the base's
+  /// assessment, stay those of the first place.
+  void move_base(const BatchFit& fit, ModelComparison& models);
 
   FittedModel& base;
   double cost;                         ///< sum of squared errors [sigma^2]

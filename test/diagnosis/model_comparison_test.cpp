@@ -42,6 +42,18 @@ TEST_F(CleanBar, MarginalisesWhatAFinerMeshChanges) {
   EXPECT_FALSE(models.test_of(off.error, 1.0).passes());
 }
 
+// What a finer mesh changes at one place of the base says nothing of another place.
+TEST_F(CleanBar, MarginalisesTheMeshsChangeWhereTheBaseIs) {
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(base_.rows.error.size()), change = slow();
+  ModelComparison models(base_, none);
+  const Explained off = rigid(base_.rows.error + change);
+  EXPECT_FALSE(models.assess(off).test.passes());
+  models.move_base(off.error, change);
+  EXPECT_EQ(models.base_cost(), off.error.squaredNorm());
+  EXPECT_TRUE(models.assess(off).test.passes());
+  EXPECT_NEAR(models.noise_variance(), ModelComparison(base_, none).noise_variance(), 1e-9) << "the least that is known";
+}
+
 TEST_F(CleanBar, BelievesNoNumericsBeyondThreeStandardDeviations) {
   const Eigen::VectorXd change = slow();
   const ModelComparison models(base_, change);
