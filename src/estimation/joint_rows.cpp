@@ -4,8 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "observation/neighbour_differences.hpp"
-
 namespace tissue_stiffness {
 namespace {
 
@@ -24,13 +22,6 @@ SharedColumns shared_columns(const Sharing& sharing, const SharedParameters& par
         {part->rows.groups(), part->rows.size() - part->rows.first_of_mesh(), part->models.constants, mesh});
   }
   return {sharing, parameters, recordings};
-}
-
-Eigen::VectorXd differences_between_neighbours(const InputLinearisation::Row& row, const Eigen::VectorXd& residual) {
-  Eigen::VectorXd used = row.precision;
-  for (const Eigen::Index force : row.forces) used[force] = 0.0;
-  const Eigen::VectorXd root = used.cwiseSqrt();
-  return neighbour_differences(row.places, root.cwiseInverse(), used) * root.cwiseProduct(residual);
 }
 
 void set(Eigen::VectorXd& all, const std::vector<Eigen::Index>& columns, const Eigen::VectorXd& own) {
@@ -79,16 +70,15 @@ MisfitTest JointRows::test(std::size_t recording, const Eigen::VectorXd& z, doub
   const Eigen::VectorXd move = columns_.of(recording, tolerated.z),
                         constants = columns_.constants_of(recording, tolerated.constants);
   MisfitTest out;
-  parts_[recording]->rows.each_row(columns_.of(recording, z), [&](const InputLinearisation::Row& row,
-                                                                  const Eigen::MatrixXd& amplitudes) {
-    const Eigen::Index p = row.parameters.cols(), d = row.direct.cols(), l = amplitudes.cols();
-    const Eigen::VectorXd explained = row.constants * constants + row.parameters * move.head(p) +
-                                      row.modes * (amplitudes * move.segment(p, l)) + row.direct * move.tail(d);
-    const Eigen::Index most = std::min<Eigen::Index>(kModes, std::max<Eigen::Index>(1, row.error.size() / 4));
-    const Eigen::VectorXd residual = row.error - explained;
-    out.add(residual, row.precision, with_unit_columns(row.modes.leftCols(std::min(most, row.modes.cols())), row.forces));
-    out.add_differences(differences_between_neighbours(row, residual));
-  });
+  parts_[recording]->rows.each_row(
+      columns_.of(recording, z), [&](const InputLinearisation::Row& row, const Eigen::MatrixXd& amplitudes) {
+        const Eigen::Index p = row.parameters.cols(), d = row.direct.cols(), l = amplitudes.cols();
+        const Eigen::VectorXd explained = row.constants * constants + row.parameters * move.head(p) +
+                                          row.modes * (amplitudes * move.segment(p, l)) + row.direct * move.tail(d);
+        const Eigen::Index most = std::min<Eigen::Index>(kModes, std::max<Eigen::Index>(1, row.error.size() / 4));
+        out.add(row.error - explained, row.precision,
+                with_unit_columns(row.modes.leftCols(std::min(most, row.modes.cols())), row.forces));
+      });
   out.set_fitted(fitted);
   return out;
 }

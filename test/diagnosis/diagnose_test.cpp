@@ -236,14 +236,14 @@ TEST(Diagnose, TakesTheTimeStepsOfASimulationForNumerics) {
 
 // Late fast swings resemble the other damping, so both explain the same share.
 TEST(Diagnose, TellsEquivalentEffectsApartBesideTheTimeStepsOfASimulation) {
-  for (const std::string alpha : {"2", "4"}) {
-    const Diagnosis d = diagnose_bar(simulate({"mass_damping: {alpha: " + alpha + "}"}, 0.02, 9), {});
+  for (const std::string alpha : {"3", "4"}) {
+    const Diagnosis d = diagnose_bar(simulate({"mass_damping: {alpha: " + alpha + "}"}, 0.01, 9), {});
     const auto explained = [&](const std::string& effect) {
       const auto found = std::find_if(d.candidates.begin(), d.candidates.end(),
                                       [&](const MissingEffect& c) { return c.effect == effect; });
       return found == d.candidates.end() ? 0.0 : found->explained;
     };
-    std::printf("mass damping of %s/s in steps of a frame: it explains %.2f %%, viscous damping %.2f %%\n", alpha.c_str(),
+    std::printf("mass damping of %s/s in steps of half a frame: it explains %.2f %%, viscous damping %.2f %%\n", alpha.c_str(),
                 100.0 * explained("mass_damping"), 100.0 * explained("viscous_damping"));
     EXPECT_NEAR(explained("viscous_damping"), explained("mass_damping"), 2e-3) << "no test: one explains more anyway";
     EXPECT_EQ(d.verdict, Verdict::missing);
