@@ -217,7 +217,7 @@ MisfitTest ModelComparison::test_of(const Eigen::VectorXd& error, double fitted)
   for (std::size_t k = 0; k < differences_.size(); ++k)
     out.add_differences(differences_[k] * error.segment(offsets_[k], offsets_[k + 1] - offsets_[k]));
   out.set_fitted(fitted);
-  out.set_numerics(0.0);
+  out.tolerate_no_more();
   return out;
 }
 

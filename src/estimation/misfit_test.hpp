@@ -22,12 +22,10 @@ class MisfitTest {
   /// Sets the degrees of freedom that the fit took of the part along the modes.
   void set_fitted(double dof) { fitted_ = dof; }
   /// Sets the mean square that mesh and basis leave of each row, along the modes and across them, in units of the noise's
-  /// variance. Once it is known, nothing more is tolerated along the modes.
-  void set_numerics(double along, double across = 0.0) {
-    numerics_ = along;
-    numerics_across_ = across;
-    tolerated_ = 0.0;
-  }
+  /// variance.
+  void set_numerics(double along, double across = 0.0) { numerics_ = along, numerics_across_ = across; }
+  /// Tolerates nothing along the modes beyond what set_numerics() says, because all of the numerics is known.
+  void tolerate_no_more() { tolerated_ = 0.0; }
 
   /// Sets the noise level that another model of the same recording has shown. This model's residuals across the modes
   /// cannot hold more noise, so they are tested too.
@@ -38,9 +36,9 @@ class MisfitTest {
   double excess() const;
   /// Returns the standard deviation of `excess` under noise alone.
   double deviation() const;
-  /// Returns (excess - t v) / deviation with v = noise_level() and t = `tolerated`, or 0 after set_numerics(). Where the
-  /// noise is known from differences or by set_noise(), it returns the larger one of this and the same statistic across the
-  /// modes.
+  /// Returns (excess - t v) / deviation with v = noise_level() and t = `tolerated`, or 0 after tolerate_no_more(). Where
+  /// the noise is known from differences or by set_noise(), it returns the larger one of this and the same statistic across
+  /// the modes.
   double z() const;
   /// The test passes while z <= bound.
   bool passes() const { return z() <= bound; }
