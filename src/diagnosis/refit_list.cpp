@@ -119,10 +119,14 @@ const Comparison& RefitList::compare() {
   if (!empty() && best().model) {
     add(beside(hypotheses[1], std::make_shared<const RandomForce>(*best().model)), best().assessment);
   }
-  compared_->passes_without_mesh =
-      comparison_.test_of(screening_.base.rows.error, static_cast<double>(screening_.base.fit.w.size())).passes();
+  compared_->passes_without_mesh = passes_without_mesh();
   compared_->find_probabilities();
   return *compared_;
+}
+
+bool RefitList::passes_without_mesh() const {
+  const FittedModel& base = screening_.base;
+  return comparison_.test_of(base.rows.error, static_cast<double>(base.fit.w.size())).passes();
 }
 
 bool RefitList::move_to_better_base() {

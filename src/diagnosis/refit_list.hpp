@@ -53,6 +53,8 @@ class RefitList {
   const Comparison& compare();
   const Assessment& given() const { return given_; }  ///< of the given model
   const ModelComparison& comparison() const { return comparison_; }
+  /// Returns whether the base leaves noise alone, with no error of the mesh allowed for.
+  bool passes_without_mesh() const;
   const std::string& failure() const { return failure_; }  ///< why the last model that could not be run failed
   std::vector<Refit> take() { return std::move(refits_); }
 

@@ -70,12 +70,6 @@ class RefitSearch {
   std::vector<Start> variants_of_leaders();
   void fit(std::vector<Start>& starts);
   static std::map<std::string, double> parameters_for(const Candidate& candidate, const Refit& leader);
-  /// Returns whether the base leaves more than noise. It may be the mesh's, or that of an effect whose tangent does not
-  /// show it because E compensates for it.
-  bool structured() const {
-    const FittedModel& base = screening_.base;
-    return !screening_.comparison.test_of(base.rows.error, static_cast<double>(base.fit.w.size())).passes();
-  }
   /// Returns whether more than noise and the mesh's error is to be explained. What a model that already has an effect
   /// leaves is small once it passes its test.
   bool wide() const {
@@ -105,11 +99,12 @@ class RefitSearch {
   std::map<std::string, double> explored_;  ///< leaders whose variants were tried, with what they were `fitted`
 };
 
-// Refits every effect where more than noise is left. Elsewhere an effect's tangent has to speak for it. The first one goes
-// alone: what falls behind it need not be fitted to the end.
+// Refits every effect where more than noise is left. That may be the mesh's, or of an effect whose tangent does not show it
+// because E compensates for it. Elsewhere an effect's tangent has to speak for it. The first one goes alone: what falls
+// behind it need not be fitted to the end.
 void RefitSearch::refit_from_tangents() {
   std::vector<RefitTask> first, others;
-  const bool all = structured();
+  const bool all = !refits_.passes_without_mesh();
   for (const Ranked& r : screening_.ranked) {
     if (faint(r) || (!all && !(r.evidence > kComparison.worthwhile))) continue;
     for (RefitTask& task : tasks_of(r)) (first.empty() ? first : others).push_back(std::move(task));
