@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -25,17 +26,28 @@ Linearisation linearise_model(const FittedModel& fitted, const std::vector<std::
 /// Returns the free parameters with normal priors that a model with fewer effects does not have.
 std::vector<std::string> added_amplitudes(const RecordingFit& recording_fit, const RecordingFit& smaller);
 
+/// This is where a model fits whose time steps are fitted, too [coordinates w, by name]. The maps are empty without such a
+/// fit.
+struct FittedSteps {
+  std::map<std::string, double> place;
+  std::map<std::string, double> moves;  ///< from the fit without them
+  double cost = no_rival;               ///< of the training frames and the prior
+};
+
 /// This is a fitted model as it is compared: its residual and the rows about it.
 struct Explained {
   Eigen::VectorXd error;  ///< of each row [sigma]
   Linearisation linearisation;
+  FittedSteps steps = {};
 };
 /// Says which time steps of a simulated recording are fitted with a linear model: none, those whose tangents matter, or
 /// also those that no tangent shows.
 enum class FittedNumerics { none, evident, far };
 /// Returns the residual to compare. What time steps do to a body that rings for long is not linear in them, so they are
-/// fitted with it.
+/// fitted with it. `known` is such a fit of a model with fewer effects. Where there is one, this model is fitted with the
+/// steps, too, from the best of several starts; a fit whose cost is beyond `rival` may end early.
 Explained compared_residual(const FittedModel& fitted, const std::vector<std::string>& amplitudes = {},
-                            FittedNumerics numerics = FittedNumerics::evident);
+                            FittedNumerics numerics = FittedNumerics::evident, const FittedSteps& known = {},
+                            double rival = no_rival);
 
 }  // namespace tissue_stiffness

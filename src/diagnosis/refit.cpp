@@ -86,17 +86,20 @@ Start grown(const RecordingFit& recording_fit, Start start, double rival) {
   return start;
 }
 
-// Returns where the quick runs of a model fit best. What was linearised about the run itself is near already.
-Start quick_fit_of(const RecordingFit& quick, const FittedModel& base, const RefitTask& task, double rival) {
-  if (!task.start.empty()) return grown(quick, start_of(quick, task.start), rival);
+// Returns where the quick runs of a model fit best. What was linearised about the run itself is near already, and a first
+// order holds only near the base.
+Start quick_fit_of(const RecordingFit& quick, const FittedModel& base, const RefitTask& task, const RefitLimits& limits) {
+  if (!task.start.empty()) return grown(quick, start_of(quick, task.start), limits.rival);
   const RecordingFit& known = *base.recording_fit;
-  if (task.candidate->linearised) {
+  if (task.candidate->linearised || !task.candidate->linear) {
     Start start = starts(quick, known, base.fit.w, task).front();
-    start.fit = quick.quick_fit(start.w, start.spread, 1.0, rival);
+    start.fit = quick.quick_fit(start.w, start.spread, 1.0, limits.rival);
     return start;
   }
   std::string reason;
-  std::optional<Start> start = quick_start(quick, known, starts(quick, known, base.fit.w, task), rival, reason);
+  std::vector<Start> from = starts(quick, known, base.fit.w, task);
+  if (limits.near_base) from.resize(1);
+  std::optional<Start> start = quick_start(quick, known, from, limits.rival, reason);
   if (!start) throw NumericalError(task.effect() + " cannot be refitted: " + reason);
   return *start;
 }
@@ -113,7 +116,7 @@ void borrow(RecordingFit& recording_fit, const FittedModel& base, const RefitTas
 }
 
 // Fits the base with the task's proposal. `in_full` says whether a nonlinear model was run in full.
-FittedModel fit_extended(const FittedModel& base, const RefitTask& task, double rival, bool& in_full) {
+FittedModel fit_extended(const FittedModel& base, const RefitTask& task, const RefitLimits& limits, bool& in_full) {
   const RecordingFit& known = *base.recording_fit;
   const ModelSettings settings = extend_model(known.model().settings(), {task.candidate->proposal.refine});
   const bool at_first_order = !task.candidate->linear && !known.model().nonlinear();
@@ -123,24 +126,26 @@ FittedModel fit_extended(const FittedModel& base, const RefitTask& task, double 
   out.recording_fit = std::make_unique<RecordingFit>(settings, known, basis);
   borrow(*out.recording_fit, base, task);
   const bool nonlinear = out.recording_fit->model().nonlinear();
-  const Start start = quick_fit_of(*out.recording_fit, base, task, nonlinear ? no_rival : rival);  // quick runs are off
+  RefitLimits quick_limits = limits;
+  if (nonlinear) quick_limits.rival = base.fit.cost - limits.least_gain;
+  const Start start = quick_fit_of(*out.recording_fit, base, task, quick_limits);
   out.fit = start.fit;
   out.rows = out.recording_fit->rows(out.fit.w);
   const double gain = base.rows.error.squaredNorm() - out.rows.error.squaredNorm();
-  in_full = nonlinear && (task.in_full || gain > kComparison.promising * structured_squares(base.rows));
+  in_full = nonlinear && gain > limits.least_gain;
   if (!in_full) return out;
   if (at_first_order) out.recording_fit = std::make_unique<RecordingFit>(settings, known);
-  out.fit = out.recording_fit->fit(start.fit.w, start.spread, rival);
+  out.fit = out.recording_fit->fit(start.fit.w, start.spread, limits.rival);
   out.rows = out.recording_fit->rows(out.fit.w);  // the last full run was at just this place
   return out;
 }
 
 }  // namespace
 
-Refit refit_with(const FittedModel& base, const RefitTask& task, double rival) {
+Refit refit_with(const FittedModel& base, const RefitTask& task, const RefitLimits& limits) {
   const RecordingFit& known = *base.recording_fit;
   bool in_full = false;
-  auto fitted = std::make_shared<FittedModel>(fit_extended(base, task, rival, in_full));
+  auto fitted = std::make_shared<FittedModel>(fit_extended(base, task, limits, in_full));
   const Model& model = fitted->recording_fit->model();
   Refit out;
   out.effect = task.effect();
@@ -150,9 +155,9 @@ Refit refit_with(const FittedModel& base, const RefitTask& task, double rival) {
   fit_entries(entries, model, fitted->fit);
   out.entry = entries.front();
   out.parameters = model.parameters().values(fitted->fit.w);
-  const auto numerics = fitted->fit.cost > rival ? FittedNumerics::none : FittedNumerics::evident;
-  out.explained = std::make_shared<const Explained>(
-      compared_residual(*fitted, added_amplitudes(*fitted->recording_fit, known), numerics));
+  const auto numerics = fitted->fit.cost > limits.rival ? FittedNumerics::none : FittedNumerics::evident;
+  out.explained = std::make_shared<const Explained>(compared_residual(
+      *fitted, added_amplitudes(*fitted->recording_fit, known), numerics, limits.steps, limits.steps_rival));
   RecordingRows compared = fitted->rows;
   compared.error = out.explained->error;
   out.held_out_rms = rms_error(compared, known.recording(), true);

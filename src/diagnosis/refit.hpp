@@ -15,9 +15,17 @@ struct RefitTask {
   const Candidate* candidate = nullptr;
   Eigen::VectorXd amplitude;
   std::map<std::string, double> start = {};  ///< by name, the others at their priors; empty: start from the tangent
-  bool in_full = false;                      ///< a nonlinear model is run in full whatever its first order promises
 
   const std::string& effect() const { return candidate->effect; }
+};
+
+/// These limits keep the fits of one round short.
+struct RefitLimits {
+  double rival = no_rival;  ///< what another refit was `fitted` with: a fit that does not beat it may end early
+  double least_gain = 0.0;  ///< [sigma^2] what a nonlinear model's first order explains before the model is run in full
+  bool near_base = false;   ///< the base leaves noise, so no fit has to look for a place far from it
+  FittedSteps steps = {};   ///< of the base
+  double steps_rival = no_rival;  ///< likewise, of the fits with time steps
 };
 
 /// A refit is a fit of the base model with one proposal more.
@@ -37,9 +45,7 @@ struct Refit {
 };
 
 /// Fits the training frames by simulation, from the base's fit and the proposal's own starts. A nonlinear model is first
-/// fitted at first order, which costs little. It is run in full if that explains a part of the error. `rival` is what
-/// another refit was `fitted` with; a fit that does not beat it may end early. Throws NumericalError when no start can be
-/// run.
-Refit refit_with(const FittedModel& base, const RefitTask& task, double rival);
+/// fitted at first order, which costs little. Throws NumericalError when no start can be run.
+Refit refit_with(const FittedModel& base, const RefitTask& task, const RefitLimits& limits);
 
 }  // namespace tissue_stiffness

@@ -48,10 +48,12 @@ void RefitList::try_each(std::size_t count, const std::function<std::string(std:
   for_each_index(count, try_one, tbb::simple_partitioner());
 }
 
-void RefitList::add(std::vector<RefitTask> list) {
-  double rival = kReach * screening_.rival;
+void RefitList::add(std::vector<RefitTask> list, double least_gain) {
+  RefitLimits limits{kReach * screening_.rival, least_gain, given_.test.passes(), base_->steps};
   for (const Refit& r : refits_) {
-    if (r.candidate->linear) rival = std::min(rival, kReach * r.fitted);
+    if (!r.candidate->linear) continue;
+    limits.rival = std::min(limits.rival, kReach * r.fitted);
+    limits.steps_rival = std::min(limits.steps_rival, kReach * r.explained->steps.cost);
   }
   // The longest fits go first, because the last one to end keeps only one core busy.
   std::vector<std::pair<std::pair<bool, std::ptrdiff_t>, RefitTask>> trials;
@@ -64,7 +66,7 @@ void RefitList::add(std::vector<RefitTask> list) {
   try {
     try_each(
         trials.size(), [&](std::size_t i) { return "refit with " + trials[i].second.effect(); },
-        [&](std::size_t i) { done[i] = refit_with(screening_.base, trials[i].second, rival); });
+        [&](std::size_t i) { done[i] = refit_with(screening_.base, trials[i].second, limits); });
   } catch (const Interrupted&) {
     keep(std::move(done));
     throw;

@@ -38,7 +38,9 @@ class RefitList {
 
   /// Refits each of these tasks, side by side. What falls behind the best so far is not fitted to the end. Where the
   /// recording's checkpoint throws Interrupted, those that were fitted by then are kept.
-  void add(std::vector<RefitTask> list);
+  void add(std::vector<RefitTask> list) { add(std::move(list), screening_.least_gain()); }
+  /// Likewise. A nonlinear model is run in full where its first order explains more than `least_gain` [sigma^2].
+  void add(std::vector<RefitTask> list, double least_gain);
 
   /// Fits the given model as refits are fitted: from the best place near its fit, or from where a refit has its parameters.
   /// A refit that has found another minimum may have found it for the given model, too. Returns true if the new fit is

@@ -31,8 +31,7 @@ class RefitSearch {
     for (const Ranked& r : screening_.ranked) {
       for (RefitTask& task : tasks_of(r)) list.push_back(std::move(task));
     }
-    for (RefitTask& task : list) task.in_full = true;
-    refits_.add(list);
+    refits_.add(list, -no_rival);
     if (screening_.beside_another && continues()) refit_from_initial_segment();
   }
 
@@ -80,9 +79,7 @@ class RefitSearch {
     return wide() && !explained() && (refits_.empty() || refits_.best().fitted <= kReach * screening_.rival);
   }
   /// Returns whether the tangent of a nonlinear effect explains little. Fits of such effects take long.
-  bool faint(const Ranked& r) const {
-    return !r.best().linear && !(r.score().explained > kComparison.promising * structured_squares(screening_.base.rows));
-  }
+  bool faint(const Ranked& r) const { return !r.best().linear && !(r.score().explained > screening_.least_gain()); }
   // Returns one for each form of the effect. Tangents at different places of the model do not tell forms apart.
   static std::vector<RefitTask> tasks_of(const Ranked& r) {
     std::vector<RefitTask> out;

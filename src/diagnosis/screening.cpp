@@ -81,6 +81,11 @@ Screening::Screening(FittedModel& fitted, const DiagnosisOptions& options, Previ
   ranked = rank_effects(*scorer, candidates);
 }
 
+double Screening::least_gain() const {
+  return std::max(kComparison.promising * structured_squares(base.rows),
+                  2.0 * kComparison.worthwhile * comparison.noise_variance());
+}
+
 void Screening::move_base(const BatchFit& fit, ModelComparison& models) {
   base.fit = fit;
   base.rows = base.recording_fit->rows(fit.w);

@@ -34,6 +34,10 @@ struct Screening {
   /// assessment, stay those of the first place.
   void move_base(const BatchFit& fit, ModelComparison& models);
 
+  /// Returns what a nonlinear effect has to explain before it is run in full [sigma^2]: a good part of the structured
+  /// error, and enough to be believed.
+  double least_gain() const;
+
   FittedModel& base;
   double cost;                         ///< sum of squared errors [sigma^2]
   const bool beside_another, settled;  ///< see PreviousRound

@@ -29,11 +29,12 @@ class RefitTest : public ::testing::Test {
     base = fit_recording(std::move(recording_fit), w, 0.1);
     for (Candidate& candidate : propose_candidates(*base.recording_fit, base.fit.w, {})) {
       if (candidate.effect == "mass_damping") damping = candidate;
+      if (candidate.effect == "geometric_nonlinearity") finite_strain = candidate;
     }
   }
   Recording recording;
   FittedModel base;
-  Candidate damping;
+  Candidate damping, finite_strain;
 };
 
 TEST_F(RefitTest, FitsTheInitialSegmentFromAKnownPlace) {
@@ -57,7 +58,7 @@ TEST_F(RefitTest, ScansTheInitialSegmentAcrossThePriors) {
 
 TEST_F(RefitTest, FindsTheTruthFromThere) {
   RefitTask task{&damping, {}, {{"elasticity.young_modulus", 0.97 * kTruth}, {"mass_damping.alpha", 0.7 * kDamping}}};
-  const Refit refit = refit_with(base, task, no_rival);
+  const Refit refit = refit_with(base, task, {});
   EXPECT_NEAR(refit.parameters.at("elasticity.young_modulus"), kTruth, 0.01 * kTruth);
   EXPECT_NEAR(refit.parameters.at("mass_damping.alpha"), kDamping, 0.05 * kDamping);
   EXPECT_LT(refit.cost, 1.1 * base.rows.count());
@@ -75,10 +76,40 @@ TEST_F(RefitTest, FitsTimeStepsWithWhatMayWin) {
   const Eigen::VectorXd w = recording_fit->scan(recording_fit->model().parameters().prior_mean());
   base = fit_recording(std::move(recording_fit), w, 0.1);
   const RefitTask task{&damping, {}, {{"elasticity.young_modulus", kTruth}, {"mass_damping.alpha", kDamping}}};
-  const Refit alone = refit_with(base, task, no_rival), behind = refit_with(base, task, 0.5 * alone.fitted);
+  const Refit alone = refit_with(base, task, {});
+  RefitLimits limits;
+  limits.rival = 0.5 * alone.fitted;
+  const Refit behind = refit_with(base, task, limits);
   EXPECT_LT(alone.explained->error.squaredNorm(), 1.1 * base.rows.count());
   EXPECT_GT(alone.model->rows.error.squaredNorm(), 1.2 * base.rows.count());
   EXPECT_EQ(behind.explained->error, behind.model->rows.error);
+}
+
+// What the time steps do to the base is known before its refits. A refit that is fitted with them contains the base.
+TEST_F(RefitTest, FitsTimeStepsNoWorseThanTheBaseDoes) {
+  std::vector<std::string> effects = bar_under_gravity(prior(kTruth, 2.0));
+  effects.emplace_back("period_elongation: {step_squared: 4.0e-4}");
+  const Experiment truth(box_settings(effects), bar_mesh(), {kTruth});
+  recording.frames = see_all(truth, truth.film(0.0, kFilmed, kFrames), kNoise, 5);
+  base = fit_recording(
+      std::make_unique<RecordingFit>(box_settings(bar_under_gravity(prior(kTruth, 2.0))), bar_mesh(), recording),
+      base.fit.w, 0.1);
+  const Explained steps = compared_residual(base, {}, FittedNumerics::far);
+  ASSERT_FALSE(steps.steps.place.empty());
+  RefitLimits limits;
+  limits.steps = steps.steps;
+  const Refit refit = refit_with(base, {&damping, Eigen::VectorXd::Constant(1, 0.1)}, limits);
+  EXPECT_LT(refit.explained->error.squaredNorm(), 1.01 * steps.error.squaredNorm());
+}
+
+TEST_F(RefitTest, RunsANonlinearModelInFullWhereItsFirstOrderExplainsEnough) {
+  ASSERT_EQ(finite_strain.effect, "geometric_nonlinearity");
+  const RefitTask task{&finite_strain, Eigen::VectorXd::Constant(1, 1.0)};
+  RefitLimits limits;
+  limits.least_gain = base.rows.error.squaredNorm();
+  EXPECT_EQ(refit_with(base, task, limits).model, nullptr);
+  limits.least_gain = -no_rival;
+  EXPECT_NE(refit_with(base, task, limits).model, nullptr);
 }
 
 }  // namespace
