@@ -230,6 +230,8 @@ InputLinearisation::Row InputLinearisation::row(std::size_t index, const std::ve
     out.direct.rightCols(mesh_columns_) = mesh_columns(index, out.modes, force_noise_.precision(frame, there));
   Prediction corrected = there;
   corrected.predicted += out.direct * z.tail(direct_columns());
+  out.nodes = there.nodes;
+  out.places = there.places;
   out.error = there.measured - corrected.predicted;
   out.forces = force_noise_.note(frame, corrected, out.error);
   out.precision = force_noise_.precision(frame, corrected);

@@ -47,6 +47,8 @@ class InputLinearisation {
   /// A row object holds the rows of one frame. The columns of the loads' errors are `modes` times their modal amplitudes.
   struct Row {
     Eigen::VectorXd error, precision;
+    Eigen::VectorXi nodes;                          ///< as Prediction has them
+    Eigen::Matrix3Xd places;                        ///< where each row was measured [m]
     Eigen::MatrixXd parameters, constants, direct;  ///< d row / d each; direct: by poses, force sensors, mesh
     std::vector<Eigen::Index> forces;               ///< rows of force sensors
     Eigen::MatrixXd modes;  ///< d row / d amplitude of each mode, and then by each reaction of a run's output

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "observation/neighbour_differences.hpp"
+
 namespace tissue_stiffness {
 namespace {
 
@@ -22,6 +24,15 @@ SharedColumns shared_columns(const Sharing& sharing, const SharedParameters& par
         {part->rows.groups(), part->rows.size() - part->rows.first_of_mesh(), part->models.constants, mesh});
   }
   return {sharing, parameters, recordings};
+}
+
+// Returns the differences between neighbouring points, of unit variance for noise as stated. Force sensors have none.
+Eigen::VectorXd differences(NeighbourWeights& weights, const InputLinearisation::Row& row,
+                            const Eigen::VectorXd& residual) {
+  Eigen::VectorXd used = row.precision;
+  for (const Eigen::Index force : row.forces) used[force] = 0.0;
+  const Eigen::VectorXd root = used.cwiseSqrt();
+  return neighbour_differences(weights.of(row.nodes, row.places, used), root.cwiseInverse()) * root.cwiseProduct(residual);
 }
 
 void set(Eigen::VectorXd& all, const std::vector<Eigen::Index>& columns, const Eigen::VectorXd& own) {
@@ -70,15 +81,17 @@ MisfitTest JointRows::test(std::size_t recording, const Eigen::VectorXd& z, doub
   const Eigen::VectorXd move = columns_.of(recording, tolerated.z),
                         constants = columns_.constants_of(recording, tolerated.constants);
   MisfitTest out;
-  parts_[recording]->rows.each_row(
-      columns_.of(recording, z), [&](const InputLinearisation::Row& row, const Eigen::MatrixXd& amplitudes) {
-        const Eigen::Index p = row.parameters.cols(), d = row.direct.cols(), l = amplitudes.cols();
-        const Eigen::VectorXd explained = row.constants * constants + row.parameters * move.head(p) +
-                                          row.modes * (amplitudes * move.segment(p, l)) + row.direct * move.tail(d);
-        const Eigen::Index most = std::min<Eigen::Index>(kModes, std::max<Eigen::Index>(1, row.error.size() / 4));
-        out.add(row.error - explained, row.precision,
-                with_unit_columns(row.modes.leftCols(std::min(most, row.modes.cols())), row.forces));
-      });
+  NeighbourWeights weights;
+  parts_[recording]->rows.each_row(columns_.of(recording, z), [&](const InputLinearisation::Row& row,
+                                                                  const Eigen::MatrixXd& amplitudes) {
+    const Eigen::Index p = row.parameters.cols(), d = row.direct.cols(), l = amplitudes.cols();
+    const Eigen::VectorXd explained = row.constants * constants + row.parameters * move.head(p) +
+                                      row.modes * (amplitudes * move.segment(p, l)) + row.direct * move.tail(d);
+    const Eigen::Index most = std::min<Eigen::Index>(kModes, std::max<Eigen::Index>(1, row.error.size() / 4));
+    const Eigen::VectorXd residual = row.error - explained;
+    out.add(residual, row.precision, with_unit_columns(row.modes.leftCols(std::min(most, row.modes.cols())), row.forces));
+    out.add_differences(differences(weights, row, residual));
+  });
   out.set_fitted(fitted);
   return out;
 }

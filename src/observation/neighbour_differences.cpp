@@ -59,8 +59,7 @@ Eigen::VectorXd weights_of(const Point& point, const std::vector<Point>& neighbo
 
 }  // namespace
 
-SparseMatrix neighbour_differences(const Eigen::Matrix3Xd& places, const Eigen::VectorXd& sigma,
-                                   const Eigen::VectorXd& used) {
+SparseMatrix neighbour_weights(const Eigen::Matrix3Xd& places, const Eigen::VectorXd& used) {
   const std::vector<Point> all = points_of(places, used);
   const auto count = static_cast<Eigen::Index>(all.size());
   const Eigen::Index taken = count > static_cast<Eigen::Index>(kFewest) ? std::min(count, kPoints) : 0;
@@ -74,20 +73,46 @@ SparseMatrix neighbour_differences(const Eigen::Matrix3Xd& places, const Eigen::
     if (neighbours.size() < kFewest) continue;
     const Eigen::VectorXd weights = weights_of(point, neighbours, places);
     for (Eigen::Index c = 0; c < point.components; ++c) {
-      const auto scaled = [&](const Point& p) { return sigma[p.first + c]; };
-      double variance = std::pow(scaled(point), 2);
+      entries.emplace_back(first + c, point.first + c, -1.0);
       for (std::size_t j = 0; j < neighbours.size(); ++j)
-        variance += std::pow(weights[static_cast<Eigen::Index>(j)] * scaled(neighbours[j]), 2);
-      const double scale = 1.0 / std::sqrt(variance);
-      entries.emplace_back(first + c, point.first + c, -scale * scaled(point));
-      for (std::size_t j = 0; j < neighbours.size(); ++j)
-        entries.emplace_back(first + c, neighbours[j].first + c,
-                             scale * weights[static_cast<Eigen::Index>(j)] * scaled(neighbours[j]));
+        entries.emplace_back(first + c, neighbours[j].first + c, weights[static_cast<Eigen::Index>(j)]);
     }
   }
   SparseMatrix out(row, places.cols());
   out.setFromTriplets(entries.begin(), entries.end());
   return out;
+}
+
+SparseMatrix neighbour_differences(const SparseMatrix& weights, const Eigen::VectorXd& sigma) {
+  SparseMatrix out = weights;
+  Eigen::VectorXd variance = Eigen::VectorXd::Zero(out.rows());
+  const auto each = [&out](const auto& change) {
+    for (Eigen::Index c = 0; c < out.outerSize(); ++c) {
+      for (SparseMatrix::InnerIterator entry(out, c); entry; ++entry) change(entry);
+    }
+  };
+  each([&](auto& entry) {
+    entry.valueRef() *= sigma[entry.col()];
+    variance[entry.row()] += entry.value() * entry.value();
+  });
+  each([&](auto& entry) { entry.valueRef() /= std::sqrt(variance[entry.row()]); });
+  return out;
+}
+
+SparseMatrix neighbour_differences(const Eigen::Matrix3Xd& places, const Eigen::VectorXd& sigma,
+                                   const Eigen::VectorXd& used) {
+  return neighbour_differences(neighbour_weights(places, used), sigma);
+}
+
+const SparseMatrix& NeighbourWeights::of(const Eigen::VectorXi& nodes, const Eigen::Matrix3Xd& places,
+                                         const Eigen::VectorXd& used) {
+  const Eigen::Array<bool, Eigen::Dynamic, 1> now = used.array() > 0.0;
+  if (nodes.size() != nodes_.size() || nodes != nodes_ || (now != used_).any()) {
+    nodes_ = nodes;
+    used_ = now;
+    weights_ = neighbour_weights(places, used);
+  }
+  return weights_;
 }
 
 }  // namespace tissue_stiffness

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "bar.hpp"
 
@@ -25,6 +26,25 @@ TEST(MissingDamping, IsNeverCalledConverged) {
     EXPECT_FALSE(estimate.state_reason.empty());
   }
   EXPECT_EQ(estimator.estimate().state, EstimateState::model_invalid);
+}
+
+// The bar swells where no low mode moves it. Neighbouring points swell alike, so this is no noise.
+TEST(MissingSwelling, IsNotTakenForNoise) {
+  const TetMesh mesh = bar_mesh(10, 2, 2);
+  const Experiment bar(box_settings(bar_under_gravity(prior(kTruth, 3))), mesh, {kTruth});
+  std::vector<Frame> frames = see_all(bar, bar.film(0.0, kFilmed, 100), kNoise, 4);
+  for (Frame& frame : frames) {
+    Observation& seen = frame.observations.front();
+    for (Eigen::Index i = 0; i < seen.ids.size(); ++i) {
+      const Eigen::Vector3d rest = mesh.nodes.col(seen.ids[i]);
+      const double size = 8.0 * kNoise * std::exp(-std::pow((rest.x() - 0.05) / 0.02, 2)) * std::sin(10.0 * frame.time);
+      seen.points.col(i).tail<2>() += size * (rest - mesh.nodes.rowwise().mean()).tail<2>() / 0.01;
+    }
+  }
+  Estimator estimator(box_settings(bar_under_gravity(prior(2.0 * kTruth, 3))), mesh);
+  const StepResult last = step_through(estimator, frames);
+  EXPECT_NE(last.estimate.state, EstimateState::converged) << last.estimate.state_reason;
+  EXPECT_TRUE(holds(last.estimate.parameters.front(), kTruth));
 }
 
 TEST(MissingNothing, IsConvergedAndSure) {

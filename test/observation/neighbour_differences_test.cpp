@@ -82,5 +82,19 @@ TEST_F(NeighbourDifferences, NeedSixPointsAndTakeAFewOfMany) {
   EXPECT_EQ(neighbour_differences(cloud, ones, ones).rows(), 128);
 }
 
+// Named points keep their weights while the same ones are seen.
+TEST_F(NeighbourDifferences, KeepTheirWeightsOnTheSameNodes) {
+  Eigen::VectorXi nodes = Eigen::VectorXi::LinSpaced(3 * kPoints, 0, 3 * kPoints - 1);
+  NeighbourWeights known;
+  const SparseMatrix first = known.of(nodes, places_, used_);
+  EXPECT_EQ((first - neighbour_weights(places_, used_)).norm(), 0.0);
+  const Eigen::Matrix3Xd moved = places_.array().square();
+  EXPECT_EQ((known.of(nodes, moved, used_) - first).norm(), 0.0);
+  used_.head<3>().setZero();
+  EXPECT_EQ((known.of(nodes, moved, used_) - neighbour_weights(moved, used_)).norm(), 0.0);
+  nodes.reverseInPlace();
+  EXPECT_EQ((known.of(nodes, places_, used_) - neighbour_weights(places_, used_)).norm(), 0.0);
+}
+
 }  // namespace
 }  // namespace tissue_stiffness
