@@ -1,6 +1,6 @@
 """Truths of the independent simulator: bodies, loads, what is hidden in them, how strong. `python3 foreign_truths.py
 SIMULATOR NAME FOLDER` simulates one: the recording without noise, its mesh, and the model that is right but for what is
-hidden. `--check` in place of the folder says what half the time step changes."""
+hidden. `--check` in place of the folder says what half the time step and smaller elements change."""
 import copy
 import json
 import logging
@@ -416,9 +416,22 @@ def check_steps(path, name):
     print('%s: half the step changes %.2f %% of the motion' % (name, 100 * rms(runs[1] - runs[0]) / rms(runs[0])))
 
 
+def check_mesh(path, name):
+    """What elements of 0.64 times the size change: share of the motion."""
+    _, _, body, what = next(row for row in truth_list() if row[0] == name)
+    runs = []
+    for part in (1.0, 0.64):
+        bodies.BODIES[body]['body']['h'] *= part
+        simulator, scene = Simulator(path), Scene(name, body, what)
+        hidden = [Hidden(effect, scene) for effect, _ in what]
+        runs.append(extrapolated(simulator, scene, hidden, [h.start() for h in hidden], step_of(dict(what)))[0])
+    print('%s: smaller elements change %.1f %% of the motion' % (name, 100 * rms(runs[1] - runs[0]) / rms(runs[0])))
+
+
 if __name__ == '__main__':
     if sys.argv[3] == '--check':
         check_steps(*sys.argv[1:3])
+        check_mesh(*sys.argv[1:3])
     else:
         os.makedirs(sys.argv[3], exist_ok=True)
         simulate_truth(*sys.argv[1:])
