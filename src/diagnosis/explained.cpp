@@ -1,6 +1,8 @@
 #include "diagnosis/explained.hpp"
 
 #include <Eigen/Cholesky>
+#include <memory>
+#include <utility>
 
 #include "diagnosis/candidates.hpp"
 #include "diagnosis/comparison_numbers.hpp"
@@ -41,14 +43,65 @@ Eigen::VectorXd nested(const RecordingFit& recording_fit, Eigen::VectorXd w, con
   return w;
 }
 
-Eigen::VectorXd best_of(const RecordingFit& recording_fit, const std::vector<Eigen::VectorXd>& starts) {
-  RecordingFit::Place best;
-  for (const Eigen::VectorXd& start : starts) {
-    const RecordingFit::Place place = recording_fit.scan_near(start, {});
-    if (best.w.size() == 0 || place.cost < best.cost) best = place;
+// A model with its time steps as free parameters, beside its fit without them.
+class SteppedFit {
+ public:
+  explicit SteppedFit(const FittedModel& fitted)
+      : recording_fit_(with_time_steps(*fitted.recording_fit, fitted.fit.w)),
+        shared_(*recording_fit_, *fitted.recording_fit),
+        at_(shared_.extend(fitted.fit.w)),
+        prior_(recording_fit_->model().parameters().prior_std()),
+        steps_(at_.size() - fitted.fit.w.size()) {}
+
+  // `u`: where the linearisation leads [prior standard deviations].
+  void start_at(const Eigen::VectorXd& u) { starts_.emplace_back(at_ + prior_.cwiseProduct(u)); }
+  void start_at(const FittedSteps& known, const std::vector<std::string>& amplitudes) {
+    starts_.push_back(moved(*recording_fit_, at_, known.moves));
+    starts_.push_back(nested(*recording_fit_, at_, known.place, amplitudes));
   }
-  return best.w;
-}
+  void fit_from_best_start(double rival) {
+    RecordingFit::Place best;
+    for (const Eigen::VectorXd& start : starts_) {
+      const RecordingFit::Place place = recording_fit_->scan_near(start, {});
+      if (best.w.size() == 0 || place.cost < best.cost) best = place;
+    }
+    if (best.w.size() > 0) fit_ = recording_fit_->quick_fit(best.w, kSpread * prior_, 1.0, rival);
+  }
+  // Long steps lead a body that rings into another minimum, which no tangent shows.
+  void fit_from_long_steps() {
+    for (const double length : kSteps) {
+      Eigen::VectorXd start = at_;
+      start.tail(steps_) = length * prior_.tail(steps_);
+      const BatchFit fit =
+          recording_fit_->quick_fit(recording_fit_->scan_near(start, shared_.scanned()).w, shared_.spread());
+      if (fit_.w.size() == 0 || fit.cost < fit_.cost) fit_ = fit;
+    }
+  }
+
+  FittedSteps steps() const {
+    FittedSteps out;
+    out.cost = fit_.cost;
+    const auto& free = recording_fit_->model().parameters().free();
+    for (std::size_t i = 0; i < free.size(); ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      out.place[free[i].name] = fit_.w[k];
+      out.moves[free[i].name] = fit_.w[k] - at_[k];
+    }
+    return out;
+  }
+  FittedModel take() {
+    RecordingRows rows = recording_fit_->rows(fit_.w);
+    return {std::move(recording_fit_), std::move(fit_), std::move(rows)};
+  }
+
+ private:
+  std::unique_ptr<RecordingFit> recording_fit_;
+  NestedParameters shared_;
+  Eigen::VectorXd at_, prior_;
+  Eigen::Index steps_;  ///< number of the parameters that are steps, the last ones
+  std::vector<Eigen::VectorXd> starts_;
+  BatchFit fit_;
+};
 
 }  // namespace
 
@@ -98,39 +151,15 @@ Explained compared_residual(const FittedModel& fitted, const std::vector<std::st
   const Eigen::VectorXd u = most_probable(out.linearisation, out.error, all, with);
   const bool linear = without - with > 2.0 * kComparison.worthwhile && u[own] > 0.0;
   if (!linear && !far && known.place.empty()) return out;
-  FittedModel joint;
-  joint.recording_fit = with_time_steps(recording_fit, fitted.fit.w);
-  const RecordingFit& stepped = *joint.recording_fit;
-  const NestedParameters shared(stepped, recording_fit);
-  const Eigen::VectorXd at = shared.extend(fitted.fit.w), prior = stepped.model().parameters().prior_std();
-  const Eigen::VectorXd near = kSpread * prior;
-  std::vector<Eigen::VectorXd> starts;
-  if (linear) starts.emplace_back(at + prior.cwiseProduct(u));
-  if (!known.place.empty()) {
-    starts.push_back(moved(stepped, at, known.moves));
-    starts.push_back(nested(stepped, at, known.place, amplitudes));
-  }
-  if (!starts.empty()) joint.fit = stepped.quick_fit(best_of(stepped, starts), near, 1.0, rival);
-  // Long steps lead a body that rings into another minimum, which no tangent shows.
-  const std::vector<Eigen::Index> tuning = shared.scanned();
-  for (const double length : kSteps) {
-    if (!far) break;
-    Eigen::VectorXd far_off = at;
-    far_off.tail(all - own) = length * prior.tail(all - own);
-    const BatchFit fit = stepped.quick_fit(stepped.scan_near(far_off, tuning).w, shared.spread());
-    if (joint.fit.w.size() == 0 || fit.cost < joint.fit.cost) joint.fit = fit;
-  }
-  joint.rows = stepped.rows(joint.fit.w);
+  SteppedFit stepped(fitted);
+  if (linear) stepped.start_at(u);
+  if (!known.place.empty()) stepped.start_at(known, amplitudes);
+  stepped.fit_from_best_start(rival);
+  if (far) stepped.fit_from_long_steps();
+  FittedSteps steps = stepped.steps();
+  const FittedModel joint = stepped.take();
   const double gain = out.error.squaredNorm() - joint.rows.error.squaredNorm();
   if (!(gain > 2.0 * kComparison.worthwhile)) return out;
-  FittedSteps steps;
-  steps.cost = joint.fit.cost;
-  const auto& free = stepped.model().parameters().free();
-  for (std::size_t i = 0; i < free.size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    steps.place[free[i].name] = joint.fit.w[k];
-    steps.moves[free[i].name] = joint.fit.w[k] - at[k];
-  }
   return {joint.rows.error, linearise_model(joint, amplitudes), std::move(steps)};
 }
 
