@@ -406,32 +406,24 @@ def write_truth(simulator, scene, config, moved_by, area, folder):
                        default_flow_style=None)
 
 
-def check_steps(path, name):
-    """What half the step changes: share of the motion."""
+def check(path, name):
+    """What half the time step, and elements of 0.64 times the size, change: shares of the motion."""
     _, _, body, what = next(row for row in truth_list() if row[0] == name)
-    simulator, scene = Simulator(path), Scene(name, body, what)
-    hidden = [Hidden(effect, scene) for effect, _ in what]
-    strengths = [h.start() for h in hidden]
-    runs = [extrapolated(simulator, scene, hidden, strengths, step_of(dict(what)) / part)[0] for part in (1, 2)]
-    print('%s: half the step changes %.2f %% of the motion' % (name, 100 * rms(runs[1] - runs[0]) / rms(runs[0])))
 
-
-def check_mesh(path, name):
-    """What elements of 0.64 times the size change: share of the motion."""
-    _, _, body, what = next(row for row in truth_list() if row[0] == name)
-    runs = []
-    for part in (1.0, 0.64):
-        bodies.BODIES[body]['body']['h'] *= part
+    def run(part_of_step):
         simulator, scene = Simulator(path), Scene(name, body, what)
         hidden = [Hidden(effect, scene) for effect, _ in what]
-        runs.append(extrapolated(simulator, scene, hidden, [h.start() for h in hidden], step_of(dict(what)))[0])
-    print('%s: smaller elements change %.1f %% of the motion' % (name, 100 * rms(runs[1] - runs[0]) / rms(runs[0])))
+        return extrapolated(simulator, scene, hidden, [h.start() for h in hidden], part_of_step * step_of(dict(what)))[0]
+
+    plain = run(1.0)
+    print('%s: half the step changes %.2f %% of the motion' % (name, 100 * rms(run(0.5) - plain) / rms(plain)))
+    bodies.BODIES[body]['body']['h'] *= 0.64
+    print('%s: smaller elements change %.1f %% of the motion' % (name, 100 * rms(run(1.0) - plain) / rms(plain)))
 
 
 if __name__ == '__main__':
     if sys.argv[3] == '--check':
-        check_steps(*sys.argv[1:3])
-        check_mesh(*sys.argv[1:3])
+        check(*sys.argv[1:3])
     else:
         os.makedirs(sys.argv[3], exist_ok=True)
         simulate_truth(*sys.argv[1:])

@@ -35,12 +35,10 @@ Eigen::VectorXd moved(const RecordingFit& recording_fit, Eigen::VectorXd w, cons
 // Returns the place of a model with fewer effects; what is added stays as fitted, except amplitudes, which are absent.
 Eigen::VectorXd nested(const RecordingFit& recording_fit, Eigen::VectorXd w, const std::map<std::string, double>& place,
                        const std::vector<std::string>& amplitudes) {
-  const Eigen::VectorXd mean = recording_fit.model().parameters().prior_mean();
+  const ParameterSpace& parameters = recording_fit.model().parameters();
+  const Eigen::VectorXd mean = parameters.prior_mean();
   for (const std::string& name : amplitudes) w[recording_fit.index(name)] = mean[recording_fit.index(name)];
-  for (const auto& [name, value] : place) {
-    if (const Eigen::Index k = recording_fit.index(name); k >= 0) w[k] = value;
-  }
-  return w;
+  return parameters.coordinates(place, std::move(w));
 }
 
 // A model with its time steps as free parameters, beside its fit without them.
@@ -81,11 +79,10 @@ class SteppedFit {
   FittedSteps steps() const {
     FittedSteps out;
     out.cost = fit_.cost;
-    const auto& free = recording_fit_->model().parameters().free();
-    for (std::size_t i = 0; i < free.size(); ++i) {
-      const auto k = static_cast<Eigen::Index>(i);
-      out.place[free[i].name] = fit_.w[k];
-      out.moves[free[i].name] = fit_.w[k] - at_[k];
+    out.place = recording_fit_->model().parameters().values(fit_.w);
+    for (const auto& [name, value] : out.place) {
+      const Eigen::Index k = recording_fit_->index(name);
+      out.moves[name] = fit_.w[k] - at_[k];
     }
     return out;
   }

@@ -26,11 +26,10 @@ Linearisation linearise_model(const FittedModel& fitted, const std::vector<std::
 /// Returns the free parameters with normal priors that a model with fewer effects does not have.
 std::vector<std::string> added_amplitudes(const RecordingFit& recording_fit, const RecordingFit& smaller);
 
-/// This is where a model fits whose time steps are fitted, too [coordinates w, by name]. The maps are empty without such a
-/// fit.
+/// This is where a model fits whose time steps are fitted, too. The maps are by name, and empty without such a fit.
 struct FittedSteps {
-  std::map<std::string, double> place;
-  std::map<std::string, double> moves;  ///< from the fit without them
+  std::map<std::string, double> place;  ///< in the parameters' units
+  std::map<std::string, double> moves;  ///< from the fit without them [coordinates w]
   double cost = no_rival;               ///< of the training frames and the prior
 };
 

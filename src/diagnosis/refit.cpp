@@ -88,18 +88,19 @@ Start grown(const RecordingFit& recording_fit, Start start, double rival) {
 
 // Returns where the quick runs of a model fit best. What was linearised about the run itself is near already, and a first
 // order holds only near the base.
-Start quick_fit_of(const RecordingFit& quick, const FittedModel& base, const RefitTask& task, const RefitLimits& limits) {
-  if (!task.start.empty()) return grown(quick, start_of(quick, task.start), limits.rival);
+Start quick_fit_of(const RecordingFit& quick, const FittedModel& base, const RefitTask& task, bool near_base,
+                   double rival) {
+  if (!task.start.empty()) return grown(quick, start_of(quick, task.start), rival);
   const RecordingFit& known = *base.recording_fit;
   if (task.candidate->linearised || !task.candidate->linear) {
     Start start = starts(quick, known, base.fit.w, task).front();
-    start.fit = quick.quick_fit(start.w, start.spread, 1.0, limits.rival);
+    start.fit = quick.quick_fit(start.w, start.spread, 1.0, rival);
     return start;
   }
   std::string reason;
   std::vector<Start> from = starts(quick, known, base.fit.w, task);
-  if (limits.near_base) from.resize(1);
-  std::optional<Start> start = quick_start(quick, known, from, limits.rival, reason);
+  if (near_base) from.resize(1);
+  std::optional<Start> start = quick_start(quick, known, from, rival, reason);
   if (!start) throw NumericalError(task.effect() + " cannot be refitted: " + reason);
   return *start;
 }
@@ -126,9 +127,8 @@ FittedModel fit_extended(const FittedModel& base, const RefitTask& task, const R
   out.recording_fit = std::make_unique<RecordingFit>(settings, known, basis);
   borrow(*out.recording_fit, base, task);
   const bool nonlinear = out.recording_fit->model().nonlinear();
-  RefitLimits quick_limits = limits;
-  if (nonlinear) quick_limits.rival = base.fit.cost - limits.least_gain;
-  const Start start = quick_fit_of(*out.recording_fit, base, task, quick_limits);
+  const double rival = nonlinear ? base.fit.cost - limits.least_gain : limits.rival;
+  const Start start = quick_fit_of(*out.recording_fit, base, task, limits.near_base, rival);
   out.fit = start.fit;
   out.rows = out.recording_fit->rows(out.fit.w);
   const double gain = base.rows.error.squaredNorm() - out.rows.error.squaredNorm();
