@@ -5,8 +5,8 @@ namespace tissue_stiffness {
 /// A comparison decides by these numbers.
 struct ComparisonNumbers {
   double believed = 0.95;         ///< posterior probability that the set of explanations has to hold
-  double whole_mesh = 4.0 / 3.0;  ///< of what a mesh refined once changes, at second order: one standard deviation
-  double left_of_mesh = 0.5;      ///< of what a mesh refined once changes: standard deviation in directions that D lacks
+  double whole_mesh = 4.0 / 3.0;  ///< of what a mesh refined once changes, at second order: error of any mesh as fine
+  double least_of_mesh = 0.5;     ///< of what a mesh refined once changes: smallest error in directions that D lacks
   double unknown_mesh = 0.02;     ///< of the motion: what a finer mesh changes where that cannot be computed
   double worthwhile = 5.0;        ///< log evidence from which an unknown is fitted
   double smallest = 1e-3;      ///< of its prior's standard deviation: smallest size that an added amplitude's prior holds

@@ -113,7 +113,7 @@ void ModelComparison::allow_for_mesh(const Eigen::VectorXd& change) {
   const Eigen::Index modes = mesh_.cols() - 1, frames = static_cast<Eigen::Index>(offsets_.size()) - 1;
   // The mesh's error has the mean square of that part of D, and D's memory. Amplitudes that are independent from frame to
   // frame say as much of it if they have its spectral density.
-  constexpr double part = kComparison.left_of_mesh / kComparison.whole_mesh;
+  constexpr double part = kComparison.least_of_mesh / kComparison.whole_mesh;
   const Eigen::VectorXd square = part * part * mesh_.leftCols(modes).colwise().squaredNorm().transpose();
   Eigen::VectorXd memory(modes);
   for (Eigen::Index i = 0; i < modes; ++i) memory[i] = repeated(parts.shares.col(i));
@@ -205,10 +205,16 @@ Assessment ModelComparison::assess(const Explained& explained) const {
   out.log_evidence = log_mean_exp(evidence);
   out.left = explained.error - j * u;
   out.test = test_of(out.left, static_cast<double>(model.columns.cols()));
-  constexpr double part = kComparison.left_of_mesh / kComparison.whole_mesh;
-  const double across = mesh_.cols() > 0 ? mesh_.rightCols(1).squaredNorm() : 0.0;
-  out.test.set_numerics(part * part * along_modes(mesh_) / used_.sum(), part * part * across / used_.sum());
+  out.lenient_test = out.test;
+  allow_for_mesh(kComparison.least_of_mesh, out.test);
+  allow_for_mesh(kComparison.whole_mesh, out.lenient_test);
   return out;
+}
+
+void ModelComparison::allow_for_mesh(double left, MisfitTest& test) const {
+  const double square = std::pow(left / kComparison.whole_mesh, 2) / used_.sum();
+  const double across = mesh_.cols() > 0 ? mesh_.rightCols(1).squaredNorm() : 0.0;
+  test.set_numerics(square * along_modes(mesh_), square * across);
 }
 
 MisfitTest ModelComparison::test_of(const Eigen::VectorXd& error, double fitted) const {

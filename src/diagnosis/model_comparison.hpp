@@ -15,8 +15,9 @@ struct Assessment {
   double log_evidence = 0.0;    ///< log p(e), up to a constant that all models share
   double log_likelihood = 0.0;  ///< log p(e | u) at the most probable u, up to the constant of log_evidence
   Eigen::VectorXd left;         ///< residual at the most probable u
-  /// It tests `left`, because missing physics moves the lowest modes.
+  /// It tests `left`, because missing physics moves the lowest modes. The mesh may leave `least_of_mesh`.
   MisfitTest test;
+  MisfitTest lenient_test;  ///< the same where the mesh may leave `whole_mesh`
 };
 
 /// The comparison assesses models of one recording by their residuals e at their fits. It takes all rows, in the noise's
@@ -26,8 +27,9 @@ struct Assessment {
 /// D is what a finer mesh changes, divided into its shares along the lowest modes and the rest. v is the mean square of
 /// the differences between neighbouring points, which missing physics hardly moves, and m is their memory from frame to
 /// frame. Both are those of the model that leaves least there. B_k L_k B_k^T, of frame k, is a displacement along the
-/// lowest modes, because the mesh's error has directions that D does not hold. Its mean square is that of `left_of_mesh`
-/// times what a refinement changes along each mode. The test allows for as much. No coefficient of the numerics is believed
+/// lowest modes, because the mesh's error has directions that D does not hold. Its mean square is that of `least_of_mesh`
+/// times what a refinement changes along each mode. The test allows for as much, and the lenient one for `whole_mesh`.
+/// No coefficient of the numerics is believed
 /// beyond `most_numerics` standard deviations. The evidence is Laplace's approximation (MacKay 2003, eq. 28.10) with the
 /// numerics as further unknowns. An added amplitude's prior is an even mixture of normal ones from its stated width down to
 /// `smallest` of it. So an effect pays for the order of its size and not for the width that a proposal happens to state.
@@ -58,6 +60,9 @@ class ModelComparison {
                         const std::function<bool(Eigen::Index)>& inside) const;
 
  private:
+  /// Lets the test pass what the mesh may leave, in units of what a mesh refined once changes.
+  void allow_for_mesh(double left, MisfitTest& test) const;
+
   Eigen::VectorXd used_;   ///< 1 where a row says something, else 0
   Eigen::VectorXi nodes_;  ///< of each row, or kForceRow
   std::vector<Eigen::Index> offsets_;

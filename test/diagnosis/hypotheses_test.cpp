@@ -17,14 +17,22 @@ Hypothesis hypothesis(std::vector<std::string> effects, double weight, bool pass
   out.effects = std::move(effects);
   if (random_force) out.random_force = std::make_shared<const RandomForce>();
   out.log_weight = weight;
-  out.passes = passes;
-  out.z = passes && !out.effects.empty() ? 0.0 : 1e3;
+  out.strict = {passes && !out.effects.empty() ? 0.0 : 1e3, passes, true};
+  out.lenient = out.strict;
+  return out;
+}
+
+// What it leaves may be the mesh's error, if that is as large as it can be.
+Hypothesis within_the_mesh(std::vector<std::string> effects, double weight) {
+  Hypothesis out = hypothesis(std::move(effects), weight, false);
+  out.strict = {6.0, false, true};
+  out.lenient = {1.0, true, false};
   return out;
 }
 
 Comparison compared(std::vector<Hypothesis> hypotheses) {
   Comparison out;
-  out.passes_without_mesh = hypotheses.front().passes;
+  out.passes_without_mesh = hypotheses.front().strict.passes;
   out.hypotheses = std::move(hypotheses);
   out.find_probabilities();
   return out;
@@ -41,12 +49,14 @@ TEST_F(CleanBar, AssessesAllHypothesesAlike) {
     c.hypotheses.push_back(std::move(h));
   }
   c.assess(models);
-  EXPECT_FALSE(c.given().structured);
+  EXPECT_FALSE(c.given().strict.structured);
   for (const Hypothesis& h : c.hypotheses) {
     const Assessment own = models.assess(*h.explained);
     EXPECT_DOUBLE_EQ(h.log_weight, own.log_evidence - 1.5);
-    EXPECT_DOUBLE_EQ(h.z, own.test.z());
-    EXPECT_EQ(h.passes, own.test.passes());
+    EXPECT_DOUBLE_EQ(h.strict.z, own.test.z());
+    EXPECT_EQ(h.strict.passes, own.test.passes());
+    EXPECT_DOUBLE_EQ(h.lenient.z, own.lenient_test.z());
+    EXPECT_EQ(h.lenient.passes, own.lenient_test.passes());
   }
   EXPECT_GT(c.given().probability, 0.99);
 }
@@ -108,7 +118,7 @@ TEST(Comparison, MergesWhatIsFoundBesideALeader) {
 TEST(Comparison, MakesNoneOfTheseNoLikelierByTryingMoreModels) {
   std::vector<Hypothesis> list{hypothesis({}, 0.0, false), hypothesis({"a"}, 500.0, true),
                                hypothesis({"a"}, 900.0, false, true)};
-  list[1].z = 2.6;
+  list[1].strict.z = list[1].lenient.z = 2.6;
   const double none = std::exp(log_bayes_factor_bound(2.6));
   EXPECT_NEAR(compared(list).none_of_these(), none / (1.0 + none), 1e-9);
   for (const char* const other : {"b", "c", "d"}) list.push_back(hypothesis({other}, 900.0, false, true));
@@ -116,11 +126,49 @@ TEST(Comparison, MakesNoneOfTheseNoLikelierByTryingMoreModels) {
   EXPECT_NEAR(compared(list).probability_of("a"), 1.0 / (1.0 + none), 1e-9);
 }
 
+// Nothing is missing as long as the largest error of the mesh explains the residual.
+TEST(Comparison, GivesTheGivenModelTheLargestErrorOfTheMesh) {
+  const Comparison c =
+      compared({within_the_mesh({}, 0.0), hypothesis({"a"}, 50.0, true), hypothesis({}, 80.0, false, true)});
+  EXPECT_EQ(c.probability_of("a"), 0.0);
+  EXPECT_LT(c.none_of_these(), 0.75);
+  EXPECT_EQ(judge(c), Verdict::numerics);
+}
+
+// An effect that leaves the largest error of the mesh explains nothing by that: a wrong one would leave it, too. Where a
+// larger model leaves less, the effect is missing, and what is more in that model may be the mesh's error.
+TEST(Comparison, NamesWhatLeavesTheLargestErrorOfTheMeshWhereALargerModelVouchesForIt) {
+  std::vector<Hypothesis> list{hypothesis({}, 0.0, false), within_the_mesh({"a"}, 50.0), hypothesis({"c"}, 20.0, false),
+                               hypothesis({"a"}, 90.0, false, true)};
+  EXPECT_EQ(judge(compared(list)), Verdict::unexplained);
+  list.push_back(hypothesis({"c", "b"}, 30.0, true));
+  EXPECT_EQ(judge(compared(list)), Verdict::unexplained);
+  list.push_back(hypothesis({"a", "b"}, 80.0, true));
+  const Comparison c = compared(list);
+  EXPECT_EQ(judge(c), Verdict::missing);
+  EXPECT_EQ(c.best().effects, std::vector<std::string>{"a"});
+  EXPECT_EQ(believed_effects(c), std::vector<std::string>{"a"});
+  ASSERT_EQ(c.traces().size(), 1u);
+  EXPECT_EQ(c.traces().front().hypothesis->effects, (std::vector<std::string>{"a", "b"}));
+}
+
+// Something unknown may act beside a named effect wherever the strict test leaves structure.
+TEST(Comparison, AsksTheStrictTestForSomethingUnknownBesideANamedEffect) {
+  std::vector<Hypothesis> list{hypothesis({}, 0.0, false), hypothesis({"a"}, 50.0, true),
+                               hypothesis({"a"}, 90.0, false, true)};
+  list[1].strict = {2.97, true, true};
+  list[1].lenient = {1.0, true, false};
+  const double none = std::exp(log_bayes_factor_bound(2.97));
+  EXPECT_NEAR(compared(list).none_of_these(), none / (1.0 + none), 1e-9);
+  list[1].strict.structured = false;
+  EXPECT_EQ(compared(list).none_of_these(), 0.0);
+}
+
 // What is added to a model that leaves nothing but noise is too small to be missing, whatever it gains.
 TEST(Comparison, GivesNothingToWhatExtendsASufficientModel) {
   std::vector<Hypothesis> list{hypothesis({}, 0.0, true), hypothesis({"a"}, 50.0, true), hypothesis({"b"}, 49.0, true),
                                hypothesis({"a", "b"}, 90.0, true), hypothesis({"a"}, 60.0, false, true)};
-  list[1].structured = false;
+  list[1].strict.structured = list[1].lenient.structured = false;
   Comparison c = compared(list);
   EXPECT_NEAR(c.probability_of("a"), 1.0 / (1.0 + std::exp(-1.0)), 1e-9);
   EXPECT_EQ(c.none_of_these(), 0.0);
@@ -128,7 +176,7 @@ TEST(Comparison, GivesNothingToWhatExtendsASufficientModel) {
   EXPECT_EQ(judge(c), Verdict::missing);
   EXPECT_EQ(believed_effects(c), (std::vector<std::string>{"a", "b"}));  // each of them alone
   EXPECT_LT(c.hypotheses[2].probability, 1.0);
-  c.hypotheses[0].structured = false;
+  c.hypotheses[0].strict.structured = c.hypotheses[0].lenient.structured = false;
   c.find_probabilities();
   EXPECT_EQ(c.given().probability, 1.0);
   EXPECT_EQ(judge(c), Verdict::adequate);
@@ -137,13 +185,13 @@ TEST(Comparison, GivesNothingToWhatExtendsASufficientModel) {
 // Evidence from across the lowest modes counts no more than what the residual of the smaller model shows.
 TEST(Comparison, TakesNoMoreEvidenceThanTheResidualShows) {
   std::vector<Hypothesis> list{hypothesis({}, 0.0, true), hypothesis({"a"}, 500.0, true), hypothesis({"b"}, 499.0, true)};
-  list[0].z = 2.0;
+  list[0].strict.z = list[0].lenient.z = 2.0;
   const Comparison slight = compared(list);
   const double given = std::exp(-log_bayes_factor_bound(2.0)), both = 1.0 + std::exp(-1.0);
   EXPECT_NEAR(slight.given().probability, given / (given + both), 1e-9);
   EXPECT_NEAR(slight.probability_of("a") / slight.probability_of("b"), std::exp(1.0), 1e-9);
   EXPECT_EQ(judge(slight), Verdict::adequate);
-  list[0].z = 4.0;
+  list[0].strict.z = list[0].lenient.z = 4.0;
   EXPECT_EQ(judge(compared(list)), Verdict::missing);
   list[1].log_weight = list[2].log_weight = 1.0;  // less than that is not raised
   EXPECT_NEAR(compared(list).given().probability, 1.0 / (1.0 + 2.0 * std::exp(1.0)), 1e-9);
@@ -153,7 +201,7 @@ TEST(Comparison, TakesNoMoreEvidenceThanTheResidualShows) {
 TEST(Comparison, TracesWhatMayActWithoutBeingMissed) {
   std::vector<Hypothesis> list{hypothesis({}, 0.0, true), hypothesis({"a"}, 2000.0, true), hypothesis({"b"}, 1999.0, true),
                                hypothesis({"c"}, 5000.0, false, true)};
-  list[0].structured = false;
+  list[0].strict.structured = list[0].lenient.structured = false;
   const Comparison strong = compared(list);
   const std::vector<Trace> halves = strong.traces();
   ASSERT_EQ(halves.size(), 2u);
@@ -163,7 +211,7 @@ TEST(Comparison, TracesWhatMayActWithoutBeingMissed) {
   list[1].log_weight = list[2].log_weight = -2.0;
   const Comparison weak = compared(list);
   EXPECT_NEAR(weak.traces()[0].share, 1.0 / (2.0 + std::exp(2.0)), 1e-9);
-  list[0].structured = true;
+  list[0].strict.structured = list[0].lenient.structured = true;
   EXPECT_TRUE(compared(list).traces().empty());
 }
 
@@ -172,7 +220,7 @@ TEST(Comparison, GivesToSomethingUnknownWhatTheTestSays) {
   const auto none_of_these = [](double z, bool passes, double evidence) {
     std::vector<Hypothesis> list{hypothesis({}, 0.0, false), hypothesis({"a"}, 50.0, passes), hypothesis({"b"}, 20.0, true),
                                  hypothesis({}, 0.0, false, true), hypothesis({"a"}, evidence, false, true)};
-    list[1].z = z;
+    list[1].strict.z = list[1].lenient.z = z;
     for (const std::size_t i : {3, 4}) list[i].log_prior = list[i].log_prior_of_force = -3.0;
     return compared(list).none_of_these();
   };
@@ -189,7 +237,7 @@ TEST(Judge, NeedsBothAProbabilityAndAFit) {
     std::vector<Hypothesis> list{hypothesis({}, std::log(given), given_passes),
                                  hypothesis({"a"}, std::log(named), named_passes),
                                  hypothesis({}, std::log(none), false, true)};
-    if (given > named) list[0].z = 0.0;
+    if (given > named) list[0].strict.z = list[0].lenient.z = 0.0;
     return judge(compared(std::move(list)));
   };
   EXPECT_EQ(verdict(0.9, true, 0.1, true, 0.0), Verdict::adequate);
@@ -200,12 +248,12 @@ TEST(Judge, NeedsBothAProbabilityAndAFit) {
   // An effect that barely passes does not explain a recording in which something unknown is as probable beforehand.
   std::vector<Hypothesis> barely{hypothesis({}, 0.0, false), hypothesis({"a"}, 50.0, true),
                                  hypothesis({"a"}, 60.0, false, true)};
-  barely[1].z = 2.9;
+  barely[1].strict.z = barely[1].lenient.z = 2.9;
   EXPECT_EQ(judge(compared(barely)), Verdict::unexplained);
   // Nor does one of several explanations in which something unknown acts, if these are more probable together.
   std::vector<Hypothesis> several{hypothesis({}, 0.0, false), hypothesis({"a"}, 50.0, true),
                                   hypothesis({}, 60.0, false, true), hypothesis({"b"}, 60.0, false, true)};
-  several[1].z = 1.3;
+  several[1].strict.z = several[1].lenient.z = 1.3;
   several[2].log_prior_of_force = several[3].log_prior_of_force = 0.3 - log_bayes_factor_bound(1.3);
   EXPECT_EQ(compared(several).best().effects, std::vector<std::string>{"a"});
   EXPECT_NEAR(compared(several).none_of_these(), 1.0 / (1.0 + std::exp(-0.3)), 1e-9);
