@@ -22,12 +22,10 @@ constexpr double kTolerance = 1e-9;  // [m]
 
 class PaperScheme : public Scheme {
  public:
-  PaperScheme(const ModelSettings& settings, const TetMesh& mesh)
-      : Scheme(settings, mesh),
-        filter_(model_->parameters().prior_mean(), model_->parameters().prior_std().cwiseAbs2().asDiagonal()) {
-    for (const ObservationSettings& observation : settings.observations) {
+  PaperScheme(ObservedBody& body, const Pace& pace) : Scheme(body, pace), model_(body.model()), filter_(prior()) {
+    for (const ObservationSettings& observation : model_.settings().observations) {
       if (observation.kind != ObservationSettings::Kind::vertices) {
-        throw InputError(settings.name + ": observations", "a kind that is not `vertices`",
+        throw InputError(model_.settings().name + ": observations", "a kind that is not `vertices`",
                          "vertices only with `estimator: paper` (its state is the observed vertices' differences)");
       }
     }
@@ -38,14 +36,13 @@ class PaperScheme : public Scheme {
             " Newmark steps a frame"};
   }
   std::vector<Misfit> free_run(const FreeFrameVisitor& visit) override {
-    return compare_free_run(frames_, {start()}, model_->parameters().theta(filter_.mean()), visit);
+    return body_.compare_free_run(frames_, {body_.start()}, model_.parameters().theta(filter_.mean()), visit);
   }
   Eigen::MatrixXd parameter_covariance() const override { return filter_.covariance(); }
 
- protected:
   StepResult process(const Frame& frame) override {
     StepResult result;
-    result.estimate = estimate_;
+    result.estimate = last_.estimate;
     Stopwatch watch(result.seconds);
     frames_.push_back(frame);
     fields_.push_back(interpolate(frame));
@@ -60,30 +57,35 @@ class PaperScheme : public Scheme {
     return result;
   }
 
+ protected:
   void forget() override {
     frames_.clear();
     fields_.clear();
-    filter_ = UnscentedFilter(model_->parameters().prior_mean(), model_->parameters().prior_std().cwiseAbs2().asDiagonal());
+    filter_ = prior();
   }
 
  private:
+  UnscentedFilter prior() const {
+    return {model_.parameters().prior_mean(), model_.parameters().prior_std().cwiseAbs2().asDiagonal()};
+  }
+
   // Returns the displacement of every node that agrees with the observed vertices and stores the least elastic energy.
   Eigen::VectorXd interpolate(const Frame& frame) {
-    const Prediction rest = at_rest(frame);
+    const Prediction rest = body_.at_rest(frame);
     if (!holder_.ready() || held_.size() != rest.nodes.size() || held_ != rest.nodes) hold(rest.nodes);
-    Eigen::VectorXd load = Eigen::VectorXd::Zero(model_->fem().dof_count());
+    Eigen::VectorXd load = Eigen::VectorXd::Zero(model_.fem().dof_count());
     for (Eigen::Index i = 0; i < rest.nodes.size(); ++i) {
       const Eigen::Index dof = 3 * rest.nodes[i] + i % 3;
-      if (model_->fixed()[static_cast<std::size_t>(dof)] == 0) load[dof] += hold_ * (rest.measured[i] - rest.predicted[i]);
+      if (model_.fixed()[static_cast<std::size_t>(dof)] == 0) load[dof] += hold_ * (rest.measured[i] - rest.predicted[i]);
     }
     return holder_.solve(load);
   }
 
   void hold(const Eigen::VectorXi& nodes) {
-    SparseMatrix k = model_->rest_stiffness(model_->parameters().theta(model_->parameters().prior_mean()));
+    SparseMatrix k = model_.rest_stiffness(model_.parameters().theta(model_.parameters().prior_mean()));
     hold_ = kHold * k.diagonal().mean();
     for (Eigen::Index i = 0; i < nodes.size(); ++i) k.coeffRef(3 * nodes[i] + i % 3, 3 * nodes[i] + i % 3) += hold_;
-    fix_dofs(k, model_->fixed(), k.diagonal().mean());
+    fix_dofs(k, model_.fixed(), k.diagonal().mean());
     holder_.factorize(k);
     held_ = nodes;
   }
@@ -93,7 +95,7 @@ class PaperScheme : public Scheme {
     const std::size_t n = frames_.size();
     const double t0 = frames_[n - 3].time, t1 = frames_[n - 2].time, t2 = frames_[n - 1].time;
     const double step = 0.5 * (t2 - t0);
-    const ModelSystem system(*model_, model_->parameters().theta(w));
+    const ModelSystem system(model_, model_.parameters().theta(w));
     GeneralizedAlpha newmark(system, 1.0, kTolerance);
     DynamicState x;
     x.time = t1;
@@ -109,29 +111,30 @@ class PaperScheme : public Scheme {
       Eigen::MatrixXd rows;
       for (Eigen::Index i = 0; i < points.cols(); ++i) {
         const Eigen::VectorXd u = run(points.col(i)).displacement;
-        const Prediction p = predict_frame(*model_, operators_, frame, model_->parameters().theta(points.col(i)), u);
+        const Prediction p = predict_frame(model_, body_.operators(), frame, model_.parameters().theta(points.col(i)), u);
         if (i == 0) rows.resize(p.predicted.size(), points.cols());
         rows.col(i) = p.predicted;
       }
       return rows;
     };
-    const Prediction rest = at_rest(frame);
+    const Prediction rest = body_.at_rest(frame);
     const FilterUpdate innovation =
         filter_.update(rest.measured, outputs(filter_.sigma_points()), Noise::independent(rest.sigma));
     const Eigen::VectorXd u = run(filter_.mean()).displacement;
-    prediction_ = predict_frame(*model_, operators_, frame, model_->parameters().theta(filter_.mean()), u);
-    displacement_ = Eigen::Map<const Eigen::Matrix3Xd>(u.data(), 3, u.size() / 3);
+    last_.prediction = predict_frame(model_, body_.operators(), frame, model_.parameters().theta(filter_.mean()), u);
+    last_.set_displacement([u](Eigen::Ref<Eigen::VectorXd> out) { out = u; });
     result.used = true;
-    result.misfit = frame_misfit(frame.time, prediction_, rest.predicted, model_->mesh().node_count());
+    result.misfit = frame_misfit(frame.time, last_.prediction, rest.predicted, model_.mesh().node_count());
     result.misfit.nis = innovation.nis;
     result.misfit.dof = innovation.dof;
-    estimate_ = summarise_posterior(model_->parameters().free(), filter_.mean(), filter_.covariance());
-    estimate_.time = frame.time;
-    estimate_.state = EstimateState::converging;
-    estimate_.state_reason = "the paper's estimator does not test its misfit";
-    result.estimate = estimate_;
+    last_.estimate = summarise_posterior(model_.parameters().free(), filter_.mean(), filter_.covariance());
+    last_.estimate.time = frame.time;
+    last_.estimate.state = EstimateState::converging;
+    last_.estimate.state_reason = "the paper's estimator does not test its misfit";
+    result.estimate = last_.estimate;
   }
 
+  Model& model_;
   UnscentedFilter filter_;
   std::vector<Frame> frames_;
   std::deque<Eigen::VectorXd> fields_;  ///< interpolated displacement of the last three frames
@@ -142,8 +145,8 @@ class PaperScheme : public Scheme {
 
 }  // namespace
 
-std::unique_ptr<Scheme> make_paper_scheme(const ModelSettings& settings, const TetMesh& mesh) {
-  return std::make_unique<PaperScheme>(settings, mesh);
+std::unique_ptr<Scheme> make_paper_scheme(ObservedBody& body, const Pace& pace, const ReuseSources&) {
+  return std::make_unique<PaperScheme>(body, pace);
 }
 
 }  // namespace tissue_stiffness

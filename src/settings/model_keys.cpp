@@ -147,6 +147,14 @@ std::vector<KeySpec> observation_keys() {
   return keys;
 }
 
+std::vector<std::string> estimators() {
+  return {
+#define ESTIMATOR(name) #name,
+#include "settings/estimators.def"
+#undef ESTIMATOR
+  };
+}
+
 std::vector<KeySpec> run_keys() {
   return {
       plain_key("time", Kind::map, "", "of the run"),
@@ -155,7 +163,7 @@ std::vector<KeySpec> run_keys() {
       number_key("time.step", "s", kPositive, kInfinity, 0, "of the integration; 0: chosen"),
       plain_key("initial", Kind::map, "", "the body's motion at the start; without it, rest"),
       required_key("initial.velocity", Kind::numbers, "m/s", "[x, y, z] of the whole body, or `from_frames`"),
-      choice_key("estimator", {"unscented", "paper"}, false,
+      choice_key("estimator", estimators(), false,
                  "the default, or the scheme of Yang & Lin 2016 as it was published, to compare with"),
       choice_key("inputs", {"uncertain", "exact"}, false,
                  "whether the interval counts what loads, poses and constants may be off, or takes them as exact"),

@@ -100,8 +100,7 @@ ModelSettings read_model(const Value& root, const std::string& directory) {
   model.observations = read_observations(root.at("observations"));
   if (root.has("time")) model.time = read_time(root.at("time"));
   if (root.has("initial")) model.initial = read_initial(root.at("initial"));
-  const bool paper = read_choice(root, find_key(model_keys(), "estimator")) == "paper";
-  model.estimator = paper ? EstimatorKind::paper : EstimatorKind::unscented;
+  model.estimator = read_choice(root, find_key(model_keys(), "estimator"));
   model.exact_inputs = read_choice(root, find_key(model_keys(), "inputs")) == "exact";
   model.stale_after = read_number(root, find_key(model_keys(), "stale_after"));
   model.window = read_integer(root, find_key(model_keys(), "window"));

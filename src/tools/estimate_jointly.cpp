@@ -28,8 +28,8 @@ BodyRecording read(const RecordingFile& file, std::size_t max_frames, const Stop
   out.predicted = file.predicted;
   out.settings = load_model(file.model);
   if (out.settings.map) throw InputError(file.model + ": map", "a map", "none, with several recordings");
-  if (out.settings.estimator == EstimatorKind::paper)
-    throw InputError(file.model + ": estimator", "paper", "the default one, with several recordings");
+  if (out.settings.estimator != ModelSettings().estimator)
+    throw InputError(file.model + ": estimator", out.settings.estimator, "the default one, with several recordings");
   RecordingReader reader(file.recording, out.settings, [&stop] { stop.check(); });
   out.recording = read_recording(reader, out.settings, file.recording);
   out.mesh = reader.mesh();

@@ -122,9 +122,15 @@ TEST(BadFrames, FramesBeforeTheStartAreSkipped) {
   EXPECT_TRUE(holds(estimator.estimate().parameters.front(), kTruth));
 }
 
+constexpr const char* kEstimators[] = {
+#define ESTIMATOR(name) #name,
+#include "settings/estimators.def"
+#undef ESTIMATOR
+};
+
 TEST(Reset, EqualsAFreshEstimatorBitForBit) {
   const std::vector<Frame> frames = recording(), others = recording(25, 2);
-  for (const std::string kind : {"unscented", "paper"}) {
+  for (const std::string kind : kEstimators) {
     const ModelSettings settings = box_settings(kBar, "[{vertices: {topic: /v, noise: 1.0e-4}}]", "estimator: " + kind);
     Estimator fresh(settings, bar_mesh()), used(settings, bar_mesh());
     step_through(used, others);

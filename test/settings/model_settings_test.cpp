@@ -79,7 +79,7 @@ TEST(ModelSettings, ReadsEveryKey) {
   EXPECT_EQ(model.time.step, 0.004);
   EXPECT_EQ(model.initial.kind, InitialSettings::Kind::velocity);
   EXPECT_EQ(model.initial.velocity, Eigen::Vector3d(0, 0, -4));
-  EXPECT_EQ(model.estimator, EstimatorKind::paper);
+  EXPECT_EQ(model.estimator, "paper");
 }
 
 TEST(ModelSettings, LeavesTheEffectsArgumentsToTheEffectsLayer) {

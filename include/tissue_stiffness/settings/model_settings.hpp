@@ -118,8 +118,6 @@ struct MapSettings {
   double factor = 0.0;  ///< 1-sigma factor by which the modulus varies, > 1
 };
 
-enum class EstimatorKind { unscented, paper };
-
 /// Settings of a complete model file.
 struct ModelSettings {
   std::string name;       ///< file or parameter namespace, used in messages
@@ -133,7 +131,7 @@ struct ModelSettings {
   bool exact_inputs = false;  ///< take every load, pose and constant as exact, whatever its tolerance
   double stale_after = 2.0;   ///< time without a measurement or a load after which the estimate is stale [s]
   int window = 4000;  ///< frames kept for reprocessing; when it is full, the older half becomes the prior of the others
-  EstimatorKind estimator = EstimatorKind::unscented;  ///< key `estimator: unscented | paper`
+  std::string estimator = "unscented";  ///< name of the scheme that turns frames into an estimate
   /// Parameters whose prior is an earlier estimate of the same body. No key: a node that resumes fills it.
   std::vector<std::string> known_before;
   std::optional<MapSettings> map;  ///< empty: each elasticity has one modulus, and no map is made
