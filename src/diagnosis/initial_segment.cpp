@@ -16,21 +16,32 @@ constexpr int kRankingVectors = 12;  // for each effect, of models that only ran
 // speaks of a strong effect, and a signed one.
 constexpr double kPositive[] = {-3.0, -2.25, -1.5, -0.75, 0.75, 1.5}, kSigned[] = {-1.0, -0.3, 0.3, 1.0};
 
-// Returns starts from the base's fit and the proposal's prior, at several strengths.
-std::vector<Eigen::VectorXd> strengths(const RecordingFit& recording_fit, const Eigen::VectorXd& w,
-                                       const Candidate& candidate) {
-  std::vector<Eigen::VectorXd> out{w};
+// Returns the parameters that say how strong the candidate is.
+std::vector<Eigen::Index> amplitude_of(const Candidate& candidate, const RecordingFit& recording_fit,
+                                       const RecordingFit& base) {
+  std::vector<Eigen::Index> out;
   const auto& free = recording_fit.model().parameters().free();
   for (std::size_t i = 0; i < free.size(); ++i) {
-    if (free[i].name.rfind(candidate.effect + "." + candidate.proposal.amplitude, 0) != 0) continue;
+    const bool added = base.index(free[i].name) < 0;
+    const auto own = free[i].name.find("." + candidate.proposal.amplitude);
+    if (added && own != std::string::npos) out.push_back(static_cast<Eigen::Index>(i));
+  }
+  return out;
+}
+
+// Returns starts from the base's fit and the proposal's prior, at several strengths.
+std::vector<Eigen::VectorXd> strengths(const RecordingFit& recording_fit, const Eigen::VectorXd& w,
+                                       const std::vector<Eigen::Index>& amplitude) {
+  std::vector<Eigen::VectorXd> out{w};
+  for (const Eigen::Index k : amplitude) {
+    const FreeParameter& free = recording_fit.model().parameters().free()[static_cast<std::size_t>(k)];
     const auto try_at = [&](double deviations) {
-      const auto k = static_cast<Eigen::Index>(i);
       Eigen::VectorXd there = w;
       there[k] += deviations * recording_fit.model().parameters().prior_std()[k];
-      const double value = free[i].to_value(there[k]);
-      if (free[i].lower < value && value < free[i].upper) out.push_back(std::move(there));
+      const double value = free.to_value(there[k]);
+      if (free.lower < value && value < free.upper) out.push_back(std::move(there));
     };
-    if (free[i].prior.kind == Quantity::Kind::log_normal) {
+    if (free.prior.kind == Quantity::Kind::log_normal) {
       std::for_each(std::begin(kPositive), std::end(kPositive), try_at);
     } else {
       std::for_each(std::begin(kSigned), std::end(kSigned), try_at);
@@ -60,13 +71,20 @@ std::vector<RankedFit> scan_initial_segment(const FittedModel& base, const Candi
   const RecordingFit& known = *base.recording_fit;
   const RecordingFit recording_fit = extended(base, candidate);
   const NestedParameters shared(recording_fit, known);
-  const std::vector<Eigen::Index> tuning = shared.scanned(), acting = shared.acting();
+  const std::vector<Eigen::Index> tuning = shared.scanned();
   const double complexity = penalty(base, recording_fit);
+  const Eigen::VectorXd known_place = shared.extend(base.fit.w);
+  std::vector<Eigen::Index> linear = shared.acting(), amplitude = amplitude_of(candidate, recording_fit, known);
+  std::vector<Eigen::VectorXd> starts{known_place};
+  // Where the motion is linear in the strength, each point of the scan finds it by itself.
+  if (std::none_of(amplitude.begin(), amplitude.end(), [&shared](Eigen::Index i) { return shared.tunes(i); })) {
+    linear.insert(linear.end(), amplitude.begin(), amplitude.end());
+  } else {
+    starts = strengths(recording_fit, known_place, amplitude);
+  }
   std::vector<RankedFit> out;
-  for (const Eigen::VectorXd& start : strengths(recording_fit, shared.extend(base.fit.w), candidate)) {
-    const RecordingFit::Place loaded = recording_fit.project({start}, acting, kInitialSegment);
-    const RecordingFit::Place tuned = recording_fit.scan_prior(loaded.w, tuning, kInitialSegment);
-    const RecordingFit::Place place = recording_fit.project(tuned, acting, kInitialSegment);
+  for (const Eigen::VectorXd& start : starts) {
+    const RecordingFit::Place place = recording_fit.scan_prior(start, tuning, linear, kInitialSegment);
     out.push_back({recording_fit.model().parameters().values(place.w), place.cost + complexity});
   }
   std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.deviance < b.deviance; });

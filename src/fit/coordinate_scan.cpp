@@ -1,10 +1,13 @@
 #include "fit/coordinate_scan.hpp"
 
+#include <utility>
+
 #include "forward/for_each_index.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
+constexpr int kHalvings = 3;
 constexpr int kNearPoints = 10;      // on either side of the start
 constexpr double kNearReach = 0.45;  // prior standard deviations: steps of 5 % of a modulus known to a factor of 3
 
@@ -32,6 +35,28 @@ ScanResult scan_coordinates(const std::function<double(const Eigen::VectorXd&)>&
     result.best = place(static_cast<int>(lowest));
     result.step[i] = step;
     result.moved = true;
+  }
+  return result;
+}
+
+ScanResult refine_coordinates(const std::function<double(const Eigen::VectorXd&)>& cost, const Eigen::VectorXd& start,
+                              double cost_there, const Eigen::VectorXd& step) {
+  ScanResult result{start, step, cost_there, false};
+  for (int k = 1; k <= kHalvings; ++k) {
+    result.step *= 0.5;
+    for (Eigen::Index i = 0; i < start.size(); ++i) {
+      if (step[i] == 0.0) continue;
+      const Eigen::VectorXd centre = result.best;
+      for (const double side : {-1.0, 1.0}) {
+        Eigen::VectorXd place = centre;
+        place[i] += side * result.step[i];
+        const double there = cost(place);
+        if (!(there < result.lowest)) continue;
+        result.lowest = there;
+        result.best = std::move(place);
+        result.moved = true;
+      }
+    }
   }
   return result;
 }

@@ -21,6 +21,11 @@ ScanResult scan_coordinates(const std::function<double(const Eigen::VectorXd&)>&
                             const Eigen::VectorXd& prior_mean, const Eigen::VectorXd& prior_std, int points,
                             double reach = 2.5);
 
+/// Moves each coordinate of a place by 1/2, 1/4 and 1/8 of its `step` to the side where the cost is lower, because a
+/// minimum lies between the points of a scan. `cost_there` is the cost at `start`.
+ScanResult refine_coordinates(const std::function<double(const Eigen::VectorXd&)>& cost, const Eigen::VectorXd& start,
+                              double cost_there, const Eigen::VectorXd& step);
+
 /// Scans like scan_coordinates, but along some coordinates only, in small steps and not far from `start`.
 ScanResult scan_around(const std::function<double(const Eigen::VectorXd&)>& cost, const Eigen::VectorXd& start,
                        const Eigen::VectorXd& prior_std, const std::vector<Eigen::Index>& coordinates);

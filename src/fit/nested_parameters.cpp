@@ -1,6 +1,7 @@
 #include "fit/nested_parameters.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 
 namespace tissue_stiffness {
@@ -18,14 +19,17 @@ NestedParameters::NestedParameters(const RecordingFit& fit, const RecordingFit& 
   }
 }
 
+bool NestedParameters::tunes(Eigen::Index parameter) const {
+  const ParameterSpace& parameters = fit_.model().parameters();
+  const Eigen::VectorXd w = parameters.prior_mean();
+  Eigen::VectorXd there = w;
+  there[parameter] += parameters.prior_std()[parameter];
+  return !fit_.model().same_answer(parameters.theta(w), parameters.theta(there));
+}
+
 std::vector<Eigen::Index> NestedParameters::tuning() const {
-  const Eigen::VectorXd w = fit_.model().parameters().prior_mean(), std = fit_.model().parameters().prior_std();
   std::vector<Eigen::Index> out;
-  for (const Eigen::Index i : all_) {
-    if (!fit_.model().same_answer(fit_.model().parameters().theta(w),
-                                  fit_.model().parameters().theta(w + std[i] * Eigen::VectorXd::Unit(w.size(), i))))
-      out.push_back(i);
-  }
+  std::copy_if(all_.begin(), all_.end(), std::back_inserter(out), [this](Eigen::Index i) { return tunes(i); });
   return out;
 }
 

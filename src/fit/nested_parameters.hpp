@@ -15,8 +15,7 @@ class NestedParameters {
 
   /// Returns the indices, in the model, of the free parameters that the base has too.
   const std::vector<Eigen::Index>& all() const { return all_; }
-  /// Returns those of them that change how the body answers a load, or when that is seen. What acts on the body is left
-  /// out.
+  /// Returns those of them that tune the body. What acts on it is left out.
   std::vector<Eigen::Index> tuning() const;
   /// Returns those of them along which a fit's start is scanned. A run that rings has other minima where its frequencies
   /// shift. Among the parameters that shift frequencies, only the one whose prior shifts them most is scanned, because the
@@ -24,6 +23,8 @@ class NestedParameters {
   std::vector<Eigen::Index> scanned() const;
   /// Returns those that are not tuning: what acts on the body.
   std::vector<Eigen::Index> acting() const;
+  /// Returns whether a parameter of the model changes how the body answers a load, or when that is seen.
+  bool tunes(Eigen::Index parameter) const;
   /// Converts `w` of the base to the coordinates of the model; parameters that the base lacks stay at their prior.
   Eigen::VectorXd extend(const Eigen::VectorXd& w) const;
   /// Returns the spread of the sigma points for a first fit from the fit of the base: narrow in its parameters, wide in the

@@ -21,6 +21,7 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr int kScanPoints = 12;
+constexpr double kScanReach = 2.5;     // prior standard deviations to either side
 constexpr int kSteps = 6;              // a frame, and half of each: their period error would be taken for an effect
 constexpr int kMostRuns = 8;           // moves of a fit from one full run to the next
 constexpr int kMostCuts = 3;           // cuts of a move that makes it worse
@@ -349,11 +350,14 @@ RecordingFit::Place RecordingFit::scan_near(const Eigen::VectorXd& start, const 
 }
 
 RecordingFit::Place RecordingFit::scan_prior(const Eigen::VectorXd& start, const std::vector<Eigen::Index>& coordinates,
-                                             double share) const {
+                                             const std::vector<Eigen::Index>& linear, double share) const {
   Eigen::VectorXd std = Eigen::VectorXd::Zero(start.size());
   for (const Eigen::Index i : coordinates) std[i] = model_.parameters().prior_std()[i];
-  const ScanResult far = scan_coordinates(cost_of(share), start, model_.parameters().prior_mean(), std, kScanPoints);
-  return {far.best, far.lowest};
+  const auto solved = [&](const Eigen::VectorXd& w) { return project({w}, linear, share); };
+  const auto cost = linear.empty() ? cost_of(share) : [&](const Eigen::VectorXd& w) { return solved(w).cost; };
+  const ScanResult far = scan_coordinates(cost, start, model_.parameters().prior_mean(), std, kScanPoints, kScanReach);
+  const ScanResult refined = refine_coordinates(cost, far.best, far.lowest, kScanReach / kScanPoints * std);
+  return linear.empty() ? Place{refined.best, refined.lowest} : solved(refined.best);
 }
 
 RecordingFit::Place RecordingFit::project(const Place& from, const std::vector<Eigen::Index>& linear, double share) const {

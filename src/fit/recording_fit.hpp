@@ -86,8 +86,11 @@ class RecordingFit {
     double cost = no_rival;  ///< sum of squared errors over those frames [sigma^2]; infinite where it is not known
   };
   Place scan_near(const Eigen::VectorXd& start, const std::vector<Eigen::Index>& coordinates, double share = 1.0) const;
-  /// Returns the best place of a coarse scan of these coordinates over their whole prior, the others held at `start`.
-  Place scan_prior(const Eigen::VectorXd& start, const std::vector<Eigen::Index>& coordinates, double share) const;
+  /// Returns the best place of a coarse scan of these coordinates over their whole prior, refined between the scan's
+  /// points. The others are held at `start`.
+  /// Coordinates in which the run is `linear` are solved for at every point, because they decide how well it can fit.
+  Place scan_prior(const Eigen::VectorXd& start, const std::vector<Eigen::Index>& coordinates,
+                   const std::vector<Eigen::Index>& linear, double share) const;
   /// Moves coordinates in which the run is linear to where they fit best while the others are held (variable_projection).
   /// It is repeated, because robust weights follow the fit. The result is no worse than `from`, if they are not quite
   /// linear.
