@@ -29,6 +29,11 @@ struct Candidate {
 
   /// Returns whether the amplitude is within its bounds: nothing is explained by a negative damping.
   bool allows(const Eigen::VectorXd& amplitude) const;
+  /// Returns whether a parameter that it adds to a model is its amplitude. The effect has a number in that name where the
+  /// model has another one of its kind (gravity#2.acceleration_x).
+  bool has_amplitude(const std::string& parameter) const {
+    return parameter.find("." + proposal.amplitude) != std::string::npos;
+  }
 };
 
 /// The library holds the models that tangents were read from: one of the linear effects, and one of the others.

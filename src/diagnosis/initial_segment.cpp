@@ -23,8 +23,7 @@ std::vector<Eigen::Index> amplitude_of(const Candidate& candidate, const Recordi
   const auto& free = recording_fit.model().parameters().free();
   for (std::size_t i = 0; i < free.size(); ++i) {
     const bool added = base.index(free[i].name) < 0;
-    const auto own = free[i].name.find("." + candidate.proposal.amplitude);
-    if (added && own != std::string::npos) out.push_back(static_cast<Eigen::Index>(i));
+    if (added && candidate.has_amplitude(free[i].name)) out.push_back(static_cast<Eigen::Index>(i));
   }
   return out;
 }

@@ -24,8 +24,8 @@ struct Start {
 
 // Returns the tangent's amplitude of an added parameter; NaN where it has none. The amplitude's components come in order.
 double tangent_value(const FreeParameter& parameter, const RefitTask& task, Eigen::Index& taken) {
-  const bool amplitude = parameter.name.find("." + task.candidate->proposal.amplitude) != std::string::npos;
-  if (!amplitude || taken == task.amplitude.size()) return std::numeric_limits<double>::quiet_NaN();
+  if (!task.candidate->has_amplitude(parameter.name) || taken == task.amplitude.size())
+    return std::numeric_limits<double>::quiet_NaN();
   return task.candidate->absent + task.amplitude[taken++];
 }
 

@@ -68,7 +68,7 @@ class RefitSearch {
   std::vector<Start> scanned();
   std::vector<Start> variants_of_leaders();
   void fit(std::vector<Start>& starts);
-  static std::map<std::string, double> parameters_for(const Candidate& candidate, const Refit& leader);
+  std::map<std::string, double> parameters_for(const Candidate& candidate, const Refit& leader) const;
   /// Returns whether more than noise and the mesh's error is to be explained. What a model that already has an effect
   /// leaves is small once it passes its test.
   bool wide() const {
@@ -143,12 +143,12 @@ std::vector<const Refit*> RefitSearch::leaders() const {
 }
 
 // Returns where a variant starts: where its leader fits. If they differ in a place, the leader's place is not taken over.
-std::map<std::string, double> RefitSearch::parameters_for(const Candidate& candidate, const Refit& leader) {
+std::map<std::string, double> RefitSearch::parameters_for(const Candidate& candidate, const Refit& leader) const {
   if (candidate.proposal.is_other_kind_of(leader.candidate->proposal)) return leader.parameters;
-  const std::string own = leader.effect + ".", amplitude = own + candidate.proposal.amplitude;
   std::map<std::string, double> out;
   for (const auto& [name, value] : leader.parameters) {
-    if (name.rfind(own, 0) != 0 || name.rfind(amplitude, 0) == 0) out[name] = value;
+    const bool added = screening_.base.recording_fit->index(name) < 0;
+    if (!added || candidate.has_amplitude(name)) out[name] = value;
   }
   return out;
 }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "../box_model.hpp"
+#include "diagnosis/initial_segment.hpp"
 #include "settings/extend_model.hpp"
 #include "verification/experiment.hpp"
 
@@ -95,6 +96,34 @@ TEST_F(BarWithADamping, ReadsTangentsInTheVectorsOfAnEarlierScreening) {
   }
   std::printf("tangents in an earlier screening's vectors: off by %.1e at most\n", worst);
   EXPECT_LT(worst, 0.02);
+}
+
+// A second gravity has a number in its name, and the scan finds its strength at each modulus that it tries.
+TEST(InitialSegment, FindsTheStrengthOfASecondEffectOfAKind) {
+  std::vector<std::string> effects{
+      "inertia: {density: 1000}",
+      "elasticity: {law: linear, poisson_ratio: 0.45, young_modulus: {prior: 20.0e3, factor: 3}}", "fixed: {region: clamp}",
+      "gravity: {acceleration: [0.5, 1, -3]}"};
+  const ModelSettings given = box_settings(effects);
+  effects.push_back("gravity: {acceleration: [0, 4, 8]}");
+  const Experiment experiment(box_settings(effects), bar_mesh(), {20e3});
+  Recording recording;
+  recording.frames = see_all(experiment, experiment.film(0.0, 0.02, 60), kNoise, 1);
+  FittedModel base;
+  base.recording_fit = std::make_unique<RecordingFit>(given, bar_mesh(), recording);
+  base.fit.w = Eigen::VectorXd::Constant(1, std::log(55e3));  // a wrong minimum
+  base.rows = base.recording_fit->rows(base.fit.w);
+  const std::vector<Candidate> candidates = propose_candidates(*base.recording_fit, base.fit.w, {});
+  const auto gravity =
+      std::find_if(candidates.begin(), candidates.end(), [](const Candidate& c) { return c.effect == "gravity"; });
+  ASSERT_NE(gravity, candidates.end());
+  EXPECT_TRUE(gravity->has_amplitude("gravity#2.acceleration_y"));
+  EXPECT_FALSE(gravity->has_amplitude("elasticity.young_modulus"));
+  std::map<std::string, double> found = scan_initial_segment(base, *gravity).front().parameters;
+  EXPECT_NEAR(found["elasticity.young_modulus"] / 20e3, 1.0, 0.03);
+  EXPECT_NEAR(found["gravity#2.acceleration_x"], 0.0, 0.2);
+  EXPECT_NEAR(found["gravity#2.acceleration_y"], 4.0, 0.2);
+  EXPECT_NEAR(found["gravity#2.acceleration_z"], 8.0, 0.4);
 }
 
 }  // namespace
