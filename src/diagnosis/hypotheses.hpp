@@ -79,8 +79,8 @@ struct Comparison {
 
 /// Returns `adequate` if the given model is believed (P(given) > 1 - `believed`) and its residual passes, `numerics` if it
 /// passes only with an error of the mesh, the largest at most. Returns `missing` if it is not believed, named effects alone
-/// are the most probable hypothesis, what they leave passes strictly or another hypothesis vouches for
-/// them, and "none of these" is less probable than not. Otherwise it returns `unexplained`.
+/// are the most probable hypothesis, what they leave passes strictly or another hypothesis vouches for them, and "none of
+/// these" is less probable than not. Otherwise it returns `unexplained`.
 Verdict judge(const Comparison& comparison);
 
 /// Returns the effects of the fewest hypotheses that hold the believed part of the probability of all that name any effect,
