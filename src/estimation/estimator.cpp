@@ -5,6 +5,7 @@
 
 #include "estimation/identify.hpp"
 #include "estimation/scheme.hpp"
+#include "tissue_stiffness/types/error.hpp"
 #include "types/repeated_observation.hpp"
 
 namespace tissue_stiffness {
@@ -12,13 +13,17 @@ namespace {
 
 using Maker = std::unique_ptr<Scheme> (*)(ObservedBody&, const Pace&, const ReuseSources&);
 
-const std::map<std::string, Maker>& makers() {
+Maker maker_of(const ModelSettings& settings) {
   static const std::map<std::string, Maker> list = {
 #define ESTIMATOR(name) {#name, &make_##name##_scheme},
 #include "settings/estimators.def"
 #undef ESTIMATOR
   };
-  return list;
+  const auto known = list.find(settings.estimator);
+  if (known != list.end()) return known->second;
+  std::string names;
+  for (const auto& [name, maker] : list) names += (names.empty() ? "" : ", ") + name;
+  throw InputError(settings.name + ": estimator", settings.estimator, names);
 }
 
 }  // namespace
@@ -27,7 +32,7 @@ const std::map<std::string, Maker>& makers() {
 class Estimator::Implementation {
  public:
   Implementation(const ModelSettings& settings, const TetMesh& mesh, const ReuseSources& relatives)
-      : body(settings, mesh, relatives), scheme(makers().at(settings.estimator)(body, pace, relatives)) {}
+      : body(settings, mesh, relatives), scheme(maker_of(settings)(body, pace, relatives)) {}
 
   StepResult step(const Frame& frame) {
     if (!holds_repeats(frame)) return step_once(frame);

@@ -22,7 +22,7 @@ constexpr double kTolerance = 1e-9;  // [m]
 
 class PaperScheme : public Scheme {
  public:
-  PaperScheme(ObservedBody& body, const Pace& pace) : Scheme(body, pace), model_(body.model()), filter_(prior()) {
+  PaperScheme(ObservedBody& body, const Pace& pace) : Scheme(body, pace), filter_(prior()) {
     for (const ObservationSettings& observation : model_.settings().observations) {
       if (observation.kind != ObservationSettings::Kind::vertices) {
         throw InputError(model_.settings().name + ": observations", "a kind that is not `vertices`",
@@ -134,7 +134,6 @@ class PaperScheme : public Scheme {
     result.estimate = last_.estimate;
   }
 
-  Model& model_;
   UnscentedFilter filter_;
   std::vector<Frame> frames_;
   std::deque<Eigen::VectorXd> fields_;  ///< interpolated displacement of the last three frames

@@ -27,7 +27,7 @@ class Scheme {
  public:
   /// Body and pace have to outlive the scheme.
   Scheme(ObservedBody& body, const Pace& pace)
-      : body_(body), pace_(pace), last_(body.prior_estimate(), body.model().mesh().node_count()) {}
+      : body_(body), model_(body.model()), pace_(pace), last_(body.prior_estimate(), body.model().mesh().node_count()) {}
   virtual ~Scheme() = default;
   Scheme(const Scheme&) = delete;
   Scheme& operator=(const Scheme&) = delete;
@@ -60,6 +60,7 @@ class Scheme {
   virtual void forget() = 0;
 
   ObservedBody& body_;
+  Model& model_;
   const Pace& pace_;
   LastFrame last_;
 };

@@ -23,7 +23,6 @@ class UnscentedScheme : public Scheme {
  public:
   UnscentedScheme(ObservedBody& body, const Pace& pace, const ReuseSources& relatives)
       : Scheme(body, pace),
-        model_(body.model()),
         filter_run_(new_filter()),
         reprocessing_(model_),
         systematic_(model_),
@@ -241,7 +240,6 @@ class UnscentedScheme : public Scheme {
     return change;
   }
 
-  Model& model_;
   std::vector<Frame> waiting_;  ///< until the initial velocity can be read
   std::shared_ptr<IteratedFilter> filter_run_;
   Reprocessing reprocessing_;

@@ -6,6 +6,8 @@
 #include <random>
 
 #include "bar.hpp"
+#include "settings/key_spec.hpp"
+#include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -122,15 +124,9 @@ TEST(BadFrames, FramesBeforeTheStartAreSkipped) {
   EXPECT_TRUE(holds(estimator.estimate().parameters.front(), kTruth));
 }
 
-constexpr const char* kEstimators[] = {
-#define ESTIMATOR(name) #name,
-#include "settings/estimators.def"
-#undef ESTIMATOR
-};
-
 TEST(Reset, EqualsAFreshEstimatorBitForBit) {
   const std::vector<Frame> frames = recording(), others = recording(25, 2);
-  for (const std::string kind : kEstimators) {
+  for (const std::string& kind : find_key(model_keys(), "estimator").choices) {
     const ModelSettings settings = box_settings(kBar, "[{vertices: {topic: /v, noise: 1.0e-4}}]", "estimator: " + kind);
     Estimator fresh(settings, bar_mesh()), used(settings, bar_mesh());
     step_through(used, others);
@@ -140,6 +136,12 @@ TEST(Reset, EqualsAFreshEstimatorBitForBit) {
     step_through(fresh, frames);
     EXPECT_TRUE(bytes(used) == bytes(fresh)) << kind;
   }
+}
+
+TEST(Estimators, AnUnknownNameIsRefused) {
+  ModelSettings settings = box_settings(kBar);
+  settings.estimator = "kalman";
+  EXPECT_THROW(Estimator(settings, bar_mesh()), InputError);
 }
 
 TEST(Reset, ForgetsAnInitialVelocityReadFromFrames) {
