@@ -349,32 +349,42 @@ RecordingFit::Place RecordingFit::scan_near(const Eigen::VectorXd& start, const 
   return {nearest.best, nearest.lowest};
 }
 
-RecordingFit::Place RecordingFit::scan_prior(const Eigen::VectorXd& start, const std::vector<Eigen::Index>& coordinates,
-                                             const std::vector<Eigen::Index>& linear, double share) const {
-  Eigen::VectorXd std = Eigen::VectorXd::Zero(start.size());
-  for (const Eigen::Index i : coordinates) std[i] = model_.parameters().prior_std()[i];
-  const auto solved = [&](const Eigen::VectorXd& w) { return project({w}, linear, share); };
-  const auto cost = linear.empty() ? cost_of(share) : [&](const Eigen::VectorXd& w) { return solved(w).cost; };
-  const ScanResult far = scan_coordinates(cost, start, model_.parameters().prior_mean(), std, kScanPoints, kScanReach);
-  const ScanResult refined = refine_coordinates(cost, far.best, far.lowest, kScanReach / kScanPoints * std);
-  return linear.empty() ? Place{refined.best, refined.lowest} : solved(refined.best);
-}
+namespace {
 
-RecordingFit::Place RecordingFit::project(const Place& from, const std::vector<Eigen::Index>& linear, double share) const {
-  if (linear.empty()) return from;
-  std::vector<Frame> room;
-  const FitProblem first = problem(quick(), first_of_training(share, room));
-  const auto cost = [&first](const Eigen::VectorXd& w) { return free_fit(first, w).cost; };
-  Place out = from;
+// Returns the place after those coordinates, in which the run is linear, have been solved for.
+RecordingFit::Place solved_for(const std::vector<Eigen::Index>& linear, const FitProblem& problem,
+                               const RecordingFit::Place& from) {
+  const auto cost = [&problem](const Eigen::VectorXd& w) { return free_fit(problem, w).cost; };
+  RecordingFit::Place out = from;
   if (!std::isfinite(out.cost)) out.cost = cost(out.w);
-  for (int k = 0; k < kMostSolves; ++k) {
-    Place next{variable_projection(first, out.w, linear)};
+  for (int k = 0; k < kMostSolves && !linear.empty(); ++k) {
+    RecordingFit::Place next{variable_projection(problem, out.w, linear)};
     next.cost = cost(next.w);
     if (!(next.cost < out.cost)) break;
     std::swap(out, next);
     if (!(out.cost < (1.0 - kGainOfSolve) * next.cost)) break;
   }
   return out;
+}
+
+}  // namespace
+
+RecordingFit::Place RecordingFit::scan_prior(const Eigen::VectorXd& start, const std::vector<Eigen::Index>& coordinates,
+                                             const std::vector<Eigen::Index>& linear, double share) const {
+  Eigen::VectorXd std = Eigen::VectorXd::Zero(start.size());
+  for (const Eigen::Index i : coordinates) std[i] = model_.parameters().prior_std()[i];
+  std::vector<Frame> room;
+  const FitProblem first = problem(quick(), first_of_training(share, room));
+  const auto cost = [&](const Eigen::VectorXd& w) { return solved_for(linear, first, {w}).cost; };
+  const ScanResult far = scan_coordinates(cost, start, model_.parameters().prior_mean(), std, kScanPoints, kScanReach);
+  const ScanResult refined = refine_coordinates(cost, far.best, far.lowest, kScanReach / kScanPoints * std);
+  return solved_for(linear, first, {refined.best, linear.empty() ? refined.lowest : no_rival});
+}
+
+RecordingFit::Place RecordingFit::project(const Place& from, const std::vector<Eigen::Index>& linear, double share) const {
+  if (linear.empty()) return from;
+  std::vector<Frame> room;
+  return solved_for(linear, problem(quick(), first_of_training(share, room)), from);
 }
 
 std::function<double(const Eigen::VectorXd&)> RecordingFit::cost_of(double share) const {
