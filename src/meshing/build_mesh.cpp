@@ -1,11 +1,13 @@
 #include "tissue_stiffness/meshing/build_mesh.hpp"
 
 #include <cmath>
+#include <sstream>
 
 #include "meshing/bend_boundary.hpp"
 #include "meshing/bodies.hpp"
 #include "meshing/file_ending.hpp"
 #include "meshing/mesh_limits.hpp"
+#include "meshing/refine.hpp"
 #include "meshing/tet_file_check.hpp"
 #include "meshing/tetgen_mesher.hpp"
 #include "meshing/triangle_surface.hpp"
@@ -32,9 +34,19 @@ void require_positive(const std::string& key, double value) {
   throw InputError("mesh." + key, std::to_string(value) + " m", "above 0 m for a mesh from a contour");
 }
 
-}  // namespace
+TetMesh refined(const MeshSettings& settings, TetMesh mesh) {
+  const double count = std::pow(8.0, settings.refine) * static_cast<double>(mesh.tets.cols());
+  if (settings.refine > 0 && count > kMostTetrahedra) {
+    std::ostringstream found, allowed;
+    found << settings.refine << ", which makes " << count << " tetrahedra";
+    allowed << "at most " << kMostTetrahedra << " tetrahedra";
+    throw InputError("mesh.refine", found.str(), allowed.str());
+  }
+  for (int k = 0; k < settings.refine; ++k) mesh = refine_mesh(mesh);
+  return mesh;
+}
 
-TetMesh build_mesh(const MeshSettings& settings, const std::function<void()>& checkpoint) {
+TetMesh mesh_of_file(const MeshSettings& settings, const std::function<void()>& checkpoint) {
   if (is_tet_file(settings.file))
     return smooth_unless_faceted(settings, load_tet_mesh(settings.file, settings.scale, settings.order));
   const std::string where = "mesh file " + settings.file;
@@ -45,9 +57,8 @@ TetMesh build_mesh(const MeshSettings& settings, const std::function<void()>& ch
   return smooth_unless_faceted(settings, fill(surface, settings, false, where, checkpoint));
 }
 
-TetMesh build_mesh(const MeshSettings& settings, const Contour& contour, const Camera& camera,
-                   const std::function<void()>& checkpoint) {
-  if (settings.source == MeshSettings::Source::file) return build_mesh(settings, checkpoint);
+TetMesh mesh_of_contour(const MeshSettings& settings, const Contour& contour, const Camera& camera,
+                        const std::function<void()>& checkpoint) {
   check_outline(contour);
   require_positive("max_edge_length", settings.max_edge_length);
   if (settings.source == MeshSettings::Source::extrude) {
@@ -62,6 +73,18 @@ TetMesh build_mesh(const MeshSettings& settings, const Contour& contour, const C
       fill(revolution_surface(fit.profile, settings.max_edge_length), settings, true, "mesh.revolve", checkpoint);
   curve_boundary(mesh, fit.profile);
   return mesh;
+}
+
+}  // namespace
+
+TetMesh build_mesh(const MeshSettings& settings, const std::function<void()>& checkpoint) {
+  return refined(settings, mesh_of_file(settings, checkpoint));
+}
+
+TetMesh build_mesh(const MeshSettings& settings, const Contour& contour, const Camera& camera,
+                   const std::function<void()>& checkpoint) {
+  if (settings.source == MeshSettings::Source::file) return build_mesh(settings, checkpoint);
+  return refined(settings, mesh_of_contour(settings, contour, camera, checkpoint));
 }
 
 }  // namespace tissue_stiffness

@@ -34,6 +34,7 @@ std::vector<KeySpec> mesh_keys() {
       positive("mesh.extrude.depth", "m", "thickness"),
       number_key("mesh.extrude.max_edge_length", "m", kPositive, kInfinity, 0, edge),
       integer_key("mesh.order", 1, 2, 2, "2: 10-node tetrahedra; 1: 4-node, which are too stiff"),
+      integer_key("mesh.refine", 0, 2, 0, "number of times that every tetrahedron is cut into eight"),
       choice_key("mesh.boundary", {"smooth", "faceted"}, false,
                  "whether facets that meet at a blunt angle stand for a smooth surface, or are the body's own"),
       {"mesh.discretisation_error",

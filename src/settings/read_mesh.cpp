@@ -1,4 +1,5 @@
 #include <limits>
+#include <variant>
 
 #include "settings/key_spec.hpp"
 #include "settings/read_sections.hpp"
@@ -96,15 +97,22 @@ MeshSettings read_mesh(const Value& map, const std::string& directory) {
   }
   mesh.scale_tolerance = read_number(map, key("mesh.scale_tolerance"));
   mesh.order = read_integer(map, key("mesh.order"));
+  mesh.refine = read_integer(map, key("mesh.refine"));
   mesh.faceted = read_choice(map, key("mesh.boundary")) == "faceted";
   mesh.discretisation_error = read_boolean(map, key("mesh.discretisation_error"));
   return mesh;
 }
 
-std::vector<RegionSettings> read_regions(const Value& map) {
+std::vector<RegionSettings> read_regions(const Value& map, const MeshSettings& mesh) {
   if (map.type() != Value::Type::map) throw InputError(map.path(), map.shown(), "a map of named regions");
   std::vector<RegionSettings> regions;
-  for (const std::string& name : map.keys()) regions.push_back(read_region(name, map.at(name)));
+  for (const std::string& name : map.keys()) {
+    regions.push_back(read_region(name, map.at(name)));
+    if (mesh.refine > 0 && std::holds_alternative<VertexShape>(regions.back().shape)) {
+      throw InputError(map.at(name).path(), "vertices with mesh.refine " + std::to_string(mesh.refine),
+                       "box, sphere, ellipsoid or half_space: vertices do not cover a refined mesh");
+    }
+  }
   return regions;
 }
 

@@ -11,7 +11,8 @@ namespace tissue_stiffness {
 // keys are left unread.
 
 MeshSettings read_mesh(const Value& map, const std::string& directory);
-std::vector<RegionSettings> read_regions(const Value& map);
+/// The mesh tells which shapes are allowed.
+std::vector<RegionSettings> read_regions(const Value& map, const MeshSettings& mesh);
 std::vector<ObservationSettings> read_observations(const Value& list);
 SegmentationSettings read_segmentation(const Value& map);
 

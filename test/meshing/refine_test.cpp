@@ -5,6 +5,7 @@
 #include "meshing/box_mesh.hpp"
 #include "meshing/surface.hpp"
 #include "tissue_stiffness/meshing/build_mesh.hpp"
+#include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -69,6 +70,30 @@ TEST(Refine, ProlongsWhatTheMeshHolds) {
     };
     const Eigen::VectorXd difference = prolongation(coarse, fine) * held(coarse) - held(fine);
     EXPECT_LT(difference.cwiseAbs().maxCoeff(), 1e-13) << "order " << order;
+  }
+}
+
+TEST(BuildMesh, RefinesAsOftenAsTheModelAsks) {
+  for (const int order : {1, 2}) {
+    MeshSettings settings;
+    settings.file = std::string(TISSUE_STIFFNESS_TEST_DATA) + "/meshing/box.vtk";
+    settings.order = order;
+    const TetMesh own = build_mesh(settings);
+    settings.refine = 1;
+    const TetMesh once = build_mesh(settings);
+    EXPECT_EQ(once.tet_count(), 8 * own.tet_count());
+    EXPECT_EQ(once.nodes.leftCols(own.node_count()), own.nodes);
+    settings.refine = 2;
+    const TetMesh twice = build_mesh(settings);
+    EXPECT_EQ(twice.tet_count(), 64 * own.tet_count());
+    EXPECT_EQ(twice.nodes.leftCols(once.node_count()), once.nodes);
+    settings.refine = 12;
+    try {
+      build_mesh(settings);
+      ADD_FAILURE() << "made 8^12 times as many tetrahedra";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("mesh.refine: found 12, which makes"), std::string::npos) << error.what();
+    }
   }
 }
 

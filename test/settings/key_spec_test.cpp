@@ -39,7 +39,7 @@ stale_after: 1
 effects: [inertia: {density: 1060}]
 observations: [points: {topic: /p, noise: 1e-3}]
 )",
-    R"(mesh: {extrude: {contour: first, depth: 0.01, max_edge_length: 0.01}}
+    R"(mesh: {extrude: {contour: first, depth: 0.01, max_edge_length: 0.01}, refine: 1}
 effects: [inertia: {density: 1060}]
 observations: [points: {topic: /p, noise: 1e-3}]
 )"};

@@ -20,6 +20,7 @@ struct MeshSettings {
   double scale_tolerance = 0.0;      ///< relative error of every length of the mesh, 1 sigma [-]
   double max_edge_length = 0.0;      ///< [m]; 0: the surface keeps its edges
   int order = 2;                     ///< 2: 10-node tetrahedra, 1: 4-node
+  int refine = 0;                    ///< number of times that every tetrahedron is cut into eight
   bool faceted = false;              ///< true: the body has the mesh's facets; false: they stand for a smooth surface
   bool discretisation_error = true;  ///< estimate the mesh's effect on the estimate, correct it and widen the interval
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< revolve: direction of the axis of revolution in `model`
