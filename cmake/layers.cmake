@@ -51,6 +51,8 @@ macro(tissue_stiffness_executables layer)
     target_compile_options(${name} PRIVATE ${tissue_stiffness_warnings})
     target_link_libraries(${name} PRIVATE ${PROJECT_NAME}_${layer})
     if(${layer} STREQUAL tools)
+      # Each tool loads what it uses: OpenCV's decoders of films are a hundred libraries.
+      target_link_options(${name} PRIVATE -Wl,--as-needed)
       tissue_stiffness_precompile(${name} tool)
     endif()
     list(APPEND tissue_stiffness_executable_targets ${name})

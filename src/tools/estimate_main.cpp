@@ -5,6 +5,7 @@
 #include "report/write_results.hpp"
 #include "tissue_stiffness/types/error.hpp"
 #include "tools/check_setup.hpp"
+#include "tools/data_option.hpp"
 #include "tools/estimate_jointly.hpp"
 #include "tools/manifest_option.hpp"
 #include "tools/model_option.hpp"
@@ -25,17 +26,6 @@ std::vector<std::string> row_arguments(const ModelOption& model, std::size_t fra
   return out;
 }
 
-// Packs the files into a bag in the output folder, and returns its name.
-std::string pack_data(const ModelOption& model, const std::vector<std::string>& data, double scale,
-                      const std::string& folder) {
-  std::vector<PackedTopic> topics;
-  topics.reserve(data.size());
-  for (const std::string& text : data) topics.push_back(read_packed_topic(text));
-  const std::string bag = folder + "/recording.bag";
-  pack_recording(model.load(), topics, scale, bag);
-  return bag;
-}
-
 // Returns the recordings to fit and those to foretell.
 std::vector<RecordingFile> recordings_of(const ModelOption& model, const std::vector<std::string>& fitted,
                                          const std::vector<std::string>& predicted) {
@@ -52,8 +42,8 @@ int main(int argc, char** argv) {
   CLI::App app("Estimates the unknown parameters of a model, Young's modulus first, from a recording.", "estimate");
   ModelOption model;
   std::string output;
-  std::vector<std::string> files, data, predicted, own;
-  double scale = 1.0;
+  std::vector<std::string> files, predicted, own;
+  DataOption data;
   std::size_t frames = 0;
   double time_limit = 0.0;
   bool quiet = false, json = false;
@@ -61,10 +51,7 @@ int main(int argc, char** argv) {
   model.add_to(app);
   app.get_option("MODEL")->required(false);
   app.add_option("RECORDING", files, "rosbag; several of one body are fitted together, each with the model file before it");
-  app.add_option("--data", data, "instead of a rosbag: TOPIC=FILE.csv for each topic of the model, as `pack` takes them")
-      ->take_all();
-  app.add_option("--scale", scale, "what converts the lengths of --data to metres, such as 0.001")
-      ->check(CLI::PositiveNumber);
+  data.add_to(app, "instead of a rosbag: ");
   app.add_option("--predict", predicted, "rosbags that the fit of the others foretells; MODEL RECORDING for another model")
       ->take_all();
   app.add_option("--own", own, "parameter, effect or topic that each of several recordings has for itself")->take_all();
@@ -78,6 +65,7 @@ int main(int argc, char** argv) {
   app.footer(std::string(
                  "Example: estimate model.yaml recording.bag --output out\n"
                  "Without ROS: estimate model.yaml --data /tissue/vertices=points.csv /tool/wrench=force.csv --output out\n"
+                 "A film: estimate model.yaml --video film.mp4 --camera camera.yaml --output out\n"
                  "Several recordings: estimate a.yaml 1.bag 2.bag b.yaml 3.bag --predict 4.bag --output out\n") +
              exit_code_help);
   return run_tool(app, argc, argv, [&] {
@@ -90,9 +78,13 @@ int main(int argc, char** argv) {
     }
     if (model.file.empty()) throw CLI::RequiredError("MODEL");
     if (files.empty() == data.empty())
-      throw InputError("RECORDING", data.empty() ? "nothing" : files.front() + " beside --data", "rosbags, or --data");
+      throw InputError("RECORDING", data.empty() ? "nothing" : files.front() + " beside --data or --video",
+                       "rosbags, or --data and --video");
     make_folder(output);
-    if (!data.empty()) files.push_back(pack_data(model, data, scale, output));
+    if (!data.empty()) {
+      files.push_back(output + "/recording.bag");
+      pack_recording(model.load(), data.files(), files.back());
+    }
     const std::vector<RecordingFile> recordings = recordings_of(model, files, predicted);
     const bool several = recordings.size() > 1;
     if (!several && !own.empty()) throw InputError("--own", own.front(), "nothing, with a single recording");

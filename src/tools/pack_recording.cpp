@@ -4,11 +4,13 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <map>
-#include <optional>
+#include <memory>
+#include <opencv2/imgproc.hpp>
 
 #include "nodes/estimator_inputs.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "tools/camera_file.hpp"
+#include "tools/film.hpp"
 #include "tools/recording_writer.hpp"
 #include "types/read_pose.hpp"
 #include "types/read_table.hpp"
@@ -90,7 +92,8 @@ Messages read_messages(const ModelSettings& settings, const PackedTopic& topic, 
   std::string known;
   for (const ObservationSettings& sensor : settings.observations) {
     if (sensor.topic == topic.topic && traits_of(sensor.kind).image) {
-      throw InputError("--data " + topic.topic, "a topic of images", "topics of points and loads");
+      throw InputError("--data " + topic.topic, "a topic of images",
+                       "topics of points and loads; --video and --camera take a film");
     }
     if (sensor.topic == topic.topic && traits_of(sensor.kind).force)
       return read_loads(topic, LoadInput::Kind::wrench, scale);
@@ -104,6 +107,44 @@ Messages read_messages(const ModelSettings& settings, const PackedTopic& topic, 
   throw InputError("--data " + topic.topic, "no topic of " + settings.name, "the model's topics: " + known);
 }
 
+std::vector<const ObservationSettings*> contours_of(const ModelSettings& settings) {
+  std::vector<const ObservationSettings*> out;
+  for (const ObservationSettings& sensor : settings.observations) {
+    if (traits_of(sensor.kind).image) out.push_back(&sensor);
+  }
+  return out;
+}
+
+// Decodes each frame when its message is written, because a film may not fit into the memory.
+Messages read_film(const PackedFilm& packed, const ObservationSettings& sensor, const std::string& frame) {
+  const FilmCamera camera = read_camera_file(packed.camera, sensor);
+  auto film = std::make_shared<Film>(packed.film);
+  const cv::Size size = film->size();
+  if (size != cv::Size(camera.camera.width, camera.camera.height)) {
+    throw InputError(packed.film, std::to_string(size.width) + " x " + std::to_string(size.height) + " pixels",
+                     std::to_string(camera.camera.width) + " x " + std::to_string(camera.camera.height) + ", as " +
+                         packed.camera + " has it");
+  }
+  const double rate = camera.rate > 0.0 ? camera.rate : film->rate();
+  if (!(rate > 0.0))
+    throw InputError(packed.camera, "no key `rate`", "frames a second: " + packed.film + " does not say it");
+  const bool coloured = sensor.segmentation.body == SegmentationSettings::Body::colour;
+  const std::size_t count = film->count();
+  if (count == 0) throw InputError(packed.film, "no frame", "at least one");
+  Messages out;
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto write = [=, image = sensor.topic, info = sensor.camera_info](RecordingWriter& writer,
+                                                                            const ros::Time& stamp) {
+      if (k == 0) writer.write_pose(frame, stamp, camera.camera.model_from_sensor);
+      cv::Mat picture = film->next();
+      if (!coloured) cv::cvtColor(picture, picture, cv::COLOR_BGR2GRAY);
+      writer.write_image(image, info, frame, stamp, camera.camera, picture);
+    };
+    out.push_back({camera.start + static_cast<double>(k) / rate, write});
+  }
+  return out;
+}
+
 }  // namespace
 
 PackedTopic read_packed_topic(const std::string& text) {
@@ -112,17 +153,23 @@ PackedTopic read_packed_topic(const std::string& text) {
   return {text.substr(0, at), text.substr(at + 1)};
 }
 
-std::vector<PackedSummary> pack_recording(const ModelSettings& settings, const std::vector<PackedTopic>& topics,
-                                          double scale, const std::string& bag) {
+std::vector<PackedSummary> pack_recording(const ModelSettings& settings, const PackedFiles& files, const std::string& bag) {
   Messages all;
   std::vector<PackedSummary> summaries;
-  for (const PackedTopic& topic : topics) {
-    Messages own = read_messages(settings, topic, scale);
+  const auto add = [&](const std::string& topic, Messages own) {
     const auto earlier = [](const Message& a, const Message& b) { return a.time < b.time; };
     const auto [first, last] = std::minmax_element(own.begin(), own.end(), earlier);
-    summaries.push_back({topic.topic, own.size(), last->time - first->time});
+    summaries.push_back({topic, own.size(), last->time - first->time});
     std::move(own.begin(), own.end(), std::back_inserter(all));
+  };
+  const std::vector<const ObservationSettings*> contours = contours_of(settings);
+  if (contours.size() != files.films.size()) {
+    throw InputError("--video", std::to_string(files.films.size()) + " films",
+                     std::to_string(contours.size()) + ", one for each contour of " + settings.name);
   }
+  for (std::size_t k = 0; k < contours.size(); ++k)
+    add(contours[k]->topic, read_film(files.films[k], *contours[k], "film_" + std::to_string(k + 1)));
+  for (const PackedTopic& topic : files.topics) add(topic.topic, read_messages(settings, topic, files.scale));
   std::stable_sort(all.begin(), all.end(), [](const Message& a, const Message& b) { return a.time < b.time; });
   RecordingWriter writer(bag);
   for (const Message& message : all) message.write(writer, ros::Time(kFirstStamp + message.time - all.front().time));

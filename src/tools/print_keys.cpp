@@ -8,6 +8,7 @@
 
 #include "nodes/node_keys.hpp"
 #include "settings/key_spec.hpp"
+#include "tools/camera_file.hpp"
 #include "tools/scene_keys.hpp"
 
 namespace tissue_stiffness {
@@ -83,6 +84,8 @@ void print_keys(std::ostream& out) {
   print_lines(model_keys(), out);
   out << "\nscene file, beside the model's keys\n";
   print_lines(scene_keys(), out);
+  out << "\ncamera file, for --camera\n";
+  print_lines(camera_keys(), out);
   out << "\nevery node but fault_injector\n";
   print_lines(common_node_keys(), out);
   for (const std::string& node : node_names()) {
@@ -103,6 +106,10 @@ void print_keys_markdown(std::ostream& out) {
          "the model is run and recorded. `sensors` takes\nthe keys of a cloud, of a pinhole camera or of a B-mode "
          "slice.\n\n";
   print_table(scene_keys(), out);
+  out << "\n## A camera file, for `--camera`\n\nA camera file is what `camera_calibration` writes, with the sensor's pose "
+         "added. "
+         "It belongs to a film, for `pack` and `estimate`.\n\n";
+  print_table(camera_keys(), out);
   out << "\n## Private parameters of the nodes\n\nEvery node but `fault_injector` takes these keys:\n\n";
   print_table(common_node_keys(), out);
   for (const std::string& node : node_names()) {

@@ -118,7 +118,7 @@ void RecordingWriter::write_image(const std::string& topic, const std::string& i
                                   const ros::Time& stamp, const Camera& camera, const cv::Mat& image) {
   const std_msgs::Header header = header_of(stamp, frame);
   bag_.write(info_topic, stamp, info_of(camera, header));
-  bag_.write(topic, stamp, *cv_bridge::CvImage(header, "mono8", image).toImageMsg());
+  bag_.write(topic, stamp, *cv_bridge::CvImage(header, image.channels() == 3 ? "bgr8" : "mono8", image).toImageMsg());
 }
 
 void RecordingWriter::write_pose(const std::string& frame, const ros::Time& stamp,

@@ -23,7 +23,7 @@ class RecordingWriter {
   void write_cloud(const std::string& topic, const ros::Time& stamp, const Eigen::Matrix3Xd& points,
                    const Eigen::VectorXi& ids, const std::string& id_name);
   void write_load(const LoadInput& input, const ros::Time& stamp, const Eigen::VectorXd& value);
-  /// Writes an 8-bit grey image with its CameraInfo.
+  /// Writes an 8-bit image, grey or in blue, green and red, with its CameraInfo.
   void write_image(const std::string& topic, const std::string& info_topic, const std::string& frame,
                    const ros::Time& stamp, const Camera& camera, const cv::Mat& image);
   /// Writes a sensor's pose on /tf_static.

@@ -20,7 +20,7 @@ class PackRecording : public Workbench {
   }
 
   std::vector<PackedSummary> pack(double scale = 1.0) {
-    return pack_recording(settings_, {{"/tissue/vertices", path("points.csv")}, {"/tool", path("force.csv")}}, scale,
+    return pack_recording(settings_, {{{"/tissue/vertices", path("points.csv")}, {"/tool", path("force.csv")}}, {}, scale},
                           path("packed.bag"));
   }
   std::string refused(const std::string& name, const std::string& content) {
@@ -72,7 +72,7 @@ TEST_F(PackRecording, NamesFileAndLineOfWhatDoesNotFit) {
 
 TEST_F(PackRecording, NamesATopicThatTheModelDoesNotHave) {
   try {
-    pack_recording(settings_, {{"/other", path("points.csv")}}, 1.0, path("packed.bag"));
+    pack_recording(settings_, {{{"/other", path("points.csv")}}, {}, 1.0}, path("packed.bag"));
     FAIL();
   } catch (const InputError& error) {
     EXPECT_TRUE(says(error.what(), {"--data /other", "/tissue/vertices, /tool"}));

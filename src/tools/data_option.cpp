@@ -1,0 +1,30 @@
+#include "tools/data_option.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include "tissue_stiffness/types/error.hpp"
+
+namespace tissue_stiffness {
+
+void DataOption::add_to(CLI::App& app, const std::string& intent) {
+  app.add_option("--data", data, intent + "TOPIC=FILE.csv for each topic of points and loads of the model")->take_all();
+  app.add_option("--video", films, intent + "a film, or images frames_%04d.png, for each contour of the model")->take_all();
+  app.add_option("--camera", cameras, "calibration of each film's camera, with its pose (YAML)")->take_all();
+  app.add_option("--scale", scale, "what converts the lengths of --data to metres, such as 0.001")
+      ->check(CLI::PositiveNumber);
+}
+
+PackedFiles DataOption::files() const {
+  if (empty()) throw InputError("--data", "nothing", "TOPIC=FILE.csv, or --video and --camera");
+  if (films.size() != cameras.size()) {
+    throw InputError("--camera", std::to_string(cameras.size()) + " files",
+                     std::to_string(films.size()) + ", one for each --video");
+  }
+  PackedFiles out;
+  out.scale = scale;
+  for (const std::string& text : data) out.topics.push_back(read_packed_topic(text));
+  for (std::size_t k = 0; k < films.size(); ++k) out.films.push_back({films[k], cameras[k]});
+  return out;
+}
+
+}  // namespace tissue_stiffness

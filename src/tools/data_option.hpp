@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/pack_recording.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace tissue_stiffness {
+
+/// The files of a recording that was made without ROS, on a command line.
+struct DataOption {
+  std::vector<std::string> data, films, cameras;
+  double scale = 1.0;
+
+  /// Adds --data, --video, --camera and --scale. `intent` precedes what they mean.
+  void add_to(CLI::App& app, const std::string& intent);
+  bool empty() const { return data.empty() && films.empty() && cameras.empty(); }
+  /// Throws InputError for a text without TOPIC=FILE, for no file at all, and for films without their cameras.
+  PackedFiles files() const;
+};
+
+}  // namespace tissue_stiffness
