@@ -12,6 +12,7 @@ import unittest
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 EXAMPLES = os.path.join(ROOT, 'examples', 'many_recordings')
 sys.path.insert(0, os.path.join(ROOT, 'scripts'))
+import one_machine_slurm  # noqa: E402
 from measure_many import Bench  # noqa: E402
 
 COUNT = 7
@@ -73,10 +74,11 @@ class ManyRecordings(unittest.TestCase):
                    'results=by_snakemake', 'table=by_snakemake.csv', 'shards=3')
         self.assertEqual(self.table_of('by_snakemake.csv'), self.table)
 
-    @unittest.skipUnless(answers('sinfo'), 'no controller of Slurm answers')
+    @unittest.skipUnless(one_machine_slurm.installed(), 'Slurm is not installed')
     def test_slurm(self):
-        self.check('sbatch', '--wait', os.path.join(EXAMPLES, 'slurm.sh'), self.bench.list,
-                   os.path.join(self.bench.folder, 'by_slurm'))
+        with one_machine_slurm.controller():
+            self.check('sbatch', '--wait', os.path.join(EXAMPLES, 'slurm.sh'), self.bench.list,
+                       os.path.join(self.bench.folder, 'by_slurm'))
         self.assertEqual(self.bench.merge('by_slurm'), self.table)
 
     @unittest.skipUnless(answers('nextflow', '-version'), 'Nextflow is not installed')
