@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "effects/registry.hpp"
 #include "fit/nested_parameters.hpp"
 #include "settings/extend_model.hpp"
 #include "tissue_stiffness/types/error.hpp"
@@ -11,7 +12,8 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr std::size_t kMostPlaces = 2;
-constexpr int kRankingVectors = 12;  // for each effect, of models that only rank
+constexpr std::size_t kMostStarts = 7;  // that are scanned, of the starts of several candidates
+constexpr int kRankingVectors = 12;     // for each effect, of models that only rank
 // An amplitude is tried at its prior's mean and at these prior standard deviations beside it: a positive one, whose prior
 // speaks of a strong effect, and a signed one.
 constexpr double kPositive[] = {-3.0, -2.25, -1.5, -0.75, 0.75, 1.5}, kSigned[] = {-1.0, -0.3, 0.3, 1.0};
@@ -26,6 +28,33 @@ std::vector<Eigen::Index> amplitude_of(const Candidate& candidate, const Recordi
     if (added && candidate.has_amplitude(free[i].name)) out.push_back(static_cast<Eigen::Index>(i));
   }
   return out;
+}
+
+// Returns `w` with the added parameters where they start in another candidate.
+Eigen::VectorXd started_like(const Candidate& other, const RecordingFit& recording_fit, const RecordingFit& base,
+                             Eigen::VectorXd w) {
+  const std::vector<Quantity> quantities = read_parameters(to_settings(other.proposal.with_given_shape()));
+  const auto& free = recording_fit.model().parameters().free();
+  auto next = quantities.begin();
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    if (base.index(free[i].name) >= 0) continue;
+    next = std::find_if(next, quantities.end(), [](const Quantity& q) { return q.estimated(); });
+    w[static_cast<Eigen::Index>(i)] = free[i].to_coordinate((next++)->value);
+  }
+  return w;
+}
+
+// Keeps the starts that fit best, with what acts `linear`ly solved for.
+void keep_best(std::vector<Eigen::VectorXd>& starts, const RecordingFit& recording_fit,
+               const std::vector<Eigen::Index>& linear) {
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t i = 0; i < starts.size(); ++i)
+    order.emplace_back(recording_fit.scan_prior(starts[i], {}, linear, kInitialSegment).cost, i);
+  std::sort(order.begin(), order.end());
+  order.resize(std::min(order.size(), kMostStarts));
+  std::vector<Eigen::VectorXd> best;
+  for (const auto& [cost, i] : order) best.push_back(std::move(starts[i]));
+  starts = std::move(best);
 }
 
 // Returns starts from the base's fit and the proposal's prior, at several strengths.
@@ -66,7 +95,8 @@ double penalty(const FittedModel& base, const RecordingFit& recording_fit) {
 
 }  // namespace
 
-std::vector<RankedFit> scan_initial_segment(const FittedModel& base, const Candidate& candidate) {
+std::vector<RankedFit> scan_initial_segment(const FittedModel& base, const Candidate& candidate,
+                                            const std::vector<const Candidate*>& others) {
   const RecordingFit& known = *base.recording_fit;
   const RecordingFit recording_fit = extended(base, candidate);
   const NestedParameters shared(recording_fit, known);
@@ -80,6 +110,11 @@ std::vector<RankedFit> scan_initial_segment(const FittedModel& base, const Candi
     linear.insert(linear.end(), amplitude.begin(), amplitude.end());
   } else {
     starts = strengths(recording_fit, known_place, amplitude);
+    for (const Candidate* other : others) {
+      const Eigen::VectorXd start = started_like(*other, recording_fit, known, known_place);
+      for (Eigen::VectorXd& w : strengths(recording_fit, start, amplitude)) starts.push_back(std::move(w));
+    }
+    if (!others.empty()) keep_best(starts, recording_fit, linear);
   }
   std::vector<RankedFit> out;
   for (const Eigen::VectorXd& start : starts) {

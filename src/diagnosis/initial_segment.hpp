@@ -21,8 +21,11 @@ struct RankedFit {
 };
 
 /// Scans the amplitude of the candidate and the base's parameters across their whole priors, and returns the best two
-/// places, best first. Throws NumericalError when no place can be run.
-std::vector<RankedFit> scan_initial_segment(const FittedModel& base, const Candidate& candidate);
+/// places, best first. `others` are candidates that differ from it in their start alone. All their starts are run at the
+/// base's parameters, and the best ones are scanned. Where an effect is strong, its tangents do not tell its place. Throws
+/// NumericalError when no place can be run.
+std::vector<RankedFit> scan_initial_segment(const FittedModel& base, const Candidate& candidate,
+                                            const std::vector<const Candidate*>& others = {});
 
 /// Fits the base with the candidate's proposal from each of these places, and returns the best fit.
 /// Parameters without a value start at their priors. `rival` is a deviance to be beaten (fit_batch). Throws NumericalError

@@ -56,6 +56,7 @@ class RefitSearch {
   void refit_faint_nonlinear_effects();
   std::vector<const Candidate*> most_evident_initially();
   std::vector<const Refit*> leaders() const;
+  std::vector<const Candidate*> others_than(const Candidate& candidate) const;
 
   /// A candidate may be fitted from these places, best first.
   struct Start {
@@ -206,9 +207,18 @@ std::vector<RefitSearch::Start> RefitSearch::scanned() {
   refits_.try_each(
       starts.size(), [&](std::size_t i) { return "scan of the initial segment with " + candidates[i]->effect; },
       [&](std::size_t i) {
-        starts[i] = {candidates[i], scan_initial_segment(screening_.base, *candidates[i])};
+        starts[i] = {candidates[i], scan_initial_segment(screening_.base, *candidates[i], others_than(*candidates[i]))};
       });
   return best_of(std::move(starts), kScanned);
+}
+
+// Returns the candidates that differ from this one in their start alone.
+std::vector<const Candidate*> RefitSearch::others_than(const Candidate& candidate) const {
+  std::vector<const Candidate*> out;
+  for (const Candidate& other : screening_.candidates) {
+    if (&other != &candidate && other.proposal.differs_in_start_from(candidate.proposal)) out.push_back(&other);
+  }
+  return out;
 }
 
 // Tangents choose badly between the variants of an effect, and so do their costs where the leader fits. So each other

@@ -59,6 +59,8 @@ struct Proposal {
   std::string form() const;
   /// Returns the refit's entry with place and direction as proposed, for fits that only rank.
   EffectEntry with_given_shape() const;
+  /// Returns whether fits that only rank differ in nothing but where their estimated numbers start.
+  bool differs_in_start_from(const Proposal& other) const;
   /// Returns whether the proposals differ only in their kind.
   bool is_other_kind_of(const Proposal& other) const;
 };

@@ -126,5 +126,46 @@ TEST(InitialSegment, FindsTheStrengthOfASecondEffectOfAKind) {
   EXPECT_NEAR(found["gravity#2.acceleration_z"], 8.0, 0.4);
 }
 
+// A lump as heavy as the bar shifts its frequencies so much that a start elsewhere does not lead to its place.
+TEST(InitialSegment, FindsThePlaceOfAHeavyLump) {
+  std::vector<std::string> effects{
+      "inertia: {density: 1000}",
+      "elasticity: {law: linear, poisson_ratio: 0.45, young_modulus: {prior: 20.0e3, factor: 3}}", "fixed: {region: clamp}",
+      "gravity: {acceleration: [0.5, 1, -3]}"};
+  const ModelSettings given = box_settings(effects);
+  const Eigen::Vector3d place(0.09, 0.01, 0.01);
+  effects.push_back("added_mass: {center: [0.09, 0.01, 0.01], mass: 0.04}");
+  const Experiment experiment(box_settings(effects), bar_mesh(), {20e3});
+  Recording recording;
+  recording.frames = see_all(experiment, experiment.film(0.0, 0.02, 100), kNoise, 1);
+  FittedModel base;
+  base.recording_fit = std::make_unique<RecordingFit>(given, bar_mesh(), recording);
+  base.fit.w = Eigen::VectorXd::Constant(1, std::log(20e3));
+  base.rows = base.recording_fit->rows(base.fit.w);
+  const std::vector<Candidate> candidates = propose_candidates(*base.recording_fit, base.fit.w, {});
+  const auto lump = [](const Candidate& c) {
+    return c.effect == "added_mass" && c.proposal.refine.find("center") != nullptr;
+  };
+  const auto first = std::find_if(candidates.begin(), candidates.end(), lump);
+  ASSERT_NE(first, candidates.end());
+  const auto x_of = [](const Candidate& c) {
+    return std::get<VectorPrior>(c.proposal.refine.find("center")->content).mean.x();
+  };
+  const Candidate* farthest = &*first;
+  std::vector<const Candidate*> others;
+  for (const Candidate& candidate : candidates) {
+    EXPECT_EQ(candidate.proposal.differs_in_start_from(first->proposal), lump(candidate)) << candidate.effect;
+    if (!lump(candidate)) continue;
+    others.push_back(&candidate);
+    if (x_of(candidate) < x_of(*farthest)) farthest = &candidate;
+  }
+  EXPECT_GT(others.size(), 10U);
+  const RankedFit alone = scan_initial_segment(base, *farthest).front();
+  const RankedFit found = scan_initial_segment(base, *farthest, others).front();
+  EXPECT_LT(found.deviance, 0.5 * alone.deviance);
+  EXPECT_NEAR(found.parameters.at("added_mass.center_x"), place.x(), 0.02);
+  EXPECT_NEAR(std::log(found.parameters.at("added_mass.mass") / 0.04), 0.0, std::log(3.0));
+}
+
 }  // namespace
 }  // namespace tissue_stiffness
