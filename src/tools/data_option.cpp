@@ -14,6 +14,18 @@ void DataOption::add_to(CLI::App& app, const std::string& intent) {
       ->check(CLI::PositiveNumber);
 }
 
+void DataOption::check_beside(const std::string& recording) const {
+  if (recording.empty() != empty()) return;
+  throw InputError("RECORDING", empty() ? "nothing" : recording + " beside --data or --video",
+                   "a rosbag, or --data and --video");
+}
+
+std::string DataOption::pack(const ModelSettings& settings, const std::string& folder) const {
+  std::string bag = folder + "/recording.bag";
+  pack_recording(settings, files(), bag);
+  return bag;
+}
+
 PackedFiles DataOption::files() const {
   if (empty()) throw InputError("--data", "nothing", "TOPIC=FILE.csv, or --video and --camera");
   if (films.size() != cameras.size()) {

@@ -19,6 +19,10 @@ struct DataOption {
   /// Adds --data, --video, --camera and --scale. `intent` precedes what they mean.
   void add_to(CLI::App& app, const std::string& intent);
   bool empty() const { return data.empty() && films.empty() && cameras.empty(); }
+  /// Throws InputError unless there is either a recording (empty: none) or a file of these options.
+  void check_beside(const std::string& recording) const;
+  /// Packs the files into `recording.bag` in that folder, and returns its name.
+  std::string pack(const ModelSettings& settings, const std::string& folder) const;
   /// Throws InputError for a text without TOPIC=FILE, for no file at all, and for films without their cameras.
   PackedFiles files() const;
 };

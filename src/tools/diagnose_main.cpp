@@ -16,6 +16,7 @@
 #include "tissue_stiffness/diagnosis/diagnose.hpp"
 #include "tissue_stiffness/types/error.hpp"
 #include "tools/check_setup.hpp"
+#include "tools/data_option.hpp"
 #include "tools/gathered_files.hpp"
 #include "tools/model_option.hpp"
 #include "tools/print_diagnosis.hpp"
@@ -76,13 +77,15 @@ int main(int argc, char** argv) {
   StopRequest& stop = stop_on_signals();
   CLI::App app("Compares a model with a recording and says which physical effect it misses.", "diagnose");
   ModelOption model;
+  DataOption data;
   DiagnosisTexts texts;
   DiagnosisOptions options;
   std::string output;
   double time_limit = 0.0;
   bool quiet = false, json = false;
   model.add_to(app);
-  app.add_option("RECORDING", texts.recording, "rosbag")->required();
+  app.add_option("RECORDING", texts.recording, "rosbag");
+  data.add_to(app, "instead of a rosbag: ");
   app.add_option("--output", output, "folder for diagnosis.json, model_next.yaml and report.html")->required();
   app.add_option("--add", options.add, "add this effect and fit again (may be given several times)")->take_all();
   app.add_option("--ignore", options.ignore, "do not search for this effect (may be given several times)")->take_all();
@@ -91,15 +94,19 @@ int main(int argc, char** argv) {
       ->check(CLI::PositiveNumber);
   app.add_flag("--quiet", quiet, "no progress and no table");
   app.add_flag("--json", json, "print diagnosis.json instead of the table");
-  app.footer(std::string("Example: diagnose model.yaml recording.bag --output out --auto\n") + exit_code_help);
+  app.footer(std::string("Example: diagnose model.yaml recording.bag --output out --auto\n"
+                         "Without ROS: diagnose model.yaml --data /tissue/vertices=points.csv --output out --auto\n") +
+             exit_code_help);
   return run_tool(app, argc, argv, [&] {
     if (time_limit > 0.0) stop.end_after(time_limit);
     Diagnosis diagnosis;  // as long as nothing is known
     diagnosis.interrupted = "reading the model and the recording";
     options.so_far = [&](const Diagnosis& known) { write_text(output + "/diagnosis.json", diagnosis_json(known)); };
+    data.check_beside(texts.recording);
     make_folder(output);
     options.so_far(diagnosis);
     const ModelSettings settings = model.load();
+    if (!data.empty()) texts.recording = data.pack(settings, output);
     texts.model = model.file;
     StepProgress progress(std::cerr, Progress::style_of_stderr(quiet || json), "diagnose");
     options.progress = [&](const std::string& what, std::size_t done, std::size_t total) {

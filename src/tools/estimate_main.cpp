@@ -9,7 +9,6 @@
 #include "tools/estimate_jointly.hpp"
 #include "tools/manifest_option.hpp"
 #include "tools/model_option.hpp"
-#include "tools/pack_recording.hpp"
 #include "tools/progress.hpp"
 #include "tools/run_tool.hpp"
 #include "tools/stop_on_signals.hpp"
@@ -77,14 +76,9 @@ int main(int argc, char** argv) {
       return estimate_manifest(many, quiet, stop);
     }
     if (model.file.empty()) throw CLI::RequiredError("MODEL");
-    if (files.empty() == data.empty())
-      throw InputError("RECORDING", data.empty() ? "nothing" : files.front() + " beside --data or --video",
-                       "rosbags, or --data and --video");
+    data.check_beside(files.empty() ? "" : files.front());
     make_folder(output);
-    if (!data.empty()) {
-      files.push_back(output + "/recording.bag");
-      pack_recording(model.load(), data.files(), files.back());
-    }
+    if (!data.empty()) files.push_back(data.pack(model.load(), output));
     const std::vector<RecordingFile> recordings = recordings_of(model, files, predicted);
     const bool several = recordings.size() > 1;
     if (!several && !own.empty()) throw InputError("--own", own.front(), "nothing, with a single recording");

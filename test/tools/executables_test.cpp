@@ -8,11 +8,14 @@
 #include <array>
 #include <chrono>
 #include <cstdio>
+#include <fstream>
+#include <iomanip>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <thread>
 
 #include "outcome.hpp"
+#include "tools/bag_reader.hpp"
 #include "workbench.hpp"
 
 namespace tissue_stiffness {
@@ -297,6 +300,30 @@ TEST_F(Executables, SpeakJsonAndNothingElse) {
     for (const auto& parameter : effect.at("parameters")) EXPECT_NE(parameter.at("unit"), "") << effect.at("name");
   }
   EXPECT_EQ(names, call("effects --quiet").text);
+}
+
+TEST_F(Executables, DiagnoseWhatWasRecordedWithoutRos) {
+  const std::string arguments = film_hidden_damping();
+  std::ofstream points(path("points.csv"));
+  points << std::fixed << std::setprecision(9) << "time,vertex,x,y,z\n";
+  BagReader reader(path("r.bag"), load_model(path("model.yaml")));
+  while (const auto instant = reader.next()) {
+    const Observation& seen = instant->frame.observations.at(0);
+    for (Eigen::Index i = 0; i < seen.ids.size(); ++i) {
+      points << instant->frame.time << "," << seen.ids[i];
+      for (int axis = 0; axis < 3; ++axis) points << "," << seen.points(axis, i);
+      points << "\n";
+    }
+  }
+  points.close();
+  const std::string data = " --data /tissue/vertices=" + path("points.csv") + " --json --output " + path("out");
+  const Outcome found = call("diagnose " + path("model.yaml") + data);
+  EXPECT_EQ(found.code, 0) << found.text;
+  EXPECT_EQ(diagnosis()["verdict"], "missing");
+  EXPECT_EQ(diagnosis()["set"][0], "viscous_damping");
+  EXPECT_TRUE(std::filesystem::exists(path("out/recording.bag")));
+  EXPECT_TRUE(refuses("diagnose " + arguments + data, {"RECORDING", "r.bag beside --data or --video"}));
+  EXPECT_TRUE(refuses("diagnose " + path("model.yaml") + " --output " + path("out"), {"RECORDING", "nothing"}));
 }
 
 TEST_F(Executables, PrintTheLibrary) {
