@@ -48,11 +48,13 @@ Eigen::VectorXd started_like(const Candidate& other, const RecordingFit& recordi
 void keep_best(std::vector<Eigen::VectorXd>& starts, const RecordingFit& recording_fit,
                const std::vector<Eigen::Index>& linear) {
   std::vector<std::pair<double, std::size_t>> order;
+  order.reserve(starts.size());
   for (std::size_t i = 0; i < starts.size(); ++i)
     order.emplace_back(recording_fit.scan_prior(starts[i], {}, linear, kInitialSegment).cost, i);
   std::sort(order.begin(), order.end());
   order.resize(std::min(order.size(), kMostStarts));
   std::vector<Eigen::VectorXd> best;
+  best.reserve(order.size());
   for (const auto& [cost, i] : order) best.push_back(std::move(starts[i]));
   starts = std::move(best);
 }

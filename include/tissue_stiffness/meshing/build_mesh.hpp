@@ -11,10 +11,10 @@
 
 namespace tissue_stiffness {
 
-/// Makes the mesh of `mesh: {file: ...}` in the requested order, and refines it as often as asked. Nodes keep their numbers.
-/// Throws InputError, naming the place, for a file that is missing, unreadable, open or self-intersecting, or that holds
-/// inverted elements, and for more tetrahedra than can be worked with. `checkpoint` is called now and then; an exception
-/// from it ends the meshing.
+/// Makes the mesh of `mesh: {file: ...}` in the requested order, and refines it as often as asked. Nodes keep their
+/// numbers. Throws InputError, naming the place, for a file that is missing, unreadable, open or self-intersecting, or that
+/// holds inverted elements, and for more tetrahedra than can be worked with. `checkpoint` is called now and then; an
+/// exception from it ends the meshing.
 TetMesh build_mesh(
     const MeshSettings& settings, const std::function<void()>& checkpoint = [] {});
 
