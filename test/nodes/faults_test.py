@@ -76,10 +76,14 @@ class FaultsTest(EstimatorStatus, unittest.TestCase):
     def test_4_what_is_called_converged_holds_the_truth(self):
         converged = [estimate for estimate in self.estimates if estimate.state == 'converged']
         self.assertGreater(len(converged), 100)
+        first_fault = min(fault.header.stamp for fault in self.faults)
         for estimate in converged:
             self.assertFalse(excludes_truth(estimate), estimate)
+            # Before, after half a second, E is known to 5 % and may be off by more.
+            if estimate.header.stamp > first_fault:
+                self.assertAlmostEqual(estimate.young_modulus / TRUTH, 1.0, delta=0.01)  # mutes of the load leave no bias
         mean = sum(estimate.young_modulus for estimate in converged) / len(converged)
-        self.assertAlmostEqual(mean / TRUTH, 1.0, delta=0.01)  # mutes of the load leave no bias
+        self.assertAlmostEqual(mean / TRUTH, 1.0, delta=0.01)
 
     def test_5_it_is_converged_again_soon_after_each_spell(self):
         # A machine that does other work is later, so one spell of three may be: scripts/soak counts them all.
