@@ -47,10 +47,10 @@ Eigen::VectorXd started_like(const Candidate& other, const RecordingFit& recordi
 // Keeps the starts that fit best, with what acts `linear`ly solved for.
 void keep_best(std::vector<Eigen::VectorXd>& starts, const RecordingFit& recording_fit,
                const std::vector<Eigen::Index>& linear) {
+  const std::vector<double> costs = recording_fit.costs(starts, linear, kInitialSegment);
   std::vector<std::pair<double, std::size_t>> order;
   order.reserve(starts.size());
-  for (std::size_t i = 0; i < starts.size(); ++i)
-    order.emplace_back(recording_fit.scan_prior(starts[i], {}, linear, kInitialSegment).cost, i);
+  for (std::size_t i = 0; i < starts.size(); ++i) order.emplace_back(costs[i], i);
   std::sort(order.begin(), order.end());
   order.resize(std::min(order.size(), kMostStarts));
   std::vector<Eigen::VectorXd> best;

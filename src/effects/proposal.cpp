@@ -86,14 +86,14 @@ EffectEntry Proposal::with_given_shape() const {
 }
 
 bool Proposal::differs_in_start_from(const Proposal& other) const {
+  if (refine.effect != other.refine.effect) return false;
   const EffectEntry own = with_given_shape(), others = other.with_given_shape();
   const auto alike = [](const auto& a, const auto& b) {
     const auto &x = a.second.content, &y = b.second.content;
     const bool starts = std::holds_alternative<Quantity>(x) || std::holds_alternative<VectorPrior>(x);
     return a.first == b.first && (starts ? x.index() == y.index() : to_yaml(a.second) == to_yaml(b.second));
   };
-  return own.effect == others.effect &&
-         std::equal(own.arguments.begin(), own.arguments.end(), others.arguments.begin(), others.arguments.end(), alike);
+  return std::equal(own.arguments.begin(), own.arguments.end(), others.arguments.begin(), others.arguments.end(), alike);
 }
 
 bool Proposal::is_other_kind_of(const Proposal& other) const {

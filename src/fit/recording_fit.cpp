@@ -5,9 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "fit/coordinate_scan.hpp"
 #include "fit/nested_parameters.hpp"
-#include "fit/variable_projection.hpp"
 #include "forward/basis_seed_vectors.hpp"
 #include "forward/extra_force.hpp"
 #include "forward/hyper_reduced_model.hpp"
@@ -20,20 +18,16 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr int kScanPoints = 12;
-constexpr double kScanReach = 2.5;     // prior standard deviations to either side
-constexpr int kSteps = 6;              // a frame, and half of each: their period error would be taken for an effect
-constexpr int kMostRuns = 8;           // moves of a fit from one full run to the next
-constexpr int kMostCuts = 3;           // cuts of a move that makes it worse
-constexpr double kSettled = 0.2;       // posterior standard deviations: shorter moves need no further run
-constexpr double kWorthwhile = 2e-3;   // relative fall of the cost that quick runs must promise before another full one
-constexpr double kGain = 1e-4;         // relative fall of the cost that a full run must bring
-constexpr double kNarrower = 4.0;      // posterior standard deviations: span of the next fit's sigma points
-constexpr double kProbe = 0.02;        // prior standard deviations: how far a parameter is moved for its sensitivity
-constexpr int kBorrowed = 48;          // displacements of another fit's runs that train a model
-constexpr int kSeen = 24;              // likewise, of the other model at first order
-constexpr int kMostSolves = 4;         // of a projection, whose robust weights follow the fit
-constexpr double kGainOfSolve = 0.01;  // relative fall of the cost that is worth another one
+constexpr int kSteps = 6;             // a frame, and half of each: their period error would be taken for an effect
+constexpr int kMostRuns = 8;          // moves of a fit from one full run to the next
+constexpr int kMostCuts = 3;          // cuts of a move that makes it worse
+constexpr double kSettled = 0.2;      // posterior standard deviations: shorter moves need no further run
+constexpr double kWorthwhile = 2e-3;  // relative fall of the cost that quick runs must promise before another full one
+constexpr double kGain = 1e-4;        // relative fall of the cost that a full run must bring
+constexpr double kNarrower = 4.0;     // posterior standard deviations: span of the next fit's sigma points
+constexpr double kProbe = 0.02;       // prior standard deviations: how far a parameter is moved for its sensitivity
+constexpr int kBorrowed = 48;         // displacements of another fit's runs that train a model
+constexpr int kSeen = 24;             // likewise, of the other model at first order
 
 }  // namespace
 
@@ -335,62 +329,6 @@ BatchFit RecordingFit::fit_from_run_to_run(Eigen::VectorXd at, Eigen::VectorXd s
   quick_ = std::move(run.cheap);
   surrogate_ = std::move(run.corrected);
   return fit;
-}
-
-Eigen::VectorXd RecordingFit::scan(const Eigen::VectorXd& start) const {
-  return scan_coordinates(cost_of(1.0), start, model_.parameters().prior_mean(), model_.parameters().prior_std(),
-                          kScanPoints)
-      .best;
-}
-
-RecordingFit::Place RecordingFit::scan_near(const Eigen::VectorXd& start, const std::vector<Eigen::Index>& coordinates,
-                                            double share) const {
-  const ScanResult nearest = scan_around(cost_of(share), start, model_.parameters().prior_std(), coordinates);
-  return {nearest.best, nearest.lowest};
-}
-
-namespace {
-
-// Returns the place after those coordinates, in which the run is linear, have been solved for.
-RecordingFit::Place solved_for(const std::vector<Eigen::Index>& linear, const FitProblem& problem,
-                               const RecordingFit::Place& from) {
-  const auto cost = [&problem](const Eigen::VectorXd& w) { return free_fit(problem, w).cost; };
-  RecordingFit::Place out = from;
-  if (!std::isfinite(out.cost)) out.cost = cost(out.w);
-  for (int k = 0; k < kMostSolves && !linear.empty(); ++k) {
-    RecordingFit::Place next{variable_projection(problem, out.w, linear)};
-    next.cost = cost(next.w);
-    if (!(next.cost < out.cost)) break;
-    std::swap(out, next);
-    if (!(out.cost < (1.0 - kGainOfSolve) * next.cost)) break;
-  }
-  return out;
-}
-
-}  // namespace
-
-RecordingFit::Place RecordingFit::scan_prior(const Eigen::VectorXd& start, const std::vector<Eigen::Index>& coordinates,
-                                             const std::vector<Eigen::Index>& linear, double share) const {
-  Eigen::VectorXd std = Eigen::VectorXd::Zero(start.size());
-  for (const Eigen::Index i : coordinates) std[i] = model_.parameters().prior_std()[i];
-  std::vector<Frame> room;
-  const FitProblem first = problem(quick(), first_of_training(share, room));
-  const auto cost = [&](const Eigen::VectorXd& w) { return solved_for(linear, first, {w}).cost; };
-  const ScanResult far = scan_coordinates(cost, start, model_.parameters().prior_mean(), std, kScanPoints, kScanReach);
-  const ScanResult refined = refine_coordinates(cost, far.best, far.lowest, kScanReach / kScanPoints * std);
-  return solved_for(linear, first, {refined.best, linear.empty() ? refined.lowest : no_rival});
-}
-
-RecordingFit::Place RecordingFit::project(const Place& from, const std::vector<Eigen::Index>& linear, double share) const {
-  if (linear.empty()) return from;
-  std::vector<Frame> room;
-  return solved_for(linear, problem(quick(), first_of_training(share, room)), from);
-}
-
-std::function<double(const Eigen::VectorXd&)> RecordingFit::cost_of(double share) const {
-  const auto room = std::make_shared<std::vector<Frame>>();
-  const std::vector<Frame>& frames = first_of_training(share, *room);
-  return [this, room, &frames](const Eigen::VectorXd& w) { return free_fit(problem(quick(), frames), w).cost; };
 }
 
 Eigen::Index RecordingFit::index(const std::string& parameter) const {

@@ -96,6 +96,11 @@ class RecordingFit {
   /// linear.
   Place project(const Place& from, const std::vector<Eigen::Index>& linear, double share) const;
 
+  /// Returns the sum of squared errors over the first `share` of the training frames at each of these places, once
+  /// coordinates in which the run is linear have been solved for there.
+  std::vector<double> costs(const std::vector<Eigen::VectorXd>& places, const std::vector<Eigen::Index>& linear,
+                            double share) const;
+
   /// Returns what is linear in the model, in a reduced basis.
   std::shared_ptr<const ReducedModel> reduced() const;
   /// Returns whether all runs are those of reduced().
