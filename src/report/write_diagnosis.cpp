@@ -62,8 +62,7 @@ std::string verdict_sentence(const Diagnosis& d) {
   if (d.verdict == Verdict::adequate) return "The model is adequate: what it leaves is noise.";
   if (d.verdict == Verdict::numerics) {
     return "The model is adequate but for the numerics: errors of the mesh, or of a simulated recording's time steps, may "
-           "be "
-           "all that it leaves. A finer mesh would tell: `mesh: {refine: 1}`.";
+           "be all that it leaves. A finer mesh would tell: `mesh: {refine: 1}`.";
   }
   if (d.best.effects.empty()) return "The error has structure, but no effect of the library explains it.";
   const bool together = d.best.effects.size() > 1;

@@ -6,7 +6,6 @@
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
-
 namespace {
 
 bool numbered(const std::string& file) {

@@ -24,7 +24,7 @@ class Film {
 
  private:
   std::string file_;
-  mutable cv::VideoCapture capture_;
+  cv::VideoCapture capture_;
 };
 
 }  // namespace tissue_stiffness

@@ -107,8 +107,7 @@ void print_keys_markdown(std::ostream& out) {
          "slice.\n\n";
   print_table(scene_keys(), out);
   out << "\n## A camera file, for `--camera`\n\nA camera file is what `camera_calibration` writes, with the sensor's pose "
-         "added. "
-         "It belongs to a film, for `pack` and `estimate`.\n\n";
+         "added. It belongs to a film, for `pack`, `estimate` and `diagnose`.\n\n";
   print_table(camera_keys(), out);
   out << "\n## Private parameters of the nodes\n\nEvery node but `fault_injector` takes these keys:\n\n";
   print_table(common_node_keys(), out);

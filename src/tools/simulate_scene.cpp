@@ -13,6 +13,7 @@
 #include "meshing/refine.hpp"
 #include "observation/closest_point.hpp"
 #include "observation/observation_operator.hpp"
+#include "settings/read_sections.hpp"
 #include "tissue_stiffness/meshing/build_mesh.hpp"
 #include "tissue_stiffness/types/error.hpp"
 #include "tools/recording_writer.hpp"
@@ -35,10 +36,7 @@ TetMesh refined_mesh(const Scene& scene) {
     throw InputError(scene.model.name + ": mesh", "a mesh from a contour", "file");
   }
   for (const RegionSettings& region : scene.model.regions) {
-    if (scene.refine > 0 && std::holds_alternative<VertexShape>(region.shape)) {
-      throw InputError(scene.model.name + ": regions." + region.name, "vertices with simulation.refine > 0",
-                       "box, sphere, ellipsoid or half_space: vertices do not cover a refined mesh");
-    }
+    if (scene.refine > 0) require_refinable(region, scene.model.name + ": regions." + region.name, "simulation.refine > 0");
   }
   TetMesh mesh = build_mesh(scene.model.mesh);
   for (int i = 0; i < scene.refine; ++i) mesh = refine_mesh(mesh);

@@ -20,8 +20,6 @@
 namespace tissue_stiffness {
 namespace {
 
-void nothing(std::size_t, std::size_t) {}
-
 const char* const kCamera =
     "image_width: 480\n"
     "image_height: 240\n"
@@ -58,10 +56,7 @@ class FilmTest : public Workbench {
 };
 
 TEST_F(FilmTest, GivesTheModulusThatItsImagesGive) {
-  const std::string scene =
-      write_model("scene.yaml", "8e5", contour(),
-                  "simulation: {duration: 0.4, rate: 50, step: 0.001, sensors: {/camera/image_raw: {size: [480, 240], "
-                  "focal_length: 3000, position: [0.05, -1, 0.005], target: [0.05, 0, 0.005]}}}\n");
+  const std::string scene = write_model("scene.yaml", "8e5", contour(), filmed());
   simulate_scene(load_scene(scene), path("recording.bag"), nothing);
   std::vector<cv::Mat> frames;
   rosbag::Bag bag(path("recording.bag"));

@@ -19,8 +19,6 @@
 namespace tissue_stiffness {
 namespace {
 
-void nothing(std::size_t, std::size_t) {}
-
 class RoundTrip : public Workbench {
  protected:
   /// Simulates a bar of `modulus` that is let go under gravity, and estimates it from 2x off.
@@ -98,10 +96,7 @@ TEST_F(RoundTrip, FindsTheModulusFromMarkersAndPoints) {
 }
 
 TEST_F(RoundTrip, FindsTheModulusFromImages) {
-  const std::string camera =
-      "simulation: {duration: 0.4, rate: 50, step: 0.001, sensors: {/camera/image_raw: {size: [480, 240], "
-      "focal_length: 3000, position: [0.05, -1, 0.005], target: [0.05, 0, 0.005]}}}\n";
-  const EstimationRun run = this->run(8e5, contour(), camera);
+  const EstimationRun run = this->run(8e5, contour(), filmed());
   EXPECT_NEAR(run.results.parameters.at(0).mean, 8e5, 0.05 * 8e5);
   EXPECT_GT(run.stage_samples.count("segment"), 0U);
   ASSERT_EQ(run.showing.pictures.size(), 20U);

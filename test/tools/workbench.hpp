@@ -67,6 +67,14 @@ class Workbench : public ::testing::Test {
     return "- contour: {image: /camera/image_raw, camera_info: /camera/camera_info, noise: 3e-4}\n";
   }
 
+  /// A camera that sees the bar from the side, for a scene of 0.4 s.
+  static std::string filmed() {
+    return "simulation: {duration: 0.4, rate: 50, step: 0.001, sensors: {/camera/image_raw: {size: [480, 240], "
+           "focal_length: 3000, position: [0.05, -1, 0.005], target: [0.05, 0, 0.005]}}}\n";
+  }
+  /// What hears of no progress.
+  static void nothing(std::size_t, std::size_t) {}
+
   std::string folder_;
 };
 
