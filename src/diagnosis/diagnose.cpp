@@ -101,7 +101,7 @@ class ModelSearch {
     out_.verdict = out_.final_verdict = finding_.verdict;
     out_.adequate = finding_.comparison.given().probability;
     out_.none_of_these = finding_.comparison.none_of_these();
-    out_.z = finding_.comparison.given().strict.z;
+    out_.z = finding_.comparison.given().test.z;
     out_.set = finding_.set;
     const bool several = grown_ && finding_.comparison.best().effects.size() > 1;
     out_.best = best_explanation(model_, several ? *grown_ : finding_);

@@ -76,7 +76,7 @@ void Finding::believe(Comparison known) {
     for (const Hypothesis& h : comparison.hypotheses) {
       if (!h.holds(effect.effect) || h.probability <= most) continue;
       most = h.probability;
-      effect.z = h.strict.z;
+      effect.z = h.test.z;
     }
   }
 }

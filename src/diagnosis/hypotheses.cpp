@@ -19,18 +19,13 @@ void find_probabilities_of(std::vector<Hypothesis>& hypotheses) {
   for (Hypothesis& h : hypotheses) h.probability /= sum;
 }
 
-// Returns the z that speaks against a model: the given one may have the largest error of the mesh.
-double z_against(const Hypothesis& model) {
-  return (model.effects.empty() ? model.lenient : model.strict).z;
-}
-
 // Returns the weight at which no extension gains more than the residual of the model shows. What gains more gains it from
 // the mesh's error, across the lowest modes or by its memory.
 double least_weight(const Hypothesis& model, const std::vector<Hypothesis>& all) {
   double least = -std::numeric_limits<double>::infinity();
   for (const Hypothesis& h : all) {
     if (!h.extends(model) || (h.random_force && !model.effects.empty())) continue;
-    least = std::max(least, h.log_weight - h.log_prior - log_bayes_factor_bound(z_against(model)));
+    least = std::max(least, h.log_weight - h.log_prior - log_bayes_factor_bound(model.test.z));
   }
   return least + model.log_prior;
 }
@@ -38,11 +33,7 @@ double least_weight(const Hypothesis& model, const std::vector<Hypothesis>& all)
 // Something unknown is one alternative to the most probable model, whatever it acts beside. So all random forces together
 // gain over that model what its test says, and a search that tries more models makes them no more probable.
 void bound_random_forces(const Hypothesis& best, std::vector<Hypothesis>& all) {
-  double z = z_against(best);
-  for (const Hypothesis& h : all) {
-    if (h.vouches_for(best)) z = std::min(z, h.strict.z);
-  }
-  const double over_best = best.log_weight + log_bayes_factor_bound(z);
+  const double over_best = best.log_weight + log_bayes_factor_bound(best.test.z);
   const auto shown = [over_best](const Hypothesis& h) { return over_best + h.log_prior_of_force; };
   double sum = 0.0;
   for (Hypothesis& h : all) {
@@ -70,23 +61,14 @@ bool Hypothesis::extends(const Hypothesis& other) const {
   return all && !other.random_force && (effects.size() > other.effects.size() || random_force);
 }
 
-bool Hypothesis::vouches_for(const Hypothesis& other) const {
-  return strict.passes && other.lenient.passes && extends(other);
-}
-
 bool Hypothesis::superfluous_beside(const Hypothesis& other) const {
-  const bool unknown = random_force && !other.effects.empty();
-  return extends(other) && !(unknown ? other.strict : other.lenient).structured;
+  return extends(other) && !other.test.structured();
 }
 
 void Hypothesis::weigh(const Assessment& assessment, const ModelComparison& models) {
   log_weight = assessment.log_evidence + log_prior;
   if (random_force) log_weight += log_evidence_gained(*random_force, assessment, models);
-  const auto result = [this](const MisfitTest& test) {
-    return TestResult{test.z(), !random_force && test.passes(), random_force || test.discrepancy() > 0.0};
-  };
-  strict = result(assessment.test);
-  lenient = result(assessment.lenient_test);
+  test = assessment.test;
 }
 
 const Hypothesis& Comparison::best() const {
@@ -180,12 +162,10 @@ void Comparison::merge(const std::vector<std::string>& effects, const Comparison
 Verdict judge(const Comparison& c) {
   const Hypothesis& given = c.given();
   if (given.probability > 1.0 - kComparison.believed)
-    return given.lenient.passes ? (c.passes_without_mesh ? Verdict::adequate : Verdict::numerics) : Verdict::unexplained;
+    return given.test.passes() ? (c.passes_without_mesh ? Verdict::adequate : Verdict::numerics) : Verdict::unexplained;
   const Hypothesis& best = c.best();
   const bool named = !best.effects.empty() && !best.random_force && c.none_of_these() < 0.5;
-  const auto vouches = [&best](const Hypothesis& h) { return h.vouches_for(best); };
-  const bool passes = best.strict.passes || std::any_of(c.hypotheses.begin(), c.hypotheses.end(), vouches);
-  return named && passes ? Verdict::missing : Verdict::unexplained;
+  return named && best.test.passes() ? Verdict::missing : Verdict::unexplained;
 }
 
 std::vector<std::string> believed_effects(const Comparison& comparison) {

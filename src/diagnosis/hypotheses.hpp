@@ -11,14 +11,6 @@ namespace tissue_stiffness {
 
 struct RandomForce;
 
-/// This is what a test says of the residual, with one error of the mesh. With a random force, `z` is of the test without
-/// it.
-struct TestResult {
-  double z = 0.0;
-  bool passes = false;     ///< false with a random force
-  bool structured = true;  ///< something beyond chance is left, or a random force acts
-};
-
 /// A hypothesis is a fitted model in the comparison, with its probability.
 struct Hypothesis {
   std::vector<std::string> effects;  ///< empty: the given model
@@ -28,19 +20,14 @@ struct Hypothesis {
   double log_prior_of_force = 0.0;             ///< the random force's part of it
   std::shared_ptr<const Explained> explained;  ///< the model
   double log_weight = 0.0;                     ///< log evidence plus log prior, up to a constant
-  TestResult strict;                           ///< with the smallest error of the mesh
-  TestResult lenient;                          ///< with the largest one
+  TestResult test;                             ///< of its residual; with a random force, of that without it
   bool superfluous = false;                    ///< another hypothesis already suffices
   double probability = 0.0;
   bool holds(const std::string& effect) const;
   bool same_effects(const Hypothesis& other) const;  ///< in whichever order they were added
   /// Returns whether this one has all that the other one has and something more.
   bool extends(const Hypothesis& other) const;
-  /// Returns whether this one passes strictly and extends another one that passes leniently. The other one's effects are
-  /// then missing, and what this one has more may be an error of the mesh.
-  bool vouches_for(const Hypothesis& other) const;
-  /// Returns whether this one extends another one that leaves no structure beyond chance. Beside named effects, something
-  /// unknown is superfluous only by the strict test.
+  /// Returns whether this one extends another one that leaves no structure beyond chance.
   bool superfluous_beside(const Hypothesis& other) const;
   /// Sets weight and test as `models` assess the explained model.
   void weigh(const Assessment& assessment, const ModelComparison& models);
@@ -78,9 +65,9 @@ struct Comparison {
 };
 
 /// Returns `adequate` if the given model is believed (P(given) > 1 - `believed`) and its residual passes, `numerics` if it
-/// passes only with an error of the mesh, the largest at most. Returns `missing` if it is not believed, named effects alone
-/// are the most probable hypothesis, what they leave passes strictly or another hypothesis vouches for them, and "none of
-/// these" is less probable than not. Otherwise it returns `unexplained`.
+/// passes only with an error of the mesh. Returns `missing` if it is not believed, named effects alone are the most
+/// probable hypothesis, what they leave passes, and "none of these" is less probable than not. Otherwise it returns
+/// `unexplained`.
 Verdict judge(const Comparison& comparison);
 
 /// Returns the effects of the fewest hypotheses that hold the believed part of the probability of all that name any effect,

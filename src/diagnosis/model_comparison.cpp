@@ -17,6 +17,7 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr double kNarrower = 0.25;  // ratio of the widths of successive priors in the mixture
+constexpr int kSizes = 32;          // of the mesh's error, over which a test is averaged
 constexpr double kTiny = 1e-12;     // [sigma^2]: a direction that no row sees
 
 double log_determinant(const Eigen::LDLT<Eigen::MatrixXd>& factor) {
@@ -204,11 +205,21 @@ Assessment ModelComparison::assess(const Explained& explained) const {
   }
   out.log_evidence = log_mean_exp(evidence);
   out.left = explained.error - j * u;
-  out.test = test_of(out.left, static_cast<double>(model.columns.cols()));
-  out.lenient_test = out.test;
-  allow_for_mesh(kComparison.least_of_mesh, out.test);
-  allow_for_mesh(kComparison.whole_mesh, out.lenient_test);
+  MisfitTest test = test_of(out.left, static_cast<double>(model.columns.cols()));
+  out.test = averaged(test);
+  allow_for_mesh(kComparison.least_of_mesh, test);
+  out.strict_test = {test.z()};
   return out;
+}
+
+TestResult ModelComparison::averaged(MisfitTest test) const {
+  std::vector<double> z;
+  for (int i = 0; i < kSizes; ++i) {
+    const double share = (i + 0.5) / kSizes;
+    allow_for_mesh(kComparison.least_of_mesh * std::pow(kComparison.whole_mesh / kComparison.least_of_mesh, share), test);
+    z.push_back(test.z());
+  }
+  return {averaged_z(z)};
 }
 
 void ModelComparison::allow_for_mesh(double left, MisfitTest& test) const {

@@ -10,14 +10,21 @@
 
 namespace tissue_stiffness {
 
+/// This is what the test of a residual says.
+struct TestResult {
+  double z = 0.0;
+  bool passes() const { return z <= MisfitTest::bound; }
+  /// Returns whether something beyond chance is left.
+  bool structured() const { return z >= MisfitTest::beyond_chance; }
+};
+
 /// An assessment is what the comparison makes of one model.
 struct Assessment {
   double log_evidence = 0.0;    ///< log p(e), up to a constant that all models share
   double log_likelihood = 0.0;  ///< log p(e | u) at the most probable u, up to the constant of log_evidence
   Eigen::VectorXd left;         ///< residual at the most probable u
-  /// It tests `left`, because missing physics moves the lowest modes. The mesh may leave `least_of_mesh`.
-  MisfitTest test;
-  MisfitTest lenient_test;  ///< the same where the mesh may leave `whole_mesh`
+  TestResult test;              ///< of `left`, because missing physics moves the lowest modes
+  TestResult strict_test;       ///< the same with the smallest error of the mesh: what passes needs no search
 };
 
 /// The comparison assesses models of one recording by their residuals e at their fits. It takes all rows, in the noise's
@@ -28,7 +35,8 @@ struct Assessment {
 /// the differences between neighbouring points, which missing physics hardly moves, and m is their memory from frame to
 /// frame. Both are those of the model that leaves least there. B_k L_k B_k^T, of frame k, is a displacement along the
 /// lowest modes, because the mesh's error has directions that D does not hold. Its mean square is that of `least_of_mesh`
-/// times what a refinement changes along each mode. The test allows for as much, and the lenient one for `whole_mesh`.
+/// times what a refinement changes along each mode. The test averages its p-value over all sizes of that error up to
+/// `whole_mesh`, evenly by their logarithm.
 /// No coefficient of the numerics is believed beyond `most_numerics` standard deviations. The evidence is Laplace's
 /// approximation (MacKay 2003, eq. 28.10) with the numerics as further unknowns. An added amplitude's prior is an even
 /// mixture of normal ones from its stated width down to `smallest` of it. So an effect pays for the order of its size and
@@ -60,6 +68,7 @@ class ModelComparison {
                         const std::function<bool(Eigen::Index)>& inside) const;
 
  private:
+  TestResult averaged(MisfitTest test) const;  ///< over the sizes of the mesh's error
   /// Lets the test pass what the mesh may leave, in units of what a mesh refined once changes.
   void allow_for_mesh(double left, MisfitTest& test) const;
 

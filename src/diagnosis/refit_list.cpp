@@ -49,7 +49,7 @@ void RefitList::try_each(std::size_t count, const std::function<std::string(std:
 }
 
 void RefitList::add(std::vector<RefitTask> list, double least_gain) {
-  RefitLimits limits{kReach * screening_.rival, least_gain, given_.test.passes(), base_->steps};
+  RefitLimits limits{kReach * screening_.rival, least_gain, given_.strict_test.passes(), base_->steps};
   for (const Refit& r : refits_) {
     if (!r.candidate->linear) continue;
     limits.rival = std::min(limits.rival, kReach * r.fitted);

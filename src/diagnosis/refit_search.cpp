@@ -73,7 +73,7 @@ class RefitSearch {
   /// Returns whether more than noise and the mesh's error is to be explained. What a model that already has an effect
   /// leaves is small once it passes its test.
   bool wide() const {
-    return screening_.beside_another ? !screening_.given.test.passes() : screening_.given.test.discrepancy() > 0.0;
+    return screening_.beside_another ? !screening_.given.strict_test.passes() : screening_.given.strict_test.structured();
   }
   /// Returns whether to go beyond the tangents: something is to be explained, and a known pair is not far ahead.
   bool continues() const {

@@ -11,6 +11,8 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr double kSame = 1e-9;  // sine of the angle below which directions are one
+constexpr double kFar = 30.0;   // standard deviations beyond which the tail's asymptote is exact; it underflows soon after
+constexpr int kBisections = 60;
 constexpr double kGone = 1e-6;  // share of a tangent: with less left it says nothing of its own
 
 Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& a) {
@@ -23,6 +25,21 @@ Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& a) {
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scaled);
   qr.setThreshold(kSame);
   return qr.householderQ() * Eigen::MatrixXd::Identity(a.rows(), qr.rank());
+}
+
+// Returns log P(Z >= z).
+double log_upper_tail(double z) {
+  return z < kFar ? std::log(normal_cdf(-z)) : -0.5 * z * z - std::log(z * std::sqrt(2.0 * M_PI));
+}
+
+// Returns the z >= 0 with that log P(Z >= z). The tail falls as steeply as a parabola, so bisection finds it.
+double upper_quantile(double log_p) {
+  double low = 0.0, high = std::sqrt(-2.0 * log_p);
+  for (int i = 0; i < kBisections; ++i) {
+    const double middle = 0.5 * (low + high);
+    (log_upper_tail(middle) > log_p ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
 }
 
 }  // namespace
@@ -74,9 +91,18 @@ double likelihood_ratio_p_value(double gain, double parameters) {
   return chi_squared_upper(gain, std::max(1.0, parameters));
 }
 
+double averaged_z(const std::vector<double>& z) {
+  std::vector<double> log_above, log_below;
+  for (const double one : z) {
+    log_above.push_back(log_upper_tail(one));
+    log_below.push_back(log_upper_tail(-one));
+  }
+  const double above = log_mean_exp(log_above), below = log_mean_exp(log_below);
+  return above < below ? upper_quantile(above) : -upper_quantile(below);  // the smaller one is exact
+}
+
 double log_bayes_factor_bound(double z) {
-  constexpr double far = 30.0;  // the tail underflows soon after
-  const double log_p = z < far ? std::log(normal_cdf(-z)) : -0.5 * z * z - std::log(z * std::sqrt(2.0 * M_PI));
+  const double log_p = log_upper_tail(z);
   return log_p < -1.0 ? -(1.0 + log_p + std::log(-log_p)) : 0.0;
 }
 

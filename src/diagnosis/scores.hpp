@@ -46,6 +46,10 @@ double log_mean_exp(const std::vector<double>& values);
 /// 1938).
 double likelihood_ratio_p_value(double gain, double parameters);
 
+/// Returns the z of the mean p-value P(Z >= z) of these tests, of which there is at least one. With one test for each value
+/// of an unknown nuisance, this is the test by the prior predictive p-value (Box 1980).
+double averaged_z(const std::vector<double>& z);
+
 /// Returns the largest log Bayes factor against a hypothesis whose test lies z standard deviations above its mean. It is
 /// taken over all alternatives that become likelier as z grows: -log(-e p log p), p = P(Z >= z). It is 0 where p > 1/e
 /// (Sellke, Bayarri & Berger 2001, eq. 2).

@@ -53,7 +53,7 @@ Screening::Screening(FittedModel& fitted, const DiagnosisOptions& options, Previ
       comparison(base, Eigen::VectorXd::Zero(base.rows.error.size())),
       given(comparison.assess(explained)) {
   if (previous.models) comparison.note(*previous.models);
-  if (!given.test.passes()) explained = compared_residual(base, {}, FittedNumerics::far);
+  if (!given.strict_test.passes()) explained = compared_residual(base, {}, FittedNumerics::far);
   candidates = propose_candidates(*base.recording_fit, base.fit.w, left_out_effects(options));
   effect_count = effects_in(candidates);
   keep_wanted(candidates, wanted);
@@ -90,7 +90,7 @@ void Screening::move_base(const BatchFit& fit, ModelComparison& models) {
   base.fit = fit;
   base.rows = base.recording_fit->rows(fit.w);
   cost = base.rows.error.squaredNorm();
-  explained = compared_residual(base, {}, given.test.passes() ? FittedNumerics::evident : FittedNumerics::far);
+  explained = compared_residual(base, {}, given.strict_test.passes() ? FittedNumerics::evident : FittedNumerics::far);
   finer = finer_mesh(base, finer.recording_fit.get());
   discretisation_error = finer.change.norm() / std::sqrt(base.rows.count());
   models.move_base(base.rows.error, mesh_change(base, finer));

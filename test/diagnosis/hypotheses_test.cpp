@@ -11,28 +11,23 @@
 namespace tissue_stiffness {
 namespace {
 
-// `random_force` adds one that does nothing. The residual of the given model shows whatever others gain.
-Hypothesis hypothesis(std::vector<std::string> effects, double weight, bool passes, bool random_force = false) {
+constexpr double kNoise = 0.0;   // z of what leaves noise alone
+constexpr double kPasses = 2.0;  // of what passes, and yet leaves some structure
+constexpr double kFails = 1e3;   // of what shows whatever others gain
+
+// `random_force` adds one that does nothing.
+Hypothesis hypothesis(std::vector<std::string> effects, double weight, double z, bool random_force = false) {
   Hypothesis out;
   out.effects = std::move(effects);
   if (random_force) out.random_force = std::make_shared<const RandomForce>();
   out.log_weight = weight;
-  out.strict = {passes && !out.effects.empty() ? 0.0 : 1e3, passes, true};
-  out.lenient = out.strict;
-  return out;
-}
-
-// What it leaves may be the mesh's error, if that is as large as it can be.
-Hypothesis within_the_mesh(std::vector<std::string> effects, double weight) {
-  Hypothesis out = hypothesis(std::move(effects), weight, false);
-  out.strict = {6.0, false, true};
-  out.lenient = {1.0, true, false};
+  out.test.z = z;
   return out;
 }
 
 Comparison compared(std::vector<Hypothesis> hypotheses) {
   Comparison out;
-  out.passes_without_mesh = hypotheses.front().strict.passes;
+  out.passes_without_mesh = hypotheses.front().test.passes();
   out.hypotheses = std::move(hypotheses);
   out.find_probabilities();
   return out;
@@ -43,20 +38,17 @@ TEST_F(CleanBar, AssessesAllHypothesesAlike) {
   const ModelComparison models(base_, Eigen::VectorXd::Zero(base_.rows.error.size()));
   Comparison c;
   for (const double wrong : {0.0, 0.1, 1.0}) {
-    Hypothesis h = hypothesis(wrong > 0.0 ? std::vector<std::string>{"a"} : std::vector<std::string>{}, 1e9, false);
+    Hypothesis h = hypothesis(wrong > 0.0 ? std::vector<std::string>{"a"} : std::vector<std::string>{}, 1e9, kFails);
     h.explained = std::make_shared<const Explained>(rigid(base_.rows.error + wrong * slow()));
     h.log_prior = -1.5;
     c.hypotheses.push_back(std::move(h));
   }
   c.assess(models);
-  EXPECT_FALSE(c.given().strict.structured);
+  EXPECT_FALSE(c.given().test.structured());
   for (const Hypothesis& h : c.hypotheses) {
     const Assessment own = models.assess(*h.explained);
     EXPECT_DOUBLE_EQ(h.log_weight, own.log_evidence - 1.5);
-    EXPECT_DOUBLE_EQ(h.strict.z, own.test.z());
-    EXPECT_EQ(h.strict.passes, own.test.passes());
-    EXPECT_DOUBLE_EQ(h.lenient.z, own.lenient_test.z());
-    EXPECT_EQ(h.lenient.passes, own.lenient_test.passes());
+    EXPECT_DOUBLE_EQ(h.test.z, own.test.z);
   }
   EXPECT_GT(c.given().probability, 0.99);
 }
@@ -66,7 +58,7 @@ TEST_F(CleanBar, ComparesASetOfEffectsOnce) {
   const ModelComparison models(base_, Eigen::VectorXd::Zero(base_.rows.error.size()));
   Comparison c;
   const auto add = [&](std::vector<std::string> effects, double wrong) {
-    c.hypotheses.push_back(hypothesis(std::move(effects), 0.0, false));
+    c.hypotheses.push_back(hypothesis(std::move(effects), 0.0, kFails));
     c.hypotheses.back().explained = std::make_shared<const Explained>(rigid(base_.rows.error + wrong * slow()));
   };
   add({}, 1.0);
@@ -83,8 +75,8 @@ TEST_F(CleanBar, ComparesASetOfEffectsOnce) {
 }
 
 TEST(Comparison, HasProbabilitiesInTheRatioOfTheEvidence) {
-  const Comparison c = compared({hypothesis({}, -1e5, true), hypothesis({"a"}, -1e5 + std::log(3.0), true),
-                                 hypothesis({"b"}, -2e5, true), hypothesis({}, -1e5, false, true)});
+  const Comparison c = compared({hypothesis({}, -1e5, kFails), hypothesis({"a"}, -1e5 + std::log(3.0), kNoise),
+                                 hypothesis({"b"}, -2e5, kNoise), hypothesis({}, -1e5, kFails, true)});
   EXPECT_NEAR(c.given().probability, 0.2, 1e-9);
   EXPECT_NEAR(c.probability_of("a"), 0.6, 1e-9);
   EXPECT_EQ(c.probability_of("b"), 0.0);
@@ -94,12 +86,12 @@ TEST(Comparison, HasProbabilitiesInTheRatioOfTheEvidence) {
 
 // What was compared about the model with `a` takes the place of what was known of that model.
 TEST(Comparison, MergesWhatIsFoundBesideALeader) {
-  Comparison c = compared({hypothesis({}, 0.0, false), hypothesis({"a"}, 50.0, false), hypothesis({"b"}, 40.0, false),
-                           hypothesis({"a"}, 70.0, false, true), hypothesis({}, 60.0, false, true)});
+  Comparison c = compared({hypothesis({}, 0.0, kFails), hypothesis({"a"}, 50.0, kFails), hypothesis({"b"}, 40.0, kFails),
+                           hypothesis({"a"}, 70.0, kFails, true), hypothesis({}, 60.0, kFails, true)});
   c.hypotheses[1].log_prior = -2.0;
   EXPECT_EQ(judge(c), Verdict::unexplained);
-  Comparison deeper = compared({hypothesis({}, 51.0, false), hypothesis({"b"}, 81.0, true), hypothesis({"c"}, 80.0, true),
-                                hypothesis({}, 65.0, false, true)});
+  Comparison deeper = compared({hypothesis({}, 51.0, kFails), hypothesis({"b"}, 81.0, kNoise),
+                                hypothesis({"c"}, 80.0, kNoise), hypothesis({}, 65.0, kFails, true)});
   deeper.hypotheses[1].log_prior = -3.0;
   c.merge({"a"}, deeper);
   c.find_probabilities();
@@ -116,59 +108,39 @@ TEST(Comparison, MergesWhatIsFoundBesideALeader) {
 
 // Something unknown is one alternative, however many models it was tried beside.
 TEST(Comparison, MakesNoneOfTheseNoLikelierByTryingMoreModels) {
-  std::vector<Hypothesis> list{hypothesis({}, 0.0, false), hypothesis({"a"}, 500.0, true),
-                               hypothesis({"a"}, 900.0, false, true)};
-  list[1].strict.z = list[1].lenient.z = 2.6;
+  std::vector<Hypothesis> list{hypothesis({}, 0.0, kFails), hypothesis({"a"}, 500.0, 2.6),
+                               hypothesis({"a"}, 900.0, kFails, true)};
   const double none = std::exp(log_bayes_factor_bound(2.6));
   EXPECT_NEAR(compared(list).none_of_these(), none / (1.0 + none), 1e-9);
-  for (const char* const other : {"b", "c", "d"}) list.push_back(hypothesis({other}, 900.0, false, true));
+  for (const char* const other : {"b", "c", "d"}) list.push_back(hypothesis({other}, 900.0, kFails, true));
   EXPECT_NEAR(compared(list).none_of_these(), none / (1.0 + none), 1e-9);
   EXPECT_NEAR(compared(list).probability_of("a"), 1.0 / (1.0 + none), 1e-9);
 }
 
-// Nothing is missing as long as the largest error of the mesh explains the residual.
-TEST(Comparison, GivesTheGivenModelTheLargestErrorOfTheMesh) {
-  const Comparison c =
-      compared({within_the_mesh({}, 0.0), hypothesis({"a"}, 50.0, true), hypothesis({}, 80.0, false, true)});
-  EXPECT_EQ(c.probability_of("a"), 0.0);
-  EXPECT_LT(c.none_of_these(), 0.75);
+// Nothing is missing as long as the mesh's error may explain the residual.
+TEST(Comparison, GivesTheGivenModelTheErrorOfTheMesh) {
+  Comparison c =
+      compared({hypothesis({}, 0.0, kNoise), hypothesis({"a"}, 50.0, kNoise), hypothesis({}, 80.0, kFails, true)});
+  c.passes_without_mesh = false;
+  EXPECT_EQ(c.given().probability, 1.0);
   EXPECT_EQ(judge(c), Verdict::numerics);
 }
 
-// An effect that leaves the largest error of the mesh explains nothing by that: a wrong one would leave it, too. Where a
-// larger model leaves less, the effect is missing, and what is more in that model may be the mesh's error.
-TEST(Comparison, NamesWhatLeavesTheLargestErrorOfTheMeshWhereALargerModelVouchesForIt) {
-  std::vector<Hypothesis> list{hypothesis({}, 0.0, false), within_the_mesh({"a"}, 50.0), hypothesis({"c"}, 20.0, false),
-                               hypothesis({"a"}, 90.0, false, true)};
-  EXPECT_EQ(judge(compared(list)), Verdict::unexplained);
-  list.push_back(hypothesis({"c", "b"}, 30.0, true));
-  EXPECT_EQ(judge(compared(list)), Verdict::unexplained);
-  list.push_back(hypothesis({"a", "b"}, 80.0, true));
-  const Comparison c = compared(list);
-  EXPECT_EQ(judge(c), Verdict::missing);
-  EXPECT_EQ(c.best().effects, std::vector<std::string>{"a"});
-  EXPECT_EQ(believed_effects(c), std::vector<std::string>{"a"});
-  ASSERT_EQ(c.traces().size(), 1u);
-  EXPECT_EQ(c.traces().front().hypothesis->effects, (std::vector<std::string>{"a", "b"}));
-}
-
-// Something unknown may act beside a named effect wherever the strict test leaves structure.
-TEST(Comparison, AsksTheStrictTestForSomethingUnknownBesideANamedEffect) {
-  std::vector<Hypothesis> list{hypothesis({}, 0.0, false), hypothesis({"a"}, 50.0, true),
-                               hypothesis({"a"}, 90.0, false, true)};
-  list[1].strict = {2.97, true, true};
-  list[1].lenient = {1.0, true, false};
+// Something unknown may act beside a named effect wherever the test leaves structure.
+TEST(Comparison, AsksTheTestForSomethingUnknownBesideANamedEffect) {
+  std::vector<Hypothesis> list{hypothesis({}, 0.0, kFails), hypothesis({"a"}, 50.0, 2.97),
+                               hypothesis({"a"}, 90.0, kFails, true)};
   const double none = std::exp(log_bayes_factor_bound(2.97));
   EXPECT_NEAR(compared(list).none_of_these(), none / (1.0 + none), 1e-9);
-  list[1].strict.structured = false;
+  list[1].test.z = kNoise;
   EXPECT_EQ(compared(list).none_of_these(), 0.0);
 }
 
 // What is added to a model that leaves nothing but noise is too small to be missing, whatever it gains.
 TEST(Comparison, GivesNothingToWhatExtendsASufficientModel) {
-  std::vector<Hypothesis> list{hypothesis({}, 0.0, true), hypothesis({"a"}, 50.0, true), hypothesis({"b"}, 49.0, true),
-                               hypothesis({"a", "b"}, 90.0, true), hypothesis({"a"}, 60.0, false, true)};
-  list[1].strict.structured = list[1].lenient.structured = false;
+  std::vector<Hypothesis> list{hypothesis({}, 0.0, kFails), hypothesis({"a"}, 50.0, kNoise),
+                               hypothesis({"b"}, 49.0, kPasses), hypothesis({"a", "b"}, 90.0, kPasses),
+                               hypothesis({"a"}, 60.0, kFails, true)};
   Comparison c = compared(list);
   EXPECT_NEAR(c.probability_of("a"), 1.0 / (1.0 + std::exp(-1.0)), 1e-9);
   EXPECT_EQ(c.none_of_these(), 0.0);
@@ -176,7 +148,8 @@ TEST(Comparison, GivesNothingToWhatExtendsASufficientModel) {
   EXPECT_EQ(judge(c), Verdict::missing);
   EXPECT_EQ(believed_effects(c), (std::vector<std::string>{"a", "b"}));  // each of them alone
   EXPECT_LT(c.hypotheses[2].probability, 1.0);
-  c.hypotheses[0].strict.structured = c.hypotheses[0].lenient.structured = false;
+  c.hypotheses[0].test.z = kNoise;
+  c.passes_without_mesh = true;
   c.find_probabilities();
   EXPECT_EQ(c.given().probability, 1.0);
   EXPECT_EQ(judge(c), Verdict::adequate);
@@ -184,14 +157,14 @@ TEST(Comparison, GivesNothingToWhatExtendsASufficientModel) {
 
 // Evidence from across the lowest modes counts no more than what the residual of the smaller model shows.
 TEST(Comparison, TakesNoMoreEvidenceThanTheResidualShows) {
-  std::vector<Hypothesis> list{hypothesis({}, 0.0, true), hypothesis({"a"}, 500.0, true), hypothesis({"b"}, 499.0, true)};
-  list[0].strict.z = list[0].lenient.z = 2.0;
+  std::vector<Hypothesis> list{hypothesis({}, 0.0, 2.0), hypothesis({"a"}, 500.0, kNoise),
+                               hypothesis({"b"}, 499.0, kNoise)};
   const Comparison slight = compared(list);
   const double given = std::exp(-log_bayes_factor_bound(2.0)), both = 1.0 + std::exp(-1.0);
   EXPECT_NEAR(slight.given().probability, given / (given + both), 1e-9);
   EXPECT_NEAR(slight.probability_of("a") / slight.probability_of("b"), std::exp(1.0), 1e-9);
   EXPECT_EQ(judge(slight), Verdict::adequate);
-  list[0].strict.z = list[0].lenient.z = 4.0;
+  list[0].test.z = 4.0;
   EXPECT_EQ(judge(compared(list)), Verdict::missing);
   list[1].log_weight = list[2].log_weight = 1.0;  // less than that is not raised
   EXPECT_NEAR(compared(list).given().probability, 1.0 / (1.0 + 2.0 * std::exp(1.0)), 1e-9);
@@ -199,9 +172,8 @@ TEST(Comparison, TakesNoMoreEvidenceThanTheResidualShows) {
 
 // The evidence of what is superfluous still counts for E, but no more than the test that does without it.
 TEST(Comparison, TracesWhatMayActWithoutBeingMissed) {
-  std::vector<Hypothesis> list{hypothesis({}, 0.0, true), hypothesis({"a"}, 2000.0, true), hypothesis({"b"}, 1999.0, true),
-                               hypothesis({"c"}, 5000.0, false, true)};
-  list[0].strict.structured = list[0].lenient.structured = false;
+  std::vector<Hypothesis> list{hypothesis({}, 0.0, kNoise), hypothesis({"a"}, 2000.0, kNoise),
+                               hypothesis({"b"}, 1999.0, kNoise), hypothesis({"c"}, 5000.0, kFails, true)};
   const Comparison strong = compared(list);
   const std::vector<Trace> halves = strong.traces();
   ASSERT_EQ(halves.size(), 2u);
@@ -211,55 +183,49 @@ TEST(Comparison, TracesWhatMayActWithoutBeingMissed) {
   list[1].log_weight = list[2].log_weight = -2.0;
   const Comparison weak = compared(list);
   EXPECT_NEAR(weak.traces()[0].share, 1.0 / (2.0 + std::exp(2.0)), 1e-9);
-  list[0].strict.structured = list[0].lenient.structured = true;
+  list[0].test.z = kPasses;
   EXPECT_TRUE(compared(list).traces().empty());
 }
 
 // The most probable model decides by its own test whether something unknown acts beside it, or beside another model.
 TEST(Comparison, GivesToSomethingUnknownWhatTheTestSays) {
-  const auto none_of_these = [](double z, bool passes, double evidence) {
-    std::vector<Hypothesis> list{hypothesis({}, 0.0, false), hypothesis({"a"}, 50.0, passes), hypothesis({"b"}, 20.0, true),
-                                 hypothesis({}, 0.0, false, true), hypothesis({"a"}, evidence, false, true)};
-    list[1].strict.z = list[1].lenient.z = z;
+  const auto none_of_these = [](double z, double evidence) {
+    std::vector<Hypothesis> list{hypothesis({}, 0.0, kFails), hypothesis({"a"}, 50.0, z), hypothesis({"b"}, 20.0, kNoise),
+                                 hypothesis({}, 0.0, kFails, true), hypothesis({"a"}, evidence, kFails, true)};
     for (const std::size_t i : {3, 4}) list[i].log_prior = list[i].log_prior_of_force = -3.0;
     return compared(list).none_of_these();
   };
   for (const double evidence : {20.0, 500.0}) {
-    EXPECT_NEAR(none_of_these(-5.0, true, evidence), 1.0 / (1.0 + std::exp(3.0)), 1e-6);
-    EXPECT_LT(none_of_these(2.9, true, evidence), 0.8);
-    EXPECT_NEAR(none_of_these(3.5, false, evidence), 1.0 / (1.0 + std::exp(3.0 - log_bayes_factor_bound(3.5))), 1e-6);
-    EXPECT_GT(none_of_these(7.0, false, evidence), 0.999);
+    EXPECT_NEAR(none_of_these(-5.0, evidence), 0.0, 1e-12);
+    EXPECT_LT(none_of_these(2.9, evidence), 0.8);
+    EXPECT_NEAR(none_of_these(3.5, evidence), 1.0 / (1.0 + std::exp(3.0 - log_bayes_factor_bound(3.5))), 1e-6);
+    EXPECT_GT(none_of_these(7.0, evidence), 0.999);
   }
 }
 
 TEST(Judge, NeedsBothAProbabilityAndAFit) {
-  const auto verdict = [](double given, bool given_passes, double named, bool named_passes, double none) {
-    std::vector<Hypothesis> list{hypothesis({}, std::log(given), given_passes),
-                                 hypothesis({"a"}, std::log(named), named_passes),
-                                 hypothesis({}, std::log(none), false, true)};
-    if (given > named) list[0].strict.z = list[0].lenient.z = 0.0;
-    return judge(compared(std::move(list)));
+  const auto verdict = [](double given, double given_z, double named, double named_z, double none) {
+    return judge(compared({hypothesis({}, std::log(given), given_z), hypothesis({"a"}, std::log(named), named_z),
+                           hypothesis({}, std::log(none), kFails, true)}));
   };
-  EXPECT_EQ(verdict(0.9, true, 0.1, true, 0.0), Verdict::adequate);
-  EXPECT_EQ(verdict(0.1, true, 0.9, true, 0.0), Verdict::adequate);  // it is within the believed set
-  EXPECT_EQ(verdict(0.01, true, 0.99, true, 0.0), Verdict::missing);
-  EXPECT_EQ(verdict(0.0, false, 1.0, false, 0.0), Verdict::unexplained);
-  EXPECT_EQ(verdict(1.0, false, 0.0, true, 0.0), Verdict::unexplained);
+  EXPECT_EQ(verdict(0.9, kPasses, 0.1, kNoise, 0.0), Verdict::adequate);
+  EXPECT_EQ(verdict(0.1, kPasses, 0.9, kNoise, 0.0), Verdict::adequate);  // it is within the believed set
+  EXPECT_EQ(verdict(0.01, kFails, 0.99, kNoise, 0.0), Verdict::missing);
+  EXPECT_EQ(verdict(0.0, kFails, 1.0, kFails, 0.0), Verdict::unexplained);
+  EXPECT_EQ(verdict(1.0, kFails, 0.0, kNoise, 0.0), Verdict::unexplained);
   // An effect that barely passes does not explain a recording in which something unknown is as probable beforehand.
-  std::vector<Hypothesis> barely{hypothesis({}, 0.0, false), hypothesis({"a"}, 50.0, true),
-                                 hypothesis({"a"}, 60.0, false, true)};
-  barely[1].strict.z = barely[1].lenient.z = 2.9;
-  EXPECT_EQ(judge(compared(barely)), Verdict::unexplained);
+  EXPECT_EQ(
+      judge(compared({hypothesis({}, 0.0, kFails), hypothesis({"a"}, 50.0, 2.9), hypothesis({"a"}, 60.0, kFails, true)})),
+      Verdict::unexplained);
   // Nor does one of several explanations in which something unknown acts, if these are more probable together.
-  std::vector<Hypothesis> several{hypothesis({}, 0.0, false), hypothesis({"a"}, 50.0, true),
-                                  hypothesis({}, 60.0, false, true), hypothesis({"b"}, 60.0, false, true)};
-  several[1].strict.z = several[1].lenient.z = 1.3;
+  std::vector<Hypothesis> several{hypothesis({}, 0.0, kFails), hypothesis({"a"}, 50.0, 1.3),
+                                  hypothesis({}, 60.0, kFails, true), hypothesis({"b"}, 60.0, kFails, true)};
   several[2].log_prior_of_force = several[3].log_prior_of_force = 0.3 - log_bayes_factor_bound(1.3);
   EXPECT_EQ(compared(several).best().effects, std::vector<std::string>{"a"});
   EXPECT_NEAR(compared(several).none_of_these(), 1.0 / (1.0 + std::exp(-0.3)), 1e-9);
   EXPECT_EQ(judge(compared(several)), Verdict::unexplained);
-  EXPECT_EQ(judge(compared({hypothesis({}, 0.0, true), hypothesis({"a"}, 50.0, true)})), Verdict::missing);
-  Comparison mesh = compared({hypothesis({}, 0.0, true)});
+  EXPECT_EQ(judge(compared({hypothesis({}, 0.0, kFails), hypothesis({"a"}, 50.0, kNoise)})), Verdict::missing);
+  Comparison mesh = compared({hypothesis({}, 0.0, kNoise)});
   mesh.passes_without_mesh = false;
   EXPECT_EQ(judge(mesh), Verdict::numerics);
 }

@@ -79,6 +79,16 @@ TEST(LogMeanExp, SurvivesLargeNumbers) {
 }
 
 // Sellke, Bayarri & Berger print -e p log p of p = 0.05 and 0.001 as 2.5 and 53 to one.
+// The mean of the p-values 0.5 and 0.001 is 0.2505, and that of 0 and 0.1 is 0.05.
+TEST(AveragedZ, IsThatOfTheMeanPValue) {
+  EXPECT_NEAR(averaged_z({0.0, 3.0902}), 0.6729, 1e-3);
+  EXPECT_NEAR(averaged_z({1000.0, 1.2816}), 1.6449, 1e-3);
+  EXPECT_NEAR(averaged_z({-1.0, -1.0}), -1.0, 1e-9);
+  EXPECT_NEAR(averaged_z({40.0, 40.0}), 40.0, 1e-6);
+  EXPECT_NEAR(averaged_z({-50.0, -50.0}), -50.0, 1e-6);
+  EXPECT_NEAR(averaged_z({200.0, 300.0}), 200.0, 0.01);  // what is least unlikely counts
+}
+
 TEST(LogBayesFactorBound, CalibratesAPValue) {
   EXPECT_NEAR(std::exp(log_bayes_factor_bound(1.6449)), 2.456, 0.01);
   EXPECT_NEAR(std::exp(log_bayes_factor_bound(3.0902)), 53.25, 0.1);
