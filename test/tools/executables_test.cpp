@@ -41,6 +41,17 @@ class Diagnosing {
   Diagnosing(const Diagnosing&) = delete;
   Diagnosing& operator=(const Diagnosing&) = delete;
 
+  /// Waits until the signals are held and the tool itself is executed, which then loads its libraries.
+  void wait_until_started() const {
+    const std::string link = "/proc/" + std::to_string(child_) + "/exe";
+    std::error_code none;
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    while (std::filesystem::read_symlink(link, none).extension() != ".tool") {
+      if (std::chrono::steady_clock::now() > deadline) FAIL() << "not started";
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+
   void wait_for_first_file() const {
     pollfd first{watch_, POLLIN, 0};
     EXPECT_EQ(poll(&first, 1, 30000), 1) << "no diagnosis.json";
@@ -178,9 +189,10 @@ TEST_F(Executables, LeaveAReadableDiagnosisWheneverTheyAreKilled) {
   std::mt19937 random(1);
   for (int trial = 0; trial < 10; ++trial) {
     // A process that has not begun cannot write; one that loads its libraries will.
-    const Seconds instant = Seconds(0.02) + duration * std::uniform_real_distribution<>(0.0, 1.0)(random);
+    const Seconds instant = duration * std::uniform_real_distribution<>(0.0, 1.0)(random);
     std::filesystem::remove_all(path("out"));
     const Diagnosing killed = begin();
+    killed.wait_until_started();
     std::this_thread::sleep_for(instant);
     killed.send(SIGTERM);
     const int code = killed.wait();
@@ -199,7 +211,7 @@ TEST_F(Executables, LeaveAReadableDiagnosisWheneverTheyAreKilled) {
 TEST_F(Executables, HearASignalThatCameWhileTheirLibrariesWereLoaded) {
   film_hidden_damping();
   const Diagnosing killed = begin();
-  std::this_thread::sleep_for(Seconds(0.02));
+  killed.wait_until_started();
   killed.send(SIGTERM);
   EXPECT_EQ(killed.wait(), 75);
   EXPECT_EQ(diagnosis().value("verdict", ""), "unfinished");
