@@ -87,8 +87,11 @@ class RefitSearch {
     for (const ScoredCandidate& form : r.forms) out.push_back({form.candidate, form.score.amplitude});
     return out;
   }
-  Verdict verdict() const { return judge(refits_.compare()); }
-  bool explained() const { return verdict() == Verdict::missing; }
+  /// Returns whether an effect is missing whatever the size of the mesh's error. What a large error alone lets pass may be
+  /// a near twin of what has not been fitted yet.
+  bool explained() const {
+    return judge(refits_.compare()) == Verdict::missing && refits_.best().assessment.strict_test.passes();
+  }
   const std::map<const Candidate*, double>& initial_evidence();
 
   const Screening& screening_;
