@@ -205,27 +205,23 @@ Assessment ModelComparison::assess(const Explained& explained) const {
   }
   out.log_evidence = log_mean_exp(evidence);
   out.left = explained.error - j * u;
-  MisfitTest test = test_of(out.left, static_cast<double>(model.columns.cols()));
-  out.test = averaged(test);
-  allow_for_mesh(kComparison.least_of_mesh, test);
-  out.strict_test = {test.z()};
+  test_left(static_cast<double>(model.columns.cols()), out);
   return out;
 }
 
-TestResult ModelComparison::averaged(MisfitTest test) const {
+void ModelComparison::test_left(double fitted, Assessment& out) const {
+  MisfitTest test = test_of(out.left, fitted);
+  const double along = along_modes(mesh_), across = mesh_.cols() > 0 ? mesh_.rightCols(1).squaredNorm() : 0.0;
+  const auto z_at = [&, rows = used_.sum()](double size) {
+    const double square = std::pow(size / kComparison.whole_mesh, 2) / rows;
+    test.set_numerics(square * along, square * across);
+    return test.z();
+  };
+  constexpr double least = kComparison.least_of_mesh, ratio = kComparison.whole_mesh / kComparison.least_of_mesh;
   std::vector<double> z;
-  for (int i = 0; i < kSizes; ++i) {
-    const double share = (i + 0.5) / kSizes;
-    allow_for_mesh(kComparison.least_of_mesh * std::pow(kComparison.whole_mesh / kComparison.least_of_mesh, share), test);
-    z.push_back(test.z());
-  }
-  return {averaged_z(z)};
-}
-
-void ModelComparison::allow_for_mesh(double left, MisfitTest& test) const {
-  const double square = std::pow(left / kComparison.whole_mesh, 2) / used_.sum();
-  const double across = mesh_.cols() > 0 ? mesh_.rightCols(1).squaredNorm() : 0.0;
-  test.set_numerics(square * along_modes(mesh_), square * across);
+  for (int i = 0; i < kSizes; ++i) z.push_back(z_at(least * std::pow(ratio, (i + 0.5) / kSizes)));
+  out.test = {averaged_z(z)};
+  out.strict_test = {z_at(least)};
 }
 
 MisfitTest ModelComparison::test_of(const Eigen::VectorXd& error, double fitted) const {

@@ -68,9 +68,8 @@ class ModelComparison {
                         const std::function<bool(Eigen::Index)>& inside) const;
 
  private:
-  TestResult averaged(MisfitTest test) const;  ///< over the sizes of the mesh's error
-  /// Lets the test pass what the mesh may leave, in units of what a mesh refined once changes.
-  void allow_for_mesh(double left, MisfitTest& test) const;
+  /// Tests what a model with `fitted` parameters leaves.
+  void test_left(double fitted, Assessment& out) const;
 
   Eigen::VectorXd used_;   ///< 1 where a row says something, else 0
   Eigen::VectorXi nodes_;  ///< of each row, or kForceRow

@@ -149,6 +149,12 @@ TEST_F(CleanBar, AllowsForMeshErrorsThatARefinementDoesNotShow) {
   EXPECT_NEAR(loss(12.0), 144.0 * expected, 0.2 * 144.0 * expected);
   EXPECT_TRUE(models.assess(rigid(base_.rows.error + share * reversed)).test.passes());
   EXPECT_FALSE(models.assess(rigid(base_.rows.error + 12.0 * share * reversed)).test.passes());
+  // What is between the smallest and the largest error of the mesh fails the strict test alone.
+  const double between = 0.5 * (kComparison.least_of_mesh + kComparison.whole_mesh);
+  const Assessment assessment = models.assess(rigid(base_.rows.error + between * reversed));
+  EXPECT_FALSE(assessment.strict_test.passes());
+  EXPECT_TRUE(assessment.test.passes());
+  EXPECT_TRUE(models.assess(rigid(base_.rows.error + share * reversed)).strict_test.passes());
 }
 
 // A residual of the size s has the p-value 1 where the mesh's error is larger, and 0 where it is smaller. So the mean over
