@@ -11,9 +11,9 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kNoise = 0.0;   // z of what leaves noise alone
-constexpr double kPasses = 2.0;  // of what passes, and yet leaves some structure
-constexpr double kFails = 1e3;   // of what shows whatever others gain
+constexpr double kLeavesNoise = 0.0;  // z of what leaves noise alone
+constexpr double kPasses = 2.0;       // of what passes, and yet leaves some structure
+constexpr double kFails = 1e3;        // of what shows whatever others gain
 
 // `random_force` adds one that does nothing.
 Hypothesis hypothesis(std::vector<std::string> effects, double weight, double z, bool random_force = false) {
@@ -75,8 +75,8 @@ TEST_F(CleanBar, ComparesASetOfEffectsOnce) {
 }
 
 TEST(Comparison, HasProbabilitiesInTheRatioOfTheEvidence) {
-  const Comparison c = compared({hypothesis({}, -1e5, kFails), hypothesis({"a"}, -1e5 + std::log(3.0), kNoise),
-                                 hypothesis({"b"}, -2e5, kNoise), hypothesis({}, -1e5, kFails, true)});
+  const Comparison c = compared({hypothesis({}, -1e5, kFails), hypothesis({"a"}, -1e5 + std::log(3.0), kLeavesNoise),
+                                 hypothesis({"b"}, -2e5, kLeavesNoise), hypothesis({}, -1e5, kFails, true)});
   EXPECT_NEAR(c.given().probability, 0.2, 1e-9);
   EXPECT_NEAR(c.probability_of("a"), 0.6, 1e-9);
   EXPECT_EQ(c.probability_of("b"), 0.0);
@@ -90,8 +90,8 @@ TEST(Comparison, MergesWhatIsFoundBesideALeader) {
                            hypothesis({"a"}, 70.0, kFails, true), hypothesis({}, 60.0, kFails, true)});
   c.hypotheses[1].log_prior = -2.0;
   EXPECT_EQ(judge(c), Verdict::unexplained);
-  Comparison deeper = compared({hypothesis({}, 51.0, kFails), hypothesis({"b"}, 81.0, kNoise),
-                                hypothesis({"c"}, 80.0, kNoise), hypothesis({}, 65.0, kFails, true)});
+  Comparison deeper = compared({hypothesis({}, 51.0, kFails), hypothesis({"b"}, 81.0, kLeavesNoise),
+                                hypothesis({"c"}, 80.0, kLeavesNoise), hypothesis({}, 65.0, kFails, true)});
   deeper.hypotheses[1].log_prior = -3.0;
   c.merge({"a"}, deeper);
   c.find_probabilities();
@@ -119,8 +119,8 @@ TEST(Comparison, MakesNoneOfTheseNoLikelierByTryingMoreModels) {
 
 // Nothing is missing as long as the mesh's error may explain the residual.
 TEST(Comparison, GivesTheGivenModelTheErrorOfTheMesh) {
-  Comparison c =
-      compared({hypothesis({}, 0.0, kNoise), hypothesis({"a"}, 50.0, kNoise), hypothesis({}, 80.0, kFails, true)});
+  Comparison c = compared(
+      {hypothesis({}, 0.0, kLeavesNoise), hypothesis({"a"}, 50.0, kLeavesNoise), hypothesis({}, 80.0, kFails, true)});
   c.passes_without_mesh = false;
   EXPECT_EQ(c.given().probability, 1.0);
   EXPECT_EQ(judge(c), Verdict::numerics);
@@ -132,13 +132,13 @@ TEST(Comparison, AsksTheTestForSomethingUnknownBesideANamedEffect) {
                                hypothesis({"a"}, 90.0, kFails, true)};
   const double none = std::exp(log_bayes_factor_bound(2.97));
   EXPECT_NEAR(compared(list).none_of_these(), none / (1.0 + none), 1e-9);
-  list[1].test.z = kNoise;
+  list[1].test.z = kLeavesNoise;
   EXPECT_EQ(compared(list).none_of_these(), 0.0);
 }
 
 // What is added to a model that leaves nothing but noise is too small to be missing, whatever it gains.
 TEST(Comparison, GivesNothingToWhatExtendsASufficientModel) {
-  std::vector<Hypothesis> list{hypothesis({}, 0.0, kFails), hypothesis({"a"}, 50.0, kNoise),
+  std::vector<Hypothesis> list{hypothesis({}, 0.0, kFails), hypothesis({"a"}, 50.0, kLeavesNoise),
                                hypothesis({"b"}, 49.0, kPasses), hypothesis({"a", "b"}, 90.0, kPasses),
                                hypothesis({"a"}, 60.0, kFails, true)};
   Comparison c = compared(list);
@@ -148,7 +148,7 @@ TEST(Comparison, GivesNothingToWhatExtendsASufficientModel) {
   EXPECT_EQ(judge(c), Verdict::missing);
   EXPECT_EQ(believed_effects(c), (std::vector<std::string>{"a", "b"}));  // each of them alone
   EXPECT_LT(c.hypotheses[2].probability, 1.0);
-  c.hypotheses[0].test.z = kNoise;
+  c.hypotheses[0].test.z = kLeavesNoise;
   c.passes_without_mesh = true;
   c.find_probabilities();
   EXPECT_EQ(c.given().probability, 1.0);
@@ -157,8 +157,8 @@ TEST(Comparison, GivesNothingToWhatExtendsASufficientModel) {
 
 // Evidence from across the lowest modes counts no more than what the residual of the smaller model shows.
 TEST(Comparison, TakesNoMoreEvidenceThanTheResidualShows) {
-  std::vector<Hypothesis> list{hypothesis({}, 0.0, 2.0), hypothesis({"a"}, 500.0, kNoise),
-                               hypothesis({"b"}, 499.0, kNoise)};
+  std::vector<Hypothesis> list{hypothesis({}, 0.0, 2.0), hypothesis({"a"}, 500.0, kLeavesNoise),
+                               hypothesis({"b"}, 499.0, kLeavesNoise)};
   const Comparison slight = compared(list);
   const double given = std::exp(-log_bayes_factor_bound(2.0)), both = 1.0 + std::exp(-1.0);
   EXPECT_NEAR(slight.given().probability, given / (given + both), 1e-9);
@@ -172,8 +172,8 @@ TEST(Comparison, TakesNoMoreEvidenceThanTheResidualShows) {
 
 // The evidence of what is superfluous still counts for E, but no more than the test that does without it.
 TEST(Comparison, TracesWhatMayActWithoutBeingMissed) {
-  std::vector<Hypothesis> list{hypothesis({}, 0.0, kNoise), hypothesis({"a"}, 2000.0, kNoise),
-                               hypothesis({"b"}, 1999.0, kNoise), hypothesis({"c"}, 5000.0, kFails, true)};
+  std::vector<Hypothesis> list{hypothesis({}, 0.0, kLeavesNoise), hypothesis({"a"}, 2000.0, kLeavesNoise),
+                               hypothesis({"b"}, 1999.0, kLeavesNoise), hypothesis({"c"}, 5000.0, kFails, true)};
   const Comparison strong = compared(list);
   const std::vector<Trace> halves = strong.traces();
   ASSERT_EQ(halves.size(), 2u);
@@ -190,8 +190,9 @@ TEST(Comparison, TracesWhatMayActWithoutBeingMissed) {
 // The most probable model decides by its own test whether something unknown acts beside it, or beside another model.
 TEST(Comparison, GivesToSomethingUnknownWhatTheTestSays) {
   const auto none_of_these = [](double z, double evidence) {
-    std::vector<Hypothesis> list{hypothesis({}, 0.0, kFails), hypothesis({"a"}, 50.0, z), hypothesis({"b"}, 20.0, kNoise),
-                                 hypothesis({}, 0.0, kFails, true), hypothesis({"a"}, evidence, kFails, true)};
+    std::vector<Hypothesis> list{hypothesis({}, 0.0, kFails), hypothesis({"a"}, 50.0, z),
+                                 hypothesis({"b"}, 20.0, kLeavesNoise), hypothesis({}, 0.0, kFails, true),
+                                 hypothesis({"a"}, evidence, kFails, true)};
     for (const std::size_t i : {3, 4}) list[i].log_prior = list[i].log_prior_of_force = -3.0;
     return compared(list).none_of_these();
   };
@@ -208,11 +209,11 @@ TEST(Judge, NeedsBothAProbabilityAndAFit) {
     return judge(compared({hypothesis({}, std::log(given), given_z), hypothesis({"a"}, std::log(named), named_z),
                            hypothesis({}, std::log(none), kFails, true)}));
   };
-  EXPECT_EQ(verdict(0.9, kPasses, 0.1, kNoise, 0.0), Verdict::adequate);
-  EXPECT_EQ(verdict(0.1, kPasses, 0.9, kNoise, 0.0), Verdict::adequate);  // it is within the believed set
-  EXPECT_EQ(verdict(0.01, kFails, 0.99, kNoise, 0.0), Verdict::missing);
+  EXPECT_EQ(verdict(0.9, kPasses, 0.1, kLeavesNoise, 0.0), Verdict::adequate);
+  EXPECT_EQ(verdict(0.1, kPasses, 0.9, kLeavesNoise, 0.0), Verdict::adequate);  // it is within the believed set
+  EXPECT_EQ(verdict(0.01, kFails, 0.99, kLeavesNoise, 0.0), Verdict::missing);
   EXPECT_EQ(verdict(0.0, kFails, 1.0, kFails, 0.0), Verdict::unexplained);
-  EXPECT_EQ(verdict(1.0, kFails, 0.0, kNoise, 0.0), Verdict::unexplained);
+  EXPECT_EQ(verdict(1.0, kFails, 0.0, kLeavesNoise, 0.0), Verdict::unexplained);
   // An effect that barely passes does not explain a recording in which something unknown is as probable beforehand.
   EXPECT_EQ(
       judge(compared({hypothesis({}, 0.0, kFails), hypothesis({"a"}, 50.0, 2.9), hypothesis({"a"}, 60.0, kFails, true)})),
@@ -224,8 +225,8 @@ TEST(Judge, NeedsBothAProbabilityAndAFit) {
   EXPECT_EQ(compared(several).best().effects, std::vector<std::string>{"a"});
   EXPECT_NEAR(compared(several).none_of_these(), 1.0 / (1.0 + std::exp(-0.3)), 1e-9);
   EXPECT_EQ(judge(compared(several)), Verdict::unexplained);
-  EXPECT_EQ(judge(compared({hypothesis({}, 0.0, kFails), hypothesis({"a"}, 50.0, kNoise)})), Verdict::missing);
-  Comparison mesh = compared({hypothesis({}, 0.0, kNoise)});
+  EXPECT_EQ(judge(compared({hypothesis({}, 0.0, kFails), hypothesis({"a"}, 50.0, kLeavesNoise)})), Verdict::missing);
+  Comparison mesh = compared({hypothesis({}, 0.0, kLeavesNoise)});
   mesh.passes_without_mesh = false;
   EXPECT_EQ(judge(mesh), Verdict::numerics);
 }

@@ -78,7 +78,6 @@ TEST(LogMeanExp, SurvivesLargeNumbers) {
   EXPECT_NEAR(log_mean_exp({0.0, std::log(3.0)}), std::log(2.0), 1e-12);
 }
 
-// Sellke, Bayarri & Berger print -e p log p of p = 0.05 and 0.001 as 2.5 and 53 to one.
 // The mean of the p-values 0.5 and 0.001 is 0.2505, and that of 0 and 0.1 is 0.05.
 TEST(AveragedZ, IsThatOfTheMeanPValue) {
   EXPECT_NEAR(averaged_z({0.0, 3.0902}), 0.6729, 1e-3);
@@ -89,6 +88,7 @@ TEST(AveragedZ, IsThatOfTheMeanPValue) {
   EXPECT_NEAR(averaged_z({200.0, 300.0}), 200.0, 0.01);  // what is least unlikely counts
 }
 
+// Sellke, Bayarri & Berger print -e p log p of p = 0.05 and 0.001 as 2.5 and 53 to one.
 TEST(LogBayesFactorBound, CalibratesAPValue) {
   EXPECT_NEAR(std::exp(log_bayes_factor_bound(1.6449)), 2.456, 0.01);
   EXPECT_NEAR(std::exp(log_bayes_factor_bound(3.0902)), 53.25, 0.1);
