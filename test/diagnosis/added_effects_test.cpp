@@ -80,7 +80,7 @@ TEST(Diagnose, ProposesWhatItAddedAsTheLastFitHasIt) {
   const double alone = d.steps[1].parameters.at("mass_damping.alpha"),
                last = d.steps[2].parameters.at("mass_damping.alpha");
   EXPECT_GT(std::abs(alone - last), 0.01 * last);
-  const Model next(extend_model(box_settings(bar("{prior: 35.0e3, factor: 3}")), d.entries), bar_mesh());
+  const Model next(extend_model(box_settings(bar_under_gravity("{prior: 35.0e3, factor: 3}")), d.entries), bar_mesh());
   for (const auto& [name, value] : d.steps[2].parameters) {
     if (name == "elasticity.young_modulus") continue;
     EXPECT_NEAR(next.parameters().values(next.parameters().prior_mean()).at(name), value, 1e-4 * std::abs(value)) << name;

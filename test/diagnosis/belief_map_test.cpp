@@ -4,13 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include "../box_model.hpp"
-#include "verification/experiment.hpp"
+#include "../estimation/bar.hpp"
 
 namespace tissue_stiffness {
 namespace {
-
-constexpr double kNoise = 1e-4;
 
 TEST(ExcessEvidence, SpeaksForWhatIsMoreThanNoise) {
   EXPECT_LT(log_evidence_of_excess(200.0, 200.0), -1.0);
@@ -20,10 +17,7 @@ TEST(ExcessEvidence, SpeaksForWhatIsMoreThanNoise) {
 }
 
 TEST(BeliefMap, ShowsWhereAndWhenAModelFails) {
-  const ModelSettings settings =
-      box_settings({"inertia: {density: 1000}",
-                    "elasticity: {law: linear, poisson_ratio: 0.45, young_modulus: {prior: 20.0e3, factor: 3}}",
-                    "fixed: {region: clamp}", "gravity: {acceleration: [0.5, 1, -3]}"});
+  const ModelSettings settings = box_settings(bar_under_gravity("{prior: 20.0e3, factor: 3}"));
   const Experiment experiment(settings, bar_mesh(), {20e3});
   Recording recording;
   recording.frames = see_all(experiment, experiment.film(0.0, 0.02, 30), kNoise, 1);

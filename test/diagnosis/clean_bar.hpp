@@ -5,23 +5,16 @@
 #include <cmath>
 #include <memory>
 
-#include "../box_model.hpp"
+#include "../estimation/bar.hpp"
 #include "diagnosis/model_comparison.hpp"
-#include "verification/experiment.hpp"
 
 namespace tissue_stiffness {
-
-/// Noise of the recording of CleanBar [m].
-constexpr double kNoise = 1e-4;
 
 /// A bar under gravity, fitted to a recording in which nothing is hidden.
 class CleanBar : public ::testing::Test {
  protected:
   void SetUp() override {
-    const ModelSettings settings =
-        box_settings({"inertia: {density: 1000}",
-                      "elasticity: {law: linear, poisson_ratio: 0.45, young_modulus: {prior: 20.0e3, factor: 3}}",
-                      "fixed: {region: clamp}", "gravity: {acceleration: [0.5, 1, -3]}"});
+    const ModelSettings settings = box_settings(bar_under_gravity("{prior: 20.0e3, factor: 3}"));
     const Experiment experiment(settings, bar_mesh(), {20e3});
     recording_.frames = see_all(experiment, experiment.film(0.0, 0.02, 20), kNoise, 1);
     base_.recording_fit = std::make_unique<RecordingFit>(settings, bar_mesh(), recording_);

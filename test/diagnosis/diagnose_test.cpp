@@ -24,7 +24,7 @@ TEST(Diagnose, FindsNothingWhereNothingIsMissing) {
 
 // A load that the recorder missed for a while is held by the model. What the body does meanwhile is no effect.
 TEST(Diagnose, LeavesOutFramesDuringWhichALoadWasSilent) {
-  std::vector<std::string> effects = bar("{prior: 35.0e3, factor: 3}");
+  std::vector<std::string> effects = bar_under_gravity("{prior: 35.0e3, factor: 3}");
   effects.back() = "traction: {region: tip, topic: /wrench}";
   Experiment experiment(box_settings(effects), bar_mesh(), {kTruth});
   Recording recording;
@@ -50,7 +50,7 @@ TEST(Diagnose, StartsTheGivenModelWhereARefitEnds) {
   const Recording recording = film({}, 1);
   FittedModel base;
   base.recording_fit =
-      std::make_unique<RecordingFit>(box_settings(bar("{prior: 35.0e3, factor: 3}")), bar_mesh(), recording);
+      std::make_unique<RecordingFit>(box_settings(bar_under_gravity("{prior: 35.0e3, factor: 3}")), bar_mesh(), recording);
   base.fit = base.recording_fit->fit(base.recording_fit->model().parameters().prior_mean(),
                                      0.1 * base.recording_fit->model().parameters().prior_std());
   base.rows = base.recording_fit->rows(base.fit.w);
@@ -68,9 +68,9 @@ TEST(Diagnose, StartsTheGivenModelWhereARefitEnds) {
 // A finding is judged anew when another round has shown the noise or the mesh's error to be different.
 TEST(Diagnose, JudgesAFindingByAnotherLikelihood) {
   const Recording recording = film({"viscous_damping: {beta: 6.0e-3}"}, 1);
-  FittedModel base =
-      fit_recording(std::make_unique<RecordingFit>(box_settings(bar("{prior: 20.0e3, factor: 3}")), bar_mesh(), recording),
-                    Eigen::VectorXd::Constant(1, std::log(kTruth)), 0.1);
+  FittedModel base = fit_recording(
+      std::make_unique<RecordingFit>(box_settings(bar_under_gravity("{prior: 20.0e3, factor: 3}")), bar_mesh(), recording),
+      Eigen::VectorXd::Constant(1, std::log(kTruth)), 0.1);
   Finding finding = diagnose_once(base, {}, {});
   ASSERT_EQ(finding.verdict, Verdict::missing);
   ASSERT_EQ(finding.refits.front().effect, "viscous_damping");
@@ -149,12 +149,13 @@ TEST(Diagnose, RefitsTheRivalsOfAFaintEffect) {
 // E compensates for most of the springs below the clamp; what it leaves is within what may be noise.
 TEST(Diagnose, FindsWhatTheModulusCompensatesFor) {
   const std::string sensor = "[{vertices: {topic: /vertices, noise: 4.0e-3}}]";
-  std::vector<std::string> effects = bar("{prior: 20.0e3, factor: 3}");
+  std::vector<std::string> effects = bar_under_gravity("{prior: 20.0e3, factor: 3}");
   effects.push_back("elastic_support: {region: clamp, compliance: 2.0e-7}");
   const Experiment experiment(box_settings(effects, sensor), bar_mesh(), {kTruth});
   Recording recording;
   recording.frames = see_all(experiment, experiment.film(0.0, 0.02, 60), 4e-3, 10);
-  const Diagnosis d = diagnose(box_settings(bar("{prior: 35.0e3, factor: 3}"), sensor), bar_mesh(), recording, {});
+  const Diagnosis d =
+      diagnose(box_settings(bar_under_gravity("{prior: 35.0e3, factor: 3}"), sensor), bar_mesh(), recording, {});
   std::printf("a compliant support: E %.1f kPa for 20 without it, %.3f sigma rms\n",
               1e-3 * d.steps.front().parameters.at("elasticity.young_modulus"), d.sigmas.total);
   EXPECT_LT(d.sigmas.total, 1.1);

@@ -7,32 +7,28 @@
 #include <random>
 #include <utility>
 
-#include "../box_model.hpp"
+#include "../estimation/bar.hpp"
 #include "tissue_stiffness/diagnosis/diagnose.hpp"
 #include "tissue_stiffness/types/error.hpp"
 #include "types/stop_request.hpp"
-#include "verification/experiment.hpp"
 
 namespace tissue_stiffness {
 namespace {
-
-std::vector<std::string> bar(const std::string& modulus) {
-  return {"inertia: {density: 1000}", "elasticity: {law: linear, poisson_ratio: 0.45, young_modulus: " + modulus + "}",
-          "fixed: {region: clamp}", "gravity: {acceleration: [0.5, 1, -3]}"};
-}
 
 /// The fixture is a bar with damping that the model does not know.
 class InterruptedDiagnosis : public ::testing::Test {
  protected:
   InterruptedDiagnosis() {
-    std::vector<std::string> effects = bar("{prior: 20.0e3, factor: 3}");
+    std::vector<std::string> effects = bar_under_gravity("{prior: 20.0e3, factor: 3}");
     effects.push_back("viscous_damping: {beta: 6.0e-3}");
     const Experiment experiment(box_settings(effects), bar_mesh(), {20e3});
     recording_.frames = see_all(experiment, experiment.film(0.0, 0.02, 60), 1e-4, 1);
     options_.automatic = true;
   }
 
-  Diagnosis run() { return diagnose(box_settings(bar("{prior: 35.0e3, factor: 3}")), bar_mesh(), recording_, options_); }
+  Diagnosis run() {
+    return diagnose(box_settings(bar_under_gravity("{prior: 35.0e3, factor: 3}")), bar_mesh(), recording_, options_);
+  }
 
   /// Interrupts as soon as `enough` is true of what is known.
   Diagnosis run_until(const std::function<bool(const Diagnosis&)>& enough) {

@@ -3,28 +3,21 @@
 
 #include <gtest/gtest.h>
 
-#include "../box_model.hpp"
-#include "verification/experiment.hpp"
+#include "../estimation/bar.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kModulus = 20e3, kNoise = 1e-4, kMass = 1000.0 * 0.10 * 0.02 * 0.02;
-
-std::vector<std::string> bar() {
-  return {"inertia: {density: 1000}",
-          "elasticity: {law: linear, poisson_ratio: 0.45, young_modulus: {prior: 20.0e3, factor: 3}}",
-          "fixed: {region: clamp}", "gravity: {acceleration: [0.5, 1, -3]}"};
-}
+constexpr double kModulus = 20e3, kMass = 1000.0 * 0.10 * 0.02 * 0.02;
 
 /// Returns the force that a bar of the right modulus lacks in a recording of one with `hidden`.
 MissingForce lacking(const std::vector<std::string>& hidden) {
-  std::vector<std::string> effects = bar();
+  std::vector<std::string> effects = bar_under_gravity("{prior: 20.0e3, factor: 3}");
   effects.insert(effects.end(), hidden.begin(), hidden.end());
   const Experiment experiment(box_settings(effects), bar_mesh(), {kModulus});
   Recording recording;
   recording.frames = see_all(experiment, experiment.film(0.0, 0.02, 60), kNoise, 1);
-  const RecordingFit recording_fit(box_settings(bar()), bar_mesh(), recording);
+  const RecordingFit recording_fit(box_settings(bar_under_gravity("{prior: 20.0e3, factor: 3}")), bar_mesh(), recording);
   return missing_force(recording_fit, recording_fit.model().parameters().prior_mean());
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 // Simulates with Newmark's average acceleration, in steps of length `step` alone.
 Recording simulate(const std::vector<std::string>& hidden, double step, unsigned seed) {
-  std::vector<std::string> effects = bar("{prior: 20.0e3, factor: 3}");
+  std::vector<std::string> effects = bar_under_gravity("{prior: 20.0e3, factor: 3}");
   effects.insert(effects.end(), hidden.begin(), hidden.end());
   const Experiment truth(box_settings(effects), bar_mesh(), {kTruth});
   FullModel::Options options;
@@ -74,7 +74,7 @@ Recording film_finer(const ModelSettings& settings, const TetMesh& coarse, doubl
 }
 
 TEST(Diagnose, TakesTheErrorOfACoarseMeshForNoEffect) {
-  ModelSettings settings = box_settings(bar("{prior: 20.0e3, factor: 3}"));
+  ModelSettings settings = box_settings(bar_under_gravity("{prior: 20.0e3, factor: 3}"));
   const TetMesh coarse = bar_mesh(8, 2, 2);
   const Recording recording = film_finer(settings, coarse);
   settings.mesh.discretisation_error = true;
@@ -87,7 +87,7 @@ TEST(Diagnose, TakesTheErrorOfACoarseMeshForNoEffect) {
 
 // The change does not depend on the recording, nor on whether the finer mesh is known.
 TEST(Diagnose, FindsOutWhatAFinerMeshChanges) {
-  ModelSettings settings = box_settings(bar("{prior: 20.0e3, factor: 3}"));
+  ModelSettings settings = box_settings(bar_under_gravity("{prior: 20.0e3, factor: 3}"));
   const TetMesh coarse = bar_mesh(8, 2, 2);
   const Recording recording = film_finer(settings, coarse);
   settings.mesh.discretisation_error = true;
@@ -105,7 +105,7 @@ TEST(Diagnose, FindsOutWhatAFinerMeshChanges) {
 
 // Returns the diagnosis of a bar with springs on a coarse mesh, filmed on a finer one.
 Diagnosis diagnose_springs_on_coarse_mesh(const std::string& stiffness) {
-  std::vector<std::string> effects = bar("{prior: 20.0e3, factor: 3}");
+  std::vector<std::string> effects = bar_under_gravity("{prior: 20.0e3, factor: 3}");
   ModelSettings settings = box_settings(effects);
   effects.push_back("foundation: {region: top, stiffness: " + stiffness + "}");
   const TetMesh coarse = bar_mesh(8, 2, 2);

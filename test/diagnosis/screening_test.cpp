@@ -9,23 +9,17 @@
 #include <string>
 #include <utility>
 
-#include "../box_model.hpp"
+#include "../estimation/bar.hpp"
 #include "diagnosis/initial_segment.hpp"
 #include "settings/extend_model.hpp"
-#include "verification/experiment.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kNoise = 1e-4;
-
 class BarWithADamping : public ::testing::Test {
  protected:
   void SetUp() override {
-    std::vector<std::string> effects{
-        "inertia: {density: 1000}",
-        "elasticity: {law: linear, poisson_ratio: 0.45, young_modulus: {prior: 20.0e3, factor: 3}}",
-        "fixed: {region: clamp}", "gravity: {acceleration: [0.5, 1, -3]}"};
+    std::vector<std::string> effects = bar_under_gravity("{prior: 20.0e3, factor: 3}");
     given_ = box_settings(effects);
     effects.push_back("viscous_damping: {beta: 6.0e-3}");
     const Experiment experiment(box_settings(effects), bar_mesh(), {20e3});
@@ -52,10 +46,7 @@ TEST_F(BarWithADamping, CountsAmplitudesFromWhereAnEffectIsAbsent) {
 
 // A proposal's scale follows from the modulus. What no model file may hold is not proposed, and ends nothing.
 TEST_F(BarWithADamping, LeavesOutProposalsBeyondWhatAModelFileMayHold) {
-  ModelSettings absurd =
-      box_settings({"inertia: {density: 1000}",
-                    "elasticity: {law: linear, poisson_ratio: 0.45, young_modulus: {prior: 1e12, factor: 3}}",
-                    "fixed: {region: clamp}", "gravity: {acceleration: [0.5, 1, -3]}"});
+  ModelSettings absurd = box_settings(bar_under_gravity("{prior: 1e12, factor: 3}"));
   base_.recording_fit = std::make_unique<RecordingFit>(absurd, bar_mesh(), recording_);
   base_.fit.w = base_.recording_fit->model().parameters().prior_mean();
   const auto candidates = propose_candidates(*base_.recording_fit, base_.fit.w, {});
@@ -104,10 +95,7 @@ struct BarThatLacks {
   FittedModel base;
 
   BarThatLacks(const std::string& hidden, int frames, double modulus) {
-    std::vector<std::string> effects{
-        "inertia: {density: 1000}",
-        "elasticity: {law: linear, poisson_ratio: 0.45, young_modulus: {prior: 20.0e3, factor: 3}}",
-        "fixed: {region: clamp}", "gravity: {acceleration: [0.5, 1, -3]}"};
+    std::vector<std::string> effects = bar_under_gravity("{prior: 20.0e3, factor: 3}");
     const ModelSettings given = box_settings(effects);
     effects.push_back(hidden);
     const Experiment experiment(box_settings(effects), bar_mesh(), {20e3});

@@ -27,6 +27,11 @@ Motion motion(const Eigen::VectorXd& u, const Eigen::VectorXd& v) {
   return {0.1, u, v, 1.0, 1.0, 0.1};
 }
 
+// A bar under finite strain whose last part is the effect, on its whole skin if it has a region.
+Model neo_hookean_bar(const EffectSpec& spec, const TetMesh& mesh) {
+  return Model(box_settings(bar_with(spec.name, example_arguments(spec, "neo_hookean", "skin"), "neo_hookean")), mesh);
+}
+
 // Everything in a part's force that is not linear, under finite strain.
 Eigen::VectorXd nonlinear_force(const Model& model, const Eigen::VectorXd& u) {
   const Model::Part& part = model.parts().back();
@@ -55,7 +60,7 @@ TEST(EveryEffect, TangentEqualsFiniteDifferencesOfTheForce) {
   int nonlinear = 0;
   for (const EffectSpec& spec : effect_specs()) {
     if (!fits(spec, "neo_hookean")) continue;
-    Model model(box_settings(bar_with(spec.name, example_arguments(spec, "neo_hookean", "skin"), "neo_hookean")), mesh);
+    Model model = neo_hookean_bar(spec, mesh);
     feed(model);
     const Model::Part& part = model.parts().back();
     if (part.effect->nonlinear_force() == nullptr && part.effect->finite_strain() == nullptr) continue;
@@ -123,7 +128,7 @@ TEST(EveryEffect, FiniteStrainTendsToTheLinearTerms) {
   const Eigen::VectorXd u = 1e-6 * large_displacement(mesh);
   for (const EffectSpec& spec : effect_specs()) {
     if (!fits(spec, "neo_hookean")) continue;
-    Model model(box_settings(bar_with(spec.name, example_arguments(spec, "neo_hookean", "skin"), "neo_hookean")), mesh);
+    Model model = neo_hookean_bar(spec, mesh);
     feed(model);
     const Model::Part& part = model.parts().back();
     if (part.effect->finite_strain() == nullptr) continue;
@@ -163,7 +168,7 @@ TEST(EveryEffect, WithAnEnergyHasItsDerivativeForItsForce) {
   int compared = 0;
   for (const EffectSpec& spec : effect_specs()) {
     if (!fits(spec, "neo_hookean")) continue;
-    Model model(box_settings(bar_with(spec.name, example_arguments(spec, "neo_hookean", "skin"), "neo_hookean")), mesh);
+    Model model = neo_hookean_bar(spec, mesh);
     feed(model);
     const Model::Part& part = model.parts().back();
     const Eigen::VectorXd p = part.parameters(model.parameters().theta(model.parameters().prior_mean()));
