@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -33,11 +34,19 @@ struct FittedSteps {
   double cost = no_rival;               ///< of the training frames and the prior
 };
 
+/// This is what a mesh may err by in a model's rows; see ModelComparison.
+struct MeshAllowance {
+  Eigen::MatrixXd columns;    ///< D
+  Eigen::MatrixXd basis;      ///< B, frame under frame
+  Eigen::MatrixXd variances;  ///< L, one column a frame
+};
+
 /// This is a fitted model as it is compared: its residual and the rows about it.
 struct Explained {
   Eigen::VectorXd error;  ///< of each row [sigma]
   Linearisation linearisation;
   FittedSteps steps = {};
+  std::shared_ptr<const MeshAllowance> mesh = nullptr;  ///< for the model's test; null: that of the comparison's base
 };
 /// Says which time steps of a simulated recording are fitted with a linear model: none, those whose tangents matter, or
 /// also those that no tangent shows.

@@ -120,6 +120,7 @@ Finding diagnose_once(FittedModel& base, const std::vector<std::string>& wanted,
   } else {
     refit_effects(screening, refits);
   }
+  if (!out.to_repeat) refits.test_best_by_own_numerics();
   out.models = std::make_shared<const ModelComparison>(refits.comparison());
   out.effects = describe_candidate(screening, refits);
   out.believe(refits.compare());

@@ -11,22 +11,33 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr int kMostMoves = 8;   // of Gauss-Newton
-constexpr double kStep = 0.01;  // of a prior's standard deviation: width of the differences that tangents are read from
-constexpr double kGain = 0.01;  // relative fall of the sum of squares that is worth another move
+constexpr int kMostMoves = 8;
+constexpr double kStep = 0.01;    // of a prior's standard deviation: width of the differences that tangents are read from
+constexpr double kGain = 0.01;    // relative fall of the sum of squares that is worth another move
+constexpr double kHarder = 10.0;  // factor of the damping after a step that failed
+constexpr double kEasier = 0.3;   // and after another
+constexpr double kMostDamping = 1e9;  // of the prior's precision: steps are short enough then
 
-std::shared_ptr<const RecordingFit> on_finer_mesh(const RecordingFit& recording_fit, const ModelSettings& settings,
-                                                  const RecordingFit* known) {
-  const Model& model = recording_fit.model();
-  const auto basis = [&model](const TetMesh& mesh) {
+std::shared_ptr<const RecordingFit> on_finer_mesh(const FittedModel& base, const RecordingFit* known) {
+  const Model& model = base.recording_fit->model();
+  const ModelSettings& settings = model.settings();
+  const auto basis = [&](const TetMesh& mesh) {
     BasisOptions options = basis_beside(model.mesh(), mesh);
     options.keep_root = true;
+    options.around = base.fit.w;
     return options;
   };
   if (known != nullptr) return std::make_shared<const RecordingFit>(settings, *known, basis(known->model().mesh()));
   const TetMesh mesh = refined_mesh(model.mesh(), settings.mesh);
   return std::make_shared<const RecordingFit>(settings, mesh, refine_regions(model.body().regions, model.mesh(), mesh),
-                                              recording_fit.recording(), basis(mesh));
+                                              base.recording_fit->recording(), basis(mesh));
+}
+
+// Returns the step of Levenberg and Marquardt, in the prior's standard deviations.
+Eigen::VectorXd damped_step(const Eigen::MatrixXd& j, const Eigen::VectorXd& error, double damping) {
+  Eigen::MatrixXd precision = j.transpose() * j;
+  precision.diagonal().array() += damping;
+  return precision.ldlt().solve(j.transpose() * error);
 }
 
 }  // namespace
@@ -38,7 +49,7 @@ FinerMesh finer_mesh(const FittedModel& base, const RecordingFit* known) {
   FinerMesh out{Eigen::VectorXd::Zero(base.rows.error.size())};
   const Model& model = base.recording_fit->model();
   if (model.nonlinear() || !MeshError::why_not(model).empty()) return out;
-  out.recording_fit = on_finer_mesh(*base.recording_fit, model.settings(), known);
+  out.recording_fit = on_finer_mesh(base, known);
   const Eigen::VectorXd prior = model.parameters().prior_std();
   const auto change_at = [&](const Eigen::VectorXd& w) {
     return Eigen::VectorXd(base.rows.used.cwiseProduct(out.recording_fit->predicted(w) - base.rows.predicted));
@@ -47,15 +58,22 @@ FinerMesh finer_mesh(const FittedModel& base, const RecordingFit* known) {
   Eigen::VectorXd w =
       scan_around(cost, base.fit.w, prior, NestedParameters(*base.recording_fit, *base.recording_fit).tuning()).best;
   out.change = change_at(w);
+  double damping = 1.0;
   for (int k = 0; k < kMostMoves; ++k) {
     const Eigen::MatrixXd j = base_tangents(*out.recording_fit, w, kStep * prior, base.rows) * prior.asDiagonal();
-    const Eigen::MatrixXd precision = Eigen::MatrixXd::Identity(w.size(), w.size()) + j.transpose() * j;
-    const Eigen::VectorXd u = precision.ldlt().solve(j.transpose() * -out.change);
-    const Eigen::VectorXd next = w + prior.cwiseProduct(u);
-    const Eigen::VectorXd change = change_at(next);
-    if (!(change.squaredNorm() < (1.0 - kGain) * out.change.squaredNorm())) break;
+    const double before = out.change.squaredNorm();
+    Eigen::VectorXd next, change;
+    bool lower = false;
+    while (!lower && damping < kMostDamping) {
+      next = w + prior.cwiseProduct(damped_step(j, -out.change, damping));
+      change = change_at(next);
+      lower = change.squaredNorm() < before;
+      damping *= lower ? kEasier : kHarder;
+    }
+    if (!lower) break;
     w = next;
     out.change = change;
+    if (change.squaredNorm() > (1.0 - kGain) * before) break;
   }
   return out;
 }

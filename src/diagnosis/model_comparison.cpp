@@ -84,6 +84,20 @@ double repeated(const Eigen::VectorXd& course) {
   return out;
 }
 
+Eigen::MatrixXd whitened_by(const MeshAllowance& mesh, double s, const std::vector<Eigen::Index>& offsets,
+                            const Eigen::MatrixXd& rows) {
+  Eigen::MatrixXd out = rows;
+  for (std::size_t k = 0; k + 1 < offsets.size(); ++k) {
+    const Eigen::Index from = offsets[k], size = offsets[k + 1] - from;
+    if (size == 0 || mesh.variances.size() == 0) continue;
+    const auto basis = mesh.basis.middleRows(from, size);
+    const Eigen::ArrayXd shrink = 1.0 - (s / (s + mesh.variances.col(static_cast<Eigen::Index>(k)).array())).sqrt();
+    out.middleRows(from, size) -=
+        basis * (shrink.matrix().asDiagonal() * (basis.transpose() * rows.middleRows(from, size)));
+  }
+  return out;
+}
+
 // Returns the widths of the amplitudes' priors over the stated width.
 std::vector<double> scales_of(const Linearisation& model) {
   std::vector<double> out;
@@ -109,19 +123,23 @@ ModelComparison::ModelComparison(const FittedModel& base, const Eigen::VectorXd&
 }
 
 void ModelComparison::allow_for_mesh(const Eigen::VectorXd& change) {
+  mesh_ = allowance(change);
+}
+
+MeshAllowance ModelComparison::allowance(const Eigen::VectorXd& change) const {
   Parted parts = parted(kComparison.whole_mesh * change, along_, offsets_);
-  mesh_ = std::move(parts.columns);
-  const Eigen::Index modes = mesh_.cols() - 1, frames = static_cast<Eigen::Index>(offsets_.size()) - 1;
+  MeshAllowance out{std::move(parts.columns), {}, {}};
+  const Eigen::Index modes = out.columns.cols() - 1, frames = static_cast<Eigen::Index>(offsets_.size()) - 1;
   // The mesh's error has the mean square of that part of D, and D's memory. Amplitudes that are independent from frame to
   // frame say as much of it if they have its spectral density.
   constexpr double part = kComparison.least_of_mesh / kComparison.whole_mesh;
-  const Eigen::VectorXd square = part * part * mesh_.leftCols(modes).colwise().squaredNorm().transpose();
+  const Eigen::VectorXd square = part * part * out.columns.leftCols(modes).colwise().squaredNorm().transpose();
   Eigen::VectorXd memory(modes);
   for (Eigen::Index i = 0; i < modes; ++i) memory[i] = repeated(parts.shares.col(i));
   const Eigen::VectorXd size = along_.leftCols(modes).colwise().squaredNorm().transpose();
   const Eigen::VectorXd std = square.cwiseProduct(memory).cwiseQuotient(size.cwiseMax(kTiny * kTiny)).cwiseSqrt();
-  basis_ = Eigen::MatrixXd::Zero(along_.rows(), modes);
-  variances_ = Eigen::MatrixXd::Zero(modes, frames);
+  out.basis = Eigen::MatrixXd::Zero(along_.rows(), modes);
+  out.variances = Eigen::MatrixXd::Zero(modes, frames);
   for (Eigen::Index k = 0; k < frames; ++k) {
     const Eigen::Index from = offsets_[static_cast<std::size_t>(k)],
                        rows = offsets_[static_cast<std::size_t>(k) + 1] - from;
@@ -130,10 +148,11 @@ void ModelComparison::allow_for_mesh(const Eigen::VectorXd& change) {
     for (Eigen::Index i = 0; i < modes; ++i) {
       const double variance = eigen.eigenvalues()[i];
       if (!(variance > kTiny)) continue;
-      basis_.block(from, i, rows, 1) = root * eigen.eigenvectors().col(i) / std::sqrt(variance);
-      variances_(i, k) = variance;
+      out.basis.block(from, i, rows, 1) = root * eigen.eigenvectors().col(i) / std::sqrt(variance);
+      out.variances(i, k) = variance;
     }
   }
+  return out;
 }
 
 void ModelComparison::move_base(const Eigen::VectorXd& error, const Eigen::VectorXd& mesh_change) {
@@ -143,17 +162,7 @@ void ModelComparison::move_base(const Eigen::VectorXd& error, const Eigen::Vecto
 }
 
 Eigen::MatrixXd ModelComparison::whitened(const Eigen::MatrixXd& rows) const {
-  Eigen::MatrixXd out = rows;
-  const double s = noise_variance_;
-  for (std::size_t k = 0; k + 1 < offsets_.size(); ++k) {
-    const Eigen::Index from = offsets_[k], size = offsets_[k + 1] - from;
-    if (size == 0 || variances_.size() == 0) continue;
-    const auto basis = basis_.middleRows(from, size);
-    const Eigen::ArrayXd shrink = 1.0 - (s / (s + variances_.col(static_cast<Eigen::Index>(k)).array())).sqrt();
-    out.middleRows(from, size) -=
-        basis * (shrink.matrix().asDiagonal() * (basis.transpose() * rows.middleRows(from, size)));
-  }
-  return out;
+  return whitened_by(mesh_, noise_variance_, offsets_, rows);
 }
 
 void ModelComparison::note(const Eigen::VectorXd& error) {
@@ -170,12 +179,22 @@ void ModelComparison::note(const ModelComparison& other) {
 }
 
 Assessment ModelComparison::assess(const Explained& explained) const {
+  Assessment out = assess(explained, mesh_);
+  if (!explained.mesh) return out;
+  Assessment own = assess(explained, *explained.mesh);
+  out.left = std::move(own.left);
+  out.test = own.test;
+  out.strict_test = own.strict_test;
+  return out;
+}
+
+Assessment ModelComparison::assess(const Explained& explained, const MeshAllowance& mesh) const {
   const Linearisation& model = explained.linearisation;
   const double s = noise_variance_;
-  Eigen::MatrixXd j(explained.error.size(), model.columns.cols() + mesh_.cols());
-  j << model.columns, mesh_;
-  const Eigen::MatrixXd white = whitened(j);
-  const Eigen::VectorXd error = whitened(explained.error);
+  Eigen::MatrixXd j(explained.error.size(), model.columns.cols() + mesh.columns.cols());
+  j << model.columns, mesh.columns;
+  const Eigen::MatrixXd white = whitened_by(mesh, s, offsets_, j);
+  const Eigen::VectorXd error = whitened_by(mesh, s, offsets_, explained.error);
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(j.cols());
   mean.head(model.prior.size()) = model.prior;
   const Eigen::MatrixXd gram = white.transpose() * white / s;
@@ -205,13 +224,14 @@ Assessment ModelComparison::assess(const Explained& explained) const {
   }
   out.log_evidence = log_mean_exp(evidence);
   out.left = explained.error - j * u;
-  test_left(static_cast<double>(model.columns.cols()), out);
+  test_left(static_cast<double>(model.columns.cols()), mesh, out);
   return out;
 }
 
-void ModelComparison::test_left(double fitted, Assessment& out) const {
+void ModelComparison::test_left(double fitted, const MeshAllowance& mesh, Assessment& out) const {
   MisfitTest test = test_of(out.left, fitted);
-  const double along = along_modes(mesh_), across = mesh_.cols() > 0 ? mesh_.rightCols(1).squaredNorm() : 0.0;
+  const double along = along_modes(mesh.columns);
+  const double across = mesh.columns.cols() > 0 ? mesh.columns.rightCols(1).squaredNorm() : 0.0;
   const auto z_at = [&, rows = used_.sum()](double size) {
     const double square = std::pow(size / kComparison.whole_mesh, 2) / rows;
     test.set_numerics(square * along, square * across);

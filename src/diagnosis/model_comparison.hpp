@@ -54,11 +54,15 @@ class ModelComparison {
   void note(const Eigen::VectorXd& error);
   /// Takes over the noise that another comparison of this recording has noted, where it is less.
   void note(const ModelComparison& other);
-  double noise_variance() const { return noise_variance_; }         ///< s
-  double base_cost() const { return base_cost_; }                   ///< sum of squared errors of the base, which D is of
-  const Eigen::MatrixXd& mesh_directions() const { return mesh_; }  ///< D
+  double noise_variance() const { return noise_variance_; }  ///< s
+  double base_cost() const { return base_cost_; }            ///< sum of squared errors of the base, which D is of
+  const Eigen::MatrixXd& mesh_directions() const { return mesh_.columns; }  ///< D
+  /// Returns what is allowed for a mesh whose refinement changes a model's rows by this [sigma].
+  MeshAllowance allowance(const Eigen::VectorXd& change) const;
   /// Returns the rows (N x k) in which the covariance is s I: along B_k they shrink by the root of s / (s + L_k).
   Eigen::MatrixXd whitened(const Eigen::MatrixXd& rows) const;
+  /// Assesses a model. Its evidence is compared with that of others, so it allows for the base's mesh. Its test allows for
+  /// the error of its own mesh, where that is known.
   Assessment assess(const Explained& model) const;
   /// Tests a residual itself, of a model with `fitted` parameters, against the noise that is known so far. It allows for no
   /// error of the numerics.
@@ -68,17 +72,16 @@ class ModelComparison {
                         const std::function<bool(Eigen::Index)>& inside) const;
 
  private:
+  Assessment assess(const Explained& model, const MeshAllowance& mesh) const;
   /// Tests what a model with `fitted` parameters leaves.
-  void test_left(double fitted, Assessment& out) const;
+  void test_left(double fitted, const MeshAllowance& mesh, Assessment& out) const;
 
   Eigen::VectorXd used_;   ///< 1 where a row says something, else 0
   Eigen::VectorXi nodes_;  ///< of each row, or kForceRow
   std::vector<Eigen::Index> offsets_;
   std::vector<SparseMatrix> differences_;  ///< between neighbouring points, of each frame
   Eigen::MatrixXd along_;                  ///< rows / amplitude of each mode
-  Eigen::MatrixXd mesh_;                   ///< D
-  Eigen::MatrixXd basis_;                  ///< B, frame under frame
-  Eigen::MatrixXd variances_;              ///< L, one column a frame
+  MeshAllowance mesh_;                     ///< of the base
   double base_cost_ = 0.0;
   double noise_variance_ = 0.0;
   double noise_level_ = MisfitTest::most_noise;  ///< v

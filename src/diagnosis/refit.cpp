@@ -140,31 +140,50 @@ FittedModel fit_extended(const FittedModel& base, const RefitTask& task, const R
   return out;
 }
 
+// Takes over what a fit of the base with the refit's proposal has found.
+void describe(const FittedModel& base, const FittedModel& fitted, const FittedSteps& steps, double rival,
+              double steps_rival, Refit& out) {
+  const RecordingFit& known = *base.recording_fit;
+  const Model& model = fitted.recording_fit->model();
+  std::vector<EffectEntry> entries{out.proposed};
+  fit_entries(entries, model, fitted.fit);
+  out.entry = entries.front();
+  out.parameters = model.parameters().values(fitted.fit.w);
+  const auto numerics = fitted.fit.cost > rival ? FittedNumerics::none : FittedNumerics::evident;
+  out.explained = std::make_shared<const Explained>(
+      compared_residual(fitted, added_amplitudes(*fitted.recording_fit, known), numerics, steps, steps_rival));
+  RecordingRows compared = fitted.rows;
+  compared.error = out.explained->error;
+  out.held_out_rms = rms_error(compared, known.recording(), true);
+  out.fitted = fitted.fit.cost;
+  out.cost = fitted.rows.error.squaredNorm();
+}
+
 }  // namespace
 
 Refit refit_with(const FittedModel& base, const RefitTask& task, const RefitLimits& limits) {
-  const RecordingFit& known = *base.recording_fit;
   bool in_full = false;
   auto fitted = std::make_shared<FittedModel>(fit_extended(base, task, limits, in_full));
-  const Model& model = fitted->recording_fit->model();
   Refit out;
   out.effect = task.effect();
   out.candidate = task.candidate;
   out.proposed = task.candidate->proposal.refine;
-  std::vector<EffectEntry> entries{out.proposed};
-  fit_entries(entries, model, fitted->fit);
-  out.entry = entries.front();
-  out.parameters = model.parameters().values(fitted->fit.w);
-  const auto numerics = fitted->fit.cost > limits.rival ? FittedNumerics::none : FittedNumerics::evident;
-  out.explained = std::make_shared<const Explained>(compared_residual(
-      *fitted, added_amplitudes(*fitted->recording_fit, known), numerics, limits.steps, limits.steps_rival));
-  RecordingRows compared = fitted->rows;
-  compared.error = out.explained->error;
-  out.held_out_rms = rms_error(compared, known.recording(), true);
-  out.fitted = fitted->fit.cost;
-  out.cost = fitted->rows.error.squaredNorm();
-  if (in_full || !model.nonlinear()) out.model = std::move(fitted);
+  describe(base, *fitted, limits.steps, limits.rival, limits.steps_rival, out);
+  if (in_full || !fitted->recording_fit->model().nonlinear()) out.model = std::move(fitted);
   return out;
+}
+
+void choose_basis_at_fit(const FittedModel& base, const FittedSteps& steps, Refit& refit) {
+  const RecordingFit& known = *refit.model->recording_fit;
+  if (known.model().nonlinear()) return;
+  BasisOptions basis = RecordingFit::keeping_root();
+  basis.around = refit.model->fit.w;
+  auto own = std::make_shared<FittedModel>();
+  own->recording_fit = std::make_unique<RecordingFit>(known.model().settings(), *base.recording_fit, basis);
+  own->fit = own->recording_fit->quick_fit(basis.around, kSpread * known.model().parameters().prior_std());
+  own->rows = own->recording_fit->rows(own->fit.w);
+  describe(base, *own, steps, no_rival, no_rival, refit);
+  refit.model = std::move(own);
 }
 
 }  // namespace tissue_stiffness

@@ -48,4 +48,9 @@ struct Refit {
 /// fitted at first order, which costs little. Throws NumericalError when no start can be run.
 Refit refit_with(const FittedModel& base, const RefitTask& task, const RefitLimits& limits);
 
+/// Fits a linear refit anew with a reduced basis that is chosen at its fit, and not at the proposal's prior. A lump of mass
+/// that has moved by a part of its width, for example, is then seen more exactly. `steps`: of the base. The refit has to
+/// have its model.
+void choose_basis_at_fit(const FittedModel& base, const FittedSteps& steps, Refit& refit);
+
 }  // namespace tissue_stiffness

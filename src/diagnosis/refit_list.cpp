@@ -152,6 +152,18 @@ bool RefitList::move_to_better_base() {
   return true;
 }
 
+void RefitList::test_best_by_own_numerics() {
+  if (compare().best().effects.empty() || !best().model || !screening_.finer.recording_fit) return;
+  Refit& refit = refits_.front();
+  choose_basis_at_fit(screening_.base, base_->steps, refit);
+  const FinerMesh finer = finer_mesh(*refit.model, screening_.finer.recording_fit.get());
+  if (!finer.recording_fit) return;
+  Explained own = *refit.explained;
+  own.mesh = std::make_shared<const MeshAllowance>(comparison_.allowance(finer.change));
+  refit.explained = std::make_shared<const Explained>(std::move(own));
+  assess();
+}
+
 // Assesses all models anew, because the noise is that of the model that leaves least.
 void RefitList::assess() {
   compared_.reset();

@@ -47,6 +47,9 @@ class RefitList {
   /// better; the round's base is then there.
   bool move_to_better_base();
   bool base_moved() const { return base_moved_; }
+  /// Tests the best refit as if it were the given model, if it is more probable than that: with a reduced basis that is
+  /// chosen at its fit, and with the error of its own mesh. Nothing changes where no finer mesh can be run.
+  void test_best_by_own_numerics();
 
   bool empty() const { return refits_.empty(); }
   const std::vector<Refit>& all() const { return refits_; }

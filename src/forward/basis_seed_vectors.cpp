@@ -38,12 +38,12 @@ Eigen::Vector3d acceleration(const Model::Part& part, const Eigen::VectorXd& the
 std::vector<Eigen::VectorXd> moved(const Model& model, const PriorView& prior, const Model::Part& part,
                                    const std::vector<int>& shape) {
   std::vector<Eigen::VectorXd> list;
-  const Eigen::VectorXd mean = model.parameters().prior_mean(), std = model.parameters().prior_std();
+  const Eigen::VectorXd std = model.parameters().prior_std();
   for (const int i : shape) {
     if (!model.estimated(part, {i})) continue;
     const int index = part.indices[static_cast<std::size_t>(i)];
     for (const double sign : {-1.0, 1.0}) {
-      const double value = model.parameters().theta(mean + sign * std)[index];
+      const double value = model.parameters().theta(prior.place + sign * std)[index];
       Eigen::VectorXd theta = prior.theta;
       theta[index] = value;
       list.push_back(part.parameters(theta));
@@ -71,8 +71,9 @@ Eigen::VectorXd theta_without_part(const Model& model, std::size_t part, Eigen::
   return theta;
 }
 
-PriorView::PriorView(const Model& model) : theta(model.parameters().theta(model.parameters().prior_mean())) {
-  Eigen::VectorXd w = model.parameters().prior_mean();
+PriorView::PriorView(const Model& model, const Eigen::VectorXd& around)
+    : place(around.size() > 0 ? around : model.parameters().prior_mean()), theta(model.parameters().theta(place)) {
+  Eigen::VectorXd w = place;
   const Eigen::VectorXd std = model.parameters().prior_std();
   for (Eigen::Index i = 0; i < w.size(); ++i) {
     w[i] += (0.3 + 0.7 * std::fmod(0.618034 * static_cast<double>(i + 1), 1.0)) * std[i];

@@ -7,12 +7,14 @@
 
 namespace tissue_stiffness {
 
-/// The prior of a linear model at two sets of parameters, for the choice of a reduced basis.
+/// A linear model at two sets of parameters, for the choice of a reduced basis.
 struct PriorView {
-  explicit PriorView(const Model& model);
+  /// `around`: the filter's coordinates of the first set; empty: the prior's mean.
+  explicit PriorView(const Model& model, const Eigen::VectorXd& around = {});
 
-  Eigen::VectorXd theta;    ///< at the prior, with every support held
-  Eigen::VectorXd generic;  ///< away from the prior in every estimated parameter, by different amounts
+  Eigen::VectorXd place;    ///< the coordinates of the first set
+  Eigen::VectorXd theta;    ///< the parameters there, with every support held
+  Eigen::VectorXd generic;  ///< away from there in every estimated parameter, by different shares of the prior's width
 };
 
 /// Returns theta with the parameters of a part at their absent values.

@@ -105,7 +105,7 @@ namespace {
 class Builder {
  public:
   Builder(const Model& model, const BasisOptions& options, const std::shared_ptr<const BasisRoot>& known)
-      : model_(model), options_(options), prior_(model), root_(make_root(known)) {}
+      : model_(model), options_(options), prior_(model, options.around), root_(make_root(known)) {}
 
   ReducedBasis build() {
     OrthonormalBasis basis(mass_, most(root_->loads.cols()));
@@ -333,7 +333,7 @@ class Builder {
   // Adds responses with the nodes on springs for each support that may be compliant. Responses to the springs cover other
   // compliances.
   void add_supports(const OrthonormalBasis& held, const Eigen::MatrixXd& acting, ReducedBasis& result) const {
-    const Eigen::VectorXd prior = model_.parameters().theta(model_.parameters().prior_mean());
+    const Eigen::VectorXd prior = model_.parameters().theta(prior_.place);
     for (std::size_t p = 0; p < model_.parts().size(); ++p) {
       const auto& part = model_.parts()[p];
       if (part.compliant_nodes().empty() || !model_.estimated(part, {0})) continue;

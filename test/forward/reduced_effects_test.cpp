@@ -95,6 +95,29 @@ TEST(ReducedEffects, AnInclusionGrowsFromNothingAndWanders) {
             2e-2);
 }
 
+// A lump's matrix changes with its place, so the vectors for one place are not those for another.
+TEST(ReducedEffects, AHeavyLumpNeedsVectorsThatAreChosenAtItsPlace) {
+  const TetMesh mesh = bar_mesh(8, 2, 2);
+  const std::vector<std::string> effects =
+      bar_with({"added_mass: {center: {mean: [0.03, 0.01, 0.01], std: 0.02}, mass: {prior: 0.002, factor: 4}}"});
+  Model model(box_settings(effects), mesh);
+  model.loads().set_first_stamp(0.1);
+  const ParameterSpace& parameters = model.parameters();
+  BasisOptions small;
+  small.size = 12;
+  small.per_part = 4;
+  small.around =
+      parameters.coordinates({{"added_mass.mass", 0.05}, {"added_mass.center_x", 0.07}}, parameters.prior_mean());
+  const Eigen::VectorXd theta = parameters.theta(small.around);
+  const double chosen = full_against_reduced(model, ReducedModel(model, small), theta, 2e-4);
+  small.around.resize(0);
+  const double at_prior = full_against_reduced(model, ReducedModel(model, small), theta, 2e-4);
+  std::printf("a lump of 50 g: %.1e of the motion with vectors at its place, %.1e with those of the prior\n", chosen,
+              at_prior);
+  EXPECT_LT(chosen, 1e-3);
+  EXPECT_GT(at_prior, 3.0 * chosen);
+}
+
 TEST(ReducedEffects, FibresContract) {
   EXPECT_LT(worst({"active_contraction: {direction: circumferential, amplitude: {mean: 0, std: 500}, "
                    "period: {prior: 0.2, factor: 1.5}, onset: {mean: 0.02, std: 0.02}, angle: {mean: 0.7, std: 0.3}}"},
