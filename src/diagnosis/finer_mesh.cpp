@@ -25,6 +25,7 @@ std::shared_ptr<const RecordingFit> on_finer_mesh(const FittedModel& base, const
     BasisOptions options = basis_beside(model.mesh(), mesh);
     options.keep_root = true;
     options.around = base.fit.w;
+    options.reach = base.fit.covariance.diagonal().cwiseSqrt();
     return options;
   };
   if (known != nullptr) return std::make_shared<const RecordingFit>(settings, *known, basis(known->model().mesh()));

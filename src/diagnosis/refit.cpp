@@ -178,6 +178,7 @@ void choose_basis_at_fit(const FittedModel& base, const FittedSteps& steps, Refi
   if (known.model().nonlinear()) return;
   BasisOptions basis = RecordingFit::keeping_root();
   basis.around = refit.model->fit.w;
+  basis.reach = refit.model->fit.covariance.diagonal().cwiseSqrt();
   auto own = std::make_shared<FittedModel>();
   own->recording_fit = std::make_unique<RecordingFit>(known.model().settings(), *base.recording_fit, basis);
   own->fit = own->recording_fit->quick_fit(basis.around, kSpread * known.model().parameters().prior_std());

@@ -33,17 +33,15 @@ Eigen::Vector3d acceleration(const Model::Part& part, const Eigen::VectorXd& the
   return sum;
 }
 
-// Returns a part's parameters with one of those that shape a term changed by its prior's standard deviation, in both
-// directions.
+// Returns a part's parameters with one of those that shape a term changed by the view's reach, in both directions.
 std::vector<Eigen::VectorXd> moved(const Model& model, const PriorView& prior, const Model::Part& part,
                                    const std::vector<int>& shape) {
   std::vector<Eigen::VectorXd> list;
-  const Eigen::VectorXd std = model.parameters().prior_std();
   for (const int i : shape) {
     if (!model.estimated(part, {i})) continue;
     const int index = part.indices[static_cast<std::size_t>(i)];
     for (const double sign : {-1.0, 1.0}) {
-      const double value = model.parameters().theta(prior.place + sign * std)[index];
+      const double value = model.parameters().theta(prior.place + sign * prior.reach)[index];
       Eigen::VectorXd theta = prior.theta;
       theta[index] = value;
       list.push_back(part.parameters(theta));
@@ -71,12 +69,13 @@ Eigen::VectorXd theta_without_part(const Model& model, std::size_t part, Eigen::
   return theta;
 }
 
-PriorView::PriorView(const Model& model, const Eigen::VectorXd& around)
-    : place(around.size() > 0 ? around : model.parameters().prior_mean()), theta(model.parameters().theta(place)) {
+PriorView::PriorView(const Model& model, const Eigen::VectorXd& around, const Eigen::VectorXd& reach)
+    : place(around.size() > 0 ? around : model.parameters().prior_mean()),
+      reach(reach.size() > 0 ? reach : model.parameters().prior_std()),
+      theta(model.parameters().theta(place)) {
   Eigen::VectorXd w = place;
-  const Eigen::VectorXd std = model.parameters().prior_std();
   for (Eigen::Index i = 0; i < w.size(); ++i) {
-    w[i] += (0.3 + 0.7 * std::fmod(0.618034 * static_cast<double>(i + 1), 1.0)) * std[i];
+    w[i] += (0.3 + 0.7 * std::fmod(0.618034 * static_cast<double>(i + 1), 1.0)) * this->reach[i];
   }
   generic = model.parameters().theta(w);
   for (std::size_t p = 0; p < model.parts().size(); ++p) {

@@ -9,12 +9,13 @@ namespace tissue_stiffness {
 
 /// A linear model at two sets of parameters, for the choice of a reduced basis.
 struct PriorView {
-  /// `around`: the filter's coordinates of the first set; empty: the prior's mean.
-  explicit PriorView(const Model& model, const Eigen::VectorXd& around = {});
+  /// `around` holds the filter's coordinates of the first set, and `reach` how far the second one is from there. Both are
+  /// the prior's mean and standard deviation where they are empty.
+  explicit PriorView(const Model& model, const Eigen::VectorXd& around = {}, const Eigen::VectorXd& reach = {});
 
-  Eigen::VectorXd place;    ///< the coordinates of the first set
-  Eigen::VectorXd theta;    ///< the parameters there, with every support held
-  Eigen::VectorXd generic;  ///< away from there in every estimated parameter, by different shares of the prior's width
+  Eigen::VectorXd place, reach;  ///< [filter's coordinates]
+  Eigen::VectorXd theta;         ///< the parameters at `place`, with every support held
+  Eigen::VectorXd generic;       ///< away from there in every estimated parameter, by different shares of `reach`
 };
 
 /// Returns theta with the parameters of a part at their absent values.

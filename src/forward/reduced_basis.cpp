@@ -105,7 +105,7 @@ namespace {
 class Builder {
  public:
   Builder(const Model& model, const BasisOptions& options, const std::shared_ptr<const BasisRoot>& known)
-      : model_(model), options_(options), prior_(model, options.around), root_(make_root(known)) {}
+      : model_(model), options_(options), prior_(model, options.around, options.reach), root_(make_root(known)) {}
 
   ReducedBasis build() {
     OrthonormalBasis basis(mass_, most(root_->loads.cols()));

@@ -37,8 +37,9 @@ struct BasisOptions {
   /// Takes a relative's vectors unchanged, for a model with the same parts or some of them (by label), in any order. If
   /// these are all of its vectors, its projections onto them are taken, too.
   bool adopt = false;
-  /// The vectors are chosen for these parameters, in the filter's coordinates; empty: for the prior's mean.
-  Eigen::VectorXd around = {};
+  /// The vectors are chosen for these parameters and for those that are so far from them, in the filter's coordinates;
+  /// empty: the prior's mean and standard deviation.
+  Eigen::VectorXd around = {}, reach = {};
   bool keep_root = false;  ///< for later models of the same body; it holds the stiffness's factor
 
   /// Returns these options with nonlinear effects left out.
