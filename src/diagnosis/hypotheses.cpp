@@ -31,18 +31,22 @@ double least_weight(const Hypothesis& model, const std::vector<Hypothesis>& all)
 }
 
 // Something unknown is one alternative to the most probable model, whatever it acts beside. So all random forces together
-// gain over that model what its test says, and a search that tries more models makes them no more probable.
+// gain over that model what its test says, and a search that tries more models makes them no more probable. It may also act
+// in the place of what is named, whose model is a near twin then. So it keeps its prior where that model leaves nothing.
 void bound_random_forces(const Hypothesis& best, std::vector<Hypothesis>& all) {
+  const auto counts = [&best](const Hypothesis& h) {
+    return h.random_force && (!h.superfluous || (h.same_effects(best) && !best.effects.empty()));
+  };
   const double over_best = best.log_weight + log_bayes_factor_bound(best.test.z);
   const auto shown = [over_best](const Hypothesis& h) { return over_best + h.log_prior_of_force; };
   double sum = 0.0;
   for (Hypothesis& h : all) {
-    if (!h.random_force || h.superfluous) continue;
+    if (!counts(h)) continue;
     h.log_weight = h.same_effects(best) ? shown(h) : std::min(h.log_weight, shown(h));
     sum += std::exp(h.log_weight - shown(h));
   }
   for (Hypothesis& h : all) {
-    if (h.random_force && sum > 1.0) h.log_weight -= std::log(sum);
+    if (counts(h) && sum > 1.0) h.log_weight -= std::log(sum);
   }
 }
 

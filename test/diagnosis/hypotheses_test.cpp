@@ -126,14 +126,19 @@ TEST(Comparison, GivesTheGivenModelTheErrorOfTheMesh) {
   EXPECT_EQ(judge(c), Verdict::numerics);
 }
 
-// Something unknown may act beside a named effect wherever the test leaves structure.
+// Something unknown may act beside a named effect wherever the test leaves structure. Elsewhere it may act in that effect's
+// place, and keeps its prior.
 TEST(Comparison, AsksTheTestForSomethingUnknownBesideANamedEffect) {
   std::vector<Hypothesis> list{hypothesis({}, 0.0, kFails), hypothesis({"a"}, 50.0, 2.97),
                                hypothesis({"a"}, 90.0, kFails, true)};
-  const double none = std::exp(log_bayes_factor_bound(2.97));
+  list[2].log_prior_of_force = -3.0;
+  const double none = std::exp(log_bayes_factor_bound(2.97) - 3.0);
   EXPECT_NEAR(compared(list).none_of_these(), none / (1.0 + none), 1e-9);
   list[1].test.z = kLeavesNoise;
-  EXPECT_EQ(compared(list).none_of_these(), 0.0);
+  EXPECT_NEAR(compared(list).none_of_these(), 1.0 / (1.0 + std::exp(3.0)), 1e-9);
+  EXPECT_EQ(judge(compared(list)), Verdict::missing);
+  list[0].test.z = kLeavesNoise;
+  EXPECT_EQ(compared(list).none_of_these(), 0.0) << "the given model suffices, so nothing is named";
 }
 
 // What is added to a model that leaves nothing but noise is too small to be missing, whatever it gains.
@@ -141,9 +146,9 @@ TEST(Comparison, GivesNothingToWhatExtendsASufficientModel) {
   std::vector<Hypothesis> list{hypothesis({}, 0.0, kFails), hypothesis({"a"}, 50.0, kLeavesNoise),
                                hypothesis({"b"}, 49.0, kPasses), hypothesis({"a", "b"}, 90.0, kPasses),
                                hypothesis({"a"}, 60.0, kFails, true)};
+  list[4].log_prior_of_force = -3.0;
   Comparison c = compared(list);
-  EXPECT_NEAR(c.probability_of("a"), 1.0 / (1.0 + std::exp(-1.0)), 1e-9);
-  EXPECT_EQ(c.none_of_these(), 0.0);
+  EXPECT_NEAR(c.probability_of("a") / c.probability_of("b"), std::exp(1.0), 1e-9);
   EXPECT_DOUBLE_EQ(c.hypotheses[3].log_weight, 90.0);
   EXPECT_EQ(judge(c), Verdict::missing);
   EXPECT_EQ(believed_effects(c), (std::vector<std::string>{"a", "b"}));  // each of them alone
@@ -197,7 +202,7 @@ TEST(Comparison, GivesToSomethingUnknownWhatTheTestSays) {
     return compared(list).none_of_these();
   };
   for (const double evidence : {20.0, 500.0}) {
-    EXPECT_NEAR(none_of_these(-5.0, evidence), 0.0, 1e-12);
+    EXPECT_NEAR(none_of_these(-5.0, evidence), 1.0 / (1.0 + std::exp(3.0)), 1e-6);
     EXPECT_LT(none_of_these(2.9, evidence), 0.8);
     EXPECT_NEAR(none_of_these(3.5, evidence), 1.0 / (1.0 + std::exp(3.0 - log_bayes_factor_bound(3.5))), 1e-6);
     EXPECT_GT(none_of_these(7.0, evidence), 0.999);
