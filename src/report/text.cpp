@@ -66,6 +66,12 @@ std::string short_number(double value, int digits) {
   return stream.str();
 }
 
+std::string fixed_number(double value, int decimals) {
+  if (!std::isfinite(value)) return "-";
+  const std::string text = fixed(value, decimals);
+  return text.find_first_of("123456789") == std::string::npos ? fixed(0.0, decimals) : text;
+}
+
 std::string millimetres(double metres) {
   return std::isfinite(metres) ? short_number(1e3 * metres, 3) + " mm" : "-";
 }

@@ -14,6 +14,9 @@ std::string exact_number(double value);
 /// Writes a number for the reader: `digits` significant digits, no exponent between 1e-4 and 1e6; "-" when not finite.
 std::string short_number(double value, int digits);
 
+/// Writes a number with so many decimals and without the sign of a zero: "0.0" for -0.04; "-" when not finite.
+std::string fixed_number(double value, int decimals);
+
 /// Writes a length: "0.35 mm"; "-" when not finite.
 std::string millimetres(double metres);
 

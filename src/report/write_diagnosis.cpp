@@ -17,10 +17,6 @@ namespace {
 constexpr double kTold = 0.005;   // probability
 constexpr double kTraced = 0.05;  // and that of a trace
 
-std::string millimetres(double metres) {
-  return std::isfinite(metres) ? short_number(1e3 * metres, 3) + " mm" : "-";
-}
-
 // Returns "Probabilities: viscous damping 94 %, viscoelasticity 5 %, none of these 1 %."
 std::string probabilities(const Diagnosis& d) {
   std::vector<std::pair<double, std::string>> all;

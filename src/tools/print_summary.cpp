@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <ostream>
 #include <vector>
 
@@ -8,6 +7,7 @@
 #include "report/page.hpp"
 #include "report/text.hpp"
 #include "tools/estimate_recording.hpp"
+#include "tools/formatted.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -16,18 +16,6 @@ double quantile(std::vector<double> values, double p) {
   std::sort(values.begin(), values.end());
   const double rank = std::ceil(p * static_cast<double>(values.size())) - 1.0;
   return values[static_cast<std::size_t>(std::max(0.0, rank))];
-}
-
-template <typename... Arguments>
-std::string formatted(const char* format, Arguments... arguments) {
-  char line[256];
-  std::snprintf(line, sizeof line, format, arguments...);
-  return line;
-}
-
-template <typename... Arguments>
-void print_line(std::ostream& out, const char* format, Arguments... arguments) {
-  out << formatted(format, arguments...) << "\n";
 }
 
 std::string painted(EstimateState state, const Paint& paint) {

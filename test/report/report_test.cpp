@@ -378,6 +378,10 @@ TEST(Text, NumbersForPeople) {
   EXPECT_EQ(short_number(nan, 3), "-");
   EXPECT_EQ(short_number(0.00012345, 3), "0.000123");
   EXPECT_EQ(short_number(1.5e9, 2), "1.5e+09");
+  EXPECT_EQ(fixed_number(nan, 1), "-");
+  EXPECT_EQ(fixed_number(-0.04, 1), "0.0");
+  EXPECT_EQ(fixed_number(-0.06, 1), "-0.1");
+  EXPECT_EQ(fixed_number(1334.56, 1), "1334.6");
   EXPECT_EQ(exact_number(0.1), "0.1");
   EXPECT_EQ(exact_number(nan), "");
   EXPECT_EQ(shown_unit(30e3, "Pa").name, "kPa");
