@@ -239,6 +239,7 @@ void ModelComparison::test_left(double fitted, const MeshAllowance& mesh, Assess
   };
   constexpr double least = kComparison.least_of_mesh, ratio = kComparison.whole_mesh / kComparison.least_of_mesh;
   std::vector<double> z;
+  z.reserve(kSizes);
   for (int i = 0; i < kSizes; ++i) z.push_back(z_at(least * std::pow(ratio, (i + 0.5) / kSizes)));
   out.test = {averaged_z(z)};
   out.strict_test = {z_at(least)};

@@ -177,6 +177,7 @@ void RefitList::assess() {
   for (std::size_t i = 0; i < refits_.size(); ++i) order.emplace_back(-refits_[i].log_bayes_factor, i);
   std::stable_sort(order.begin(), order.end());
   std::vector<Refit> sorted;
+  sorted.reserve(order.size());
   for (const auto& [evidence, i] : order) sorted.push_back(std::move(refits_[i]));
   refits_ = std::move(sorted);
   drop_worse_variants();

@@ -230,7 +230,7 @@ class Builder {
 
   // Returns the modes of the basis that the loads excite most.
   Eigen::MatrixXd leading_motion(const OrthonormalBasis& basis, const Eigen::MatrixXd& loads) const {
-    const Eigen::MatrixXd b = basis.vectors();
+    Eigen::MatrixXd b = basis.vectors();
     if (b.cols() == 0) return b;
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inner_products(b, symmetric_product(stiffness_, b)));
     const Eigen::VectorXd& square = eigen.eigenvalues();
