@@ -148,7 +148,9 @@ TEST(Comparison, GivesNothingToWhatExtendsASufficientModel) {
                                hypothesis({"a"}, 60.0, kFails, true)};
   list[4].log_prior_of_force = -3.0;
   Comparison c = compared(list);
-  EXPECT_NEAR(c.probability_of("a") / c.probability_of("b"), std::exp(1.0), 1e-9);
+  const double all = 1.0 + std::exp(-1.0) + std::exp(-3.0);
+  EXPECT_NEAR(c.probability_of("a"), 1.0 / all, 1e-9);
+  EXPECT_NEAR(c.none_of_these(), std::exp(-3.0) / all, 1e-9) << "in the place of a, and not beside it";
   EXPECT_DOUBLE_EQ(c.hypotheses[3].log_weight, 90.0);
   EXPECT_EQ(judge(c), Verdict::missing);
   EXPECT_EQ(believed_effects(c), (std::vector<std::string>{"a", "b"}));  // each of them alone

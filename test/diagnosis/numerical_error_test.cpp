@@ -127,7 +127,7 @@ TEST(Diagnose, TestsTheMostProbableModelByTheErrorOfItsOwnMesh) {
   Explained alike = *best.explained;
   alike.mesh = nullptr;
   const Assessment by_own = of_own.assess(alike), by_base = finding.models->assess(alike);
-  EXPECT_NEAR(best.assessment.test.z, by_own.test.z, 0.1);
+  EXPECT_NEAR(best.assessment.test.z, by_own.test.z, 0.01);
   EXPECT_GT(std::abs(by_own.test.z - by_base.test.z), 1.0);
   EXPECT_EQ(best.assessment.log_evidence, by_base.log_evidence) << "evidences are compared, so they share one allowance";
 }
