@@ -55,7 +55,7 @@ struct Comparison {
   /// missing, whatever it gains. Only a random force beside the most probable named model keeps its prior, because
   /// something unknown may act in the place of what is named. No hypothesis loses more to effects that extend it than the
   /// structure of its residual says. A random force gains over the given model, and all random forces together gain over
-  /// the most probable one, what their tests say: the tests tolerate what the mesh's error and its memory may give to a
+  /// the most probable one, what their tests say. The tests tolerate what the mesh's error and its memory may give to a
   /// force.
   void find_probabilities();
   /// `deeper` is a comparison about the model with `effects` added. Its hypotheses take the place of those with these
