@@ -10,15 +10,16 @@
 namespace tissue_stiffness::effects {
 namespace {
 
-enum Index { kAmplitude, kPeriod, kOnset, kDuration, kSharpness, kAngle, kTilt };
+enum Index { kAmplitude, kPeriod, kOnset, kDuration, kSharpness, kPeak, kAngle, kTilt };
 
-// Returns a sine pulse over the active part of each period, and zero before the onset.
+// Returns the pulse of the active part of each period, and zero before the onset.
 double twitch(double time, const Parameters& p) {
   const double since = time - p[kOnset];
   if (since <= 0.0) return 0.0;
-  const double within = since - p[kPeriod] * std::floor(since / p[kPeriod]);
-  const double part = within / std::min(p[kDuration], p[kPeriod]);
-  return part < 1.0 ? std::pow(std::sin(M_PI * part), p[kSharpness]) : 0.0;
+  const double part =
+      (since / p[kPeriod] - std::floor(since / p[kPeriod])) * p[kPeriod] / std::min(p[kDuration], p[kPeriod]);
+  const double height = std::min(part / p[kPeak], (1.0 - part) / (1.0 - p[kPeak]));
+  return height > 0.0 ? std::pow(std::sin(0.5 * M_PI * height), p[kSharpness]) : 0.0;
 }
 
 class ActiveContraction : public Effect, public FiniteStrainForm {
@@ -79,7 +80,14 @@ std::vector<double> periods(const ProposalContext& context) {
   return list;
 }
 
-// Proposes pulses half a period long, at a few periods and phases.
+// Muscle rises and relaxes at rates of its own, and another shape of the pulse rings the body otherwise.
+EffectEntry with_any_shape(EffectEntry pulse) {
+  pulse.arguments.emplace_back("peak", log_normal_prior(0.5, 1.3));
+  pulse.arguments.emplace_back("sharpness", log_normal_prior(2.0, 1.5));
+  return pulse;
+}
+
+// Proposes pulses half a period long, at a few periods and phases. The fit of the best ones finds their shape, too.
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.holds("active_contraction")) return {};
   const double scale = 0.03 * context.young_modulus;
@@ -100,8 +108,8 @@ std::vector<Proposal> propose(const ProposalContext& context) {
         const double onset = phase * period, arch = 0.5 * period;
         list.push_back({with(period, onset, arch, normal_prior(0.0, scale)),
                         "amplitude",
-                        with(log_normal_prior(period, 1.15), normal_prior(onset, 0.2 * period), log_normal_prior(arch, 1.5),
-                             normal_prior(scale, 2.0 * scale)),
+                        with_any_shape(with(log_normal_prior(period, 1.15), normal_prior(onset, 0.2 * period),
+                                            log_normal_prior(arch, 1.5), normal_prior(scale, 2.0 * scale))),
                         {"direction"}});
       }
     }
@@ -115,13 +123,18 @@ EffectSpec active_contraction_spec() {
   EffectSpec spec;
   spec.name = "active_contraction";
   spec.summary = "fibres that pull in a rhythm of their own, an arch in each period; below zero they push";
-  spec.formula = "stress T f(t) a a^T, f = sin^n(pi x / d) for x = (t - t0) mod P < d, else 0; nothing before t0";
-  spec.source = "active stress, Smith et al. 2004; t counts from the recording's first stamp";
+  spec.formula =
+      "stress T f(t) a a^T, f = sin^n(pi/2 min(x / (c d), (d - x) / (d - c d))) for x = (t - t0) mod P < d, else 0; "
+      "nothing before t0";
+  spec.source =
+      "active stress, Smith et al. 2004; ramps of unequal length, Korakianitis & Shi 2006, J. Biomech. 39, p. 1964; t "
+      "counts from the recording's first stamp";
   spec.parameters = {{"amplitude", "T", "Pa", -1e9, 1e9, ParameterSpec::Default::required, 0.0, 0.0, 1},
                      {"period", "P", "s", 1e-3, 1e6, ParameterSpec::Default::optional, 1.0, NAN, 1},
                      {"onset", "t0", "s", -1e6, 1e6, ParameterSpec::Default::optional, 0.0, NAN, 1},
                      {"duration", "d", "s", 1e-3, 1e6, ParameterSpec::Default::optional, 1e6, NAN, 1},
-                     {"sharpness", "n", "-", 1.0, 20.0, ParameterSpec::Default::optional, 2.0, NAN, 1}};
+                     {"sharpness", "n", "-", 1.0, 20.0, ParameterSpec::Default::optional, 2.0, NAN, 1},
+                     {"peak", "c", "-", 0.02, 0.98, ParameterSpec::Default::optional, 0.5, NAN, 1}};
   for (const ParameterSpec& angle : FibreField::angles()) spec.parameters.push_back(angle);
   spec.keys = FibreField::keys();
   spec.keys.push_back({"course", "{file: a.csv} with rows of time [s], f [-]; instead of the rhythm"});

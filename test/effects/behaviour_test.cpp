@@ -214,6 +214,34 @@ TEST(Pressure, FollowsTheSurfaceWhenTheStrainIsFinite) {
 }
 
 // The zero of a transducer acts as a pressure that never changes, with small and with finite strain.
+// Force at `time` along a bar whose fibres pull with that pulse, over the force at its peak.
+double activation(const std::string& pulse, double time) {
+  const TetMesh mesh = bar_mesh();
+  Model model(
+      box_settings({kInertia, kLinear, "active_contraction: {direction: [1, 0, 0], amplitude: 100, " + pulse + "}"}), mesh);
+  Model held(box_settings({kInertia, kLinear, "active_contraction: {direction: [1, 0, 0], amplitude: 100, duration: 1}"}),
+             mesh);
+  const Eigen::VectorXd most = load(held, 0.5, zero(held));
+  return load(model, time, zero(model)).dot(most) / most.squaredNorm();
+}
+
+TEST(ActiveContraction, IsAnArchUnlessToldOtherwise) {
+  const std::string pulse = "period: 0.8, onset: 0.1, duration: 0.4";
+  for (const double time : {0.15, 0.2, 0.3, 0.42, 0.95})
+    EXPECT_NEAR(activation(pulse, time), std::pow(std::sin(M_PI * std::fmod(time - 0.1, 0.8) / 0.4), 2), 1e-9) << time;
+  for (const double time : {0.05, 0.1, 0.5, 0.7, 0.9}) EXPECT_NEAR(activation(pulse, time), 0.0, 1e-9) << time;
+}
+
+TEST(ActiveContraction, RisesAndFallsAtRatesOfItsOwn) {
+  const std::string pulse = "period: 0.8, onset: 0.1, duration: 0.4, peak: 0.25";
+  EXPECT_NEAR(activation(pulse, 0.15), 0.5, 1e-9);  // half of the rise
+  EXPECT_NEAR(activation(pulse, 0.2), 1.0, 1e-9);
+  EXPECT_NEAR(activation(pulse, 0.35), 0.5, 1e-9);  // half of the fall
+  EXPECT_NEAR(activation(pulse, 1.15), 0.5, 1e-9);  // of the next pulse
+  EXPECT_NEAR(activation(pulse, 0.55), 0.0, 1e-9);
+  EXPECT_NEAR(activation(pulse + ", sharpness: 4", 0.35), 0.25, 1e-9);
+}
+
 TEST(PressureOffset, IsAPressureThatStays) {
   const TetMesh mesh = bar_mesh();
   for (const std::string& law : {kLinear, kFinite}) {
