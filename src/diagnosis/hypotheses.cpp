@@ -168,7 +168,7 @@ Verdict judge(const Comparison& c) {
   if (given.probability > 1.0 - kComparison.believed)
     return given.test.passes() ? (c.passes_without_mesh ? Verdict::adequate : Verdict::numerics) : Verdict::unexplained;
   const Hypothesis& best = c.best();
-  const bool named = !best.effects.empty() && !best.random_force && c.none_of_these() < 0.5;
+  const bool named = !best.effects.empty() && !best.random_force && c.none_of_these() < kComparison.most_unknown;
   return named && best.test.passes() ? Verdict::missing : Verdict::unexplained;
 }
 

@@ -212,7 +212,7 @@ Assessment ModelComparison::assess(const Explained& explained, const MeshAllowan
     const Eigen::VectorXd pull = seen + weight.cwiseProduct(mean);
     Eigen::VectorXd at = factor.solve(pull);
     // Numerics that are not plausible explain nothing, so the parameters have to do without them.
-    at.tail(rest) = at.tail(rest).cwiseMax(-kComparison.most_numerics).cwiseMin(kComparison.most_numerics);
+    at.tail(rest) = at.tail(rest).cwiseMax(-MisfitTest::bound).cwiseMin(MisfitTest::bound);
     at.head(own) = precision.topLeftCorner(own, own).ldlt().solve(pull.head(own) -
                                                                   precision.topRightCorner(own, rest) * at.tail(rest));
     const double likelihood = model.log_root_weights - 0.5 * (error - white * at).squaredNorm() / s;

@@ -37,10 +37,10 @@ struct Assessment {
 /// lowest modes, because the mesh's error has directions that D does not hold. Its mean square is that of `least_of_mesh`
 /// times what a refinement changes along each mode. The test averages its p-value over all sizes of that error up to
 /// `whole_mesh`, evenly by their logarithm.
-/// No coefficient of the numerics is believed beyond `most_numerics` standard deviations. The evidence is Laplace's
-/// approximation (MacKay 2003, eq. 28.10) with the numerics as further unknowns. An added amplitude's prior is an even
-/// mixture of normal ones from its stated width down to `smallest` of it. So an effect pays for the order of its size and
-/// not for the width that a proposal happens to state.
+/// No coefficient of the numerics is believed beyond the standard deviations at which a test fails. The evidence is
+/// Laplace's approximation (MacKay 2003, eq. 28.10) with the numerics as further unknowns. An added amplitude's prior is an
+/// even mixture of normal ones from its stated width down to `smallest` of it. So an effect pays for the order of its size
+/// and not for the width that a proposal happens to state.
 class ModelComparison {
  public:
   /// `mesh_change` is what a finer mesh changes of the base's rows [sigma].

@@ -80,7 +80,7 @@ std::vector<double> periods(const ProposalContext& context) {
   return list;
 }
 
-// Muscle rises and relaxes at rates of its own, and another shape of the pulse rings the body otherwise.
+// Muscle tightens and relaxes at rates of its own, and another shape of the pulse rings the body otherwise.
 EffectEntry with_any_shape(EffectEntry pulse) {
   pulse.arguments.emplace_back("peak", log_normal_prior(0.5, 1.3));
   pulse.arguments.emplace_back("sharpness", log_normal_prior(2.0, 1.5));
@@ -88,6 +88,7 @@ EffectEntry with_any_shape(EffectEntry pulse) {
 }
 
 // Proposes pulses half a period long, at a few periods and phases. The fit of the best ones finds their shape, too.
+// It keeps the sign, because muscle pulls.
 std::vector<Proposal> propose(const ProposalContext& context) {
   if (context.holds("active_contraction")) return {};
   const double scale = 0.03 * context.young_modulus;
@@ -109,7 +110,7 @@ std::vector<Proposal> propose(const ProposalContext& context) {
         list.push_back({with(period, onset, arch, normal_prior(0.0, scale)),
                         "amplitude",
                         with_any_shape(with(log_normal_prior(period, 1.15), normal_prior(onset, 0.2 * period),
-                                            log_normal_prior(arch, 1.5), normal_prior(scale, 2.0 * scale))),
+                                            log_normal_prior(arch, 1.5), log_normal_prior(scale, 4.0))),
                         {"direction"}});
       }
     }

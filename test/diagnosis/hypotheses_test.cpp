@@ -134,6 +134,12 @@ TEST(Comparison, AsksTheTestForSomethingUnknownBesideANamedEffect) {
   list[2].log_prior_of_force = -3.0;
   const double none = std::exp(log_bayes_factor_bound(2.97) - 3.0);
   EXPECT_NEAR(compared(list).none_of_these(), none / (1.0 + none), 1e-9);
+  list[1].test.z = 2.3;
+  EXPECT_NEAR(compared(list).none_of_these(), 0.275, 0.01);
+  EXPECT_EQ(judge(compared(list)), Verdict::unexplained) << "a wrong name costs more than an abstention";
+  list[1].test.z = 2.0;
+  EXPECT_NEAR(compared(list).none_of_these(), 0.176, 0.01);
+  EXPECT_EQ(judge(compared(list)), Verdict::missing);
   list[1].test.z = kLeavesNoise;
   EXPECT_NEAR(compared(list).none_of_these(), 1.0 / (1.0 + std::exp(3.0)), 1e-9);
   EXPECT_EQ(judge(compared(list)), Verdict::missing);

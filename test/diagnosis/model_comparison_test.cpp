@@ -195,7 +195,7 @@ TEST(ComparisonNumbers, AreThoseOfTheMethodsTable) {
   row("`worthwhile`", text(kComparison.worthwhile));
   row("`smallest`", text(kComparison.smallest));
   row("`promising`", text(kComparison.promising));
-  row("`most_numerics`", text(kComparison.most_numerics));
+  row("`most_unknown`", text(kComparison.most_unknown));
   row("`modes`", text(kComparison.modes));
   row("`most_traces`", text(kComparison.most_traces));
   row("`bound`", text(MisfitTest::bound));
