@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 
 #include "diagnosis/candidates.hpp"
+#include "diagnosis/comparison_numbers.hpp"
 #include "estimation/mesh_error.hpp"
 #include "fit/coordinate_scan.hpp"
 #include "fit/nested_parameters.hpp"
@@ -77,6 +78,11 @@ FinerMesh finer_mesh(const FittedModel& base, const RecordingFit* known) {
     if (change.squaredNorm() > (1.0 - kGain) * before) break;
   }
   return out;
+}
+
+Eigen::VectorXd mesh_change(const FittedModel& base, const FinerMesh& finer) {
+  const bool unknown = finer.recording_fit == nullptr && base.recording_fit->model().settings().mesh.discretisation_error;
+  return unknown ? kComparison.unknown_mesh * motion_of(base.rows).cwiseProduct(base.rows.used) : finer.change;
 }
 
 }  // namespace tissue_stiffness

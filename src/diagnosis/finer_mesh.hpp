@@ -19,4 +19,7 @@ struct FinerMesh {
 /// round, or null.
 FinerMesh finer_mesh(const FittedModel& base, const RecordingFit* known = nullptr);
 
+/// Returns the change of each row [sigma]. It is `unknown_mesh` of the motion for a mesh that cannot be refined.
+Eigen::VectorXd mesh_change(const FittedModel& base, const FinerMesh& finer);
+
 }  // namespace tissue_stiffness

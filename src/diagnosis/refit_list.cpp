@@ -78,6 +78,8 @@ void RefitList::keep(std::vector<std::optional<Refit>> done) {
   for (std::optional<Refit>& refit : done) {
     if (!refit) continue;
     comparison_.note(refit->explained->error);
+    if (refit->model && refit->model->recording_fit->model().nonlinear() && screening_.finer.recording_fit)
+      test_by_own_mesh({Eigen::VectorXd::Zero(refit->model->rows.error.size())}, *refit);
     refits_.push_back(std::move(*refit));
   }
   assess();
@@ -158,10 +160,14 @@ void RefitList::test_best_by_own_numerics() {
   choose_basis_at_fit(screening_.base, base_->steps, refit);
   const FinerMesh finer = finer_mesh(*refit.model, screening_.finer.recording_fit.get());
   if (!finer.recording_fit) return;
-  Explained own = *refit.explained;
-  own.mesh = std::make_shared<const MeshAllowance>(comparison_.allowance(finer.change));
-  refit.explained = std::make_shared<const Explained>(std::move(own));
+  test_by_own_mesh(finer, refit);
   assess();
+}
+
+void RefitList::test_by_own_mesh(const FinerMesh& finer, Refit& refit) {
+  Explained own = *refit.explained;
+  own.mesh = std::make_shared<const MeshAllowance>(comparison_.allowance(mesh_change(*refit.model, finer)));
+  refit.explained = std::make_shared<const Explained>(std::move(own));
 }
 
 // Assesses all models anew, because the noise is that of the model that leaves least.

@@ -48,7 +48,8 @@ class RefitList {
   bool move_to_better_base();
   bool base_moved() const { return base_moved_; }
   /// Tests the best refit as if it were the given model, if it is more probable than that: with a reduced basis that is
-  /// chosen at its fit, and with the error of its own mesh. Nothing changes where no finer mesh can be run.
+  /// chosen at its fit, and with the error of its own mesh. Nothing changes where no finer mesh can be run. A nonlinear
+  /// refit of a linear model is tested so from the beginning, because the error of its mesh is a part of the motion.
   void test_best_by_own_numerics();
 
   bool empty() const { return refits_.empty(); }
@@ -71,6 +72,8 @@ class RefitList {
   /// Returns how many variants of an effect the library proposes.
   double variants_of(const std::string& effect) const;
   void keep(std::vector<std::optional<Refit>> done);
+  /// Tests a refit that has its model with the error of its own mesh, and not of the base's.
+  void test_by_own_mesh(const FinerMesh& finer, Refit& refit);
   void assess();
   void drop_worse_variants();
 

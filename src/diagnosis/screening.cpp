@@ -33,12 +33,6 @@ void keep_wanted(std::vector<Candidate>& candidates, const std::vector<std::stri
   candidates.erase(std::remove_if(candidates.begin(), candidates.end(), other), candidates.end());
 }
 
-// Returns what a finer mesh changes; for a mesh that cannot be refined it is a part of the motion.
-Eigen::VectorXd mesh_change(const FittedModel& base, const FinerMesh& finer) {
-  const bool unknown = finer.recording_fit == nullptr && base.recording_fit->model().settings().mesh.discretisation_error;
-  return unknown ? kComparison.unknown_mesh * motion_of(base.rows).cwiseProduct(base.rows.used) : finer.change;
-}
-
 }  // namespace
 
 Screening::Screening(FittedModel& fitted, const DiagnosisOptions& options, PreviousRound previous,

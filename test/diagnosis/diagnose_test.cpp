@@ -84,6 +84,25 @@ TEST(Diagnose, JudgesAFindingByAnotherLikelihood) {
   EXPECT_TRUE(finding.set.empty());
 }
 
+// No finer mesh of a nonlinear model is run, so its test allows for a part of its own motion, and not for the mesh of the
+// base.
+TEST(Diagnose, TestsANonlinearModelWithTheErrorOfItsOwnMesh) {
+  const Recording recording = film({}, 1);
+  ModelSettings settings = box_settings(bar_under_gravity("{prior: 20.0e3, factor: 3}"));
+  settings.mesh.discretisation_error = true;
+  FittedModel base = fit_recording(std::make_unique<RecordingFit>(settings, bar_mesh(), recording),
+                                   Eigen::VectorXd::Constant(1, std::log(kTruth)), 0.1);
+  const Finding finding = diagnose_once(base, {"geometric_nonlinearity"}, {});
+  ASSERT_EQ(finding.refits.size(), 1U);
+  const Refit& refit = finding.refits.front();
+  ASSERT_NE(refit.model, nullptr);
+  ASSERT_NE(refit.explained->mesh, nullptr);
+  const RecordingRows& rows = refit.model->rows;
+  const Eigen::VectorXd own = refit.explained->mesh->columns.rowwise().sum();
+  const Eigen::VectorXd motion = motion_of(rows).cwiseProduct(rows.used);
+  EXPECT_LT((own - kComparison.whole_mesh * kComparison.unknown_mesh * motion).norm(), 1e-9 * motion.norm());
+}
+
 TEST(Diagnose, DoesNotLookForWhatItIsToldToIgnore) {
   DiagnosisOptions options;
   options.ignore = {"viscous_damping", "mass_damping", "viscoelasticity"};
