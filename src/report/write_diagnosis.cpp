@@ -53,6 +53,13 @@ std::string traces(const Diagnosis& d) {
   return " These may act without being missed: " + list + ". The interval of Young's modulus allows for them.";
 }
 
+// Returns why nothing is named.
+std::string rejection(const Diagnosis& d) {
+  double named = 0.0;
+  for (const MissingEffect& c : d.candidates) named = std::max(named, c.probability);
+  return named > d.none_of_these ? " That is not certain enough for a name." : " None of them explains the data.";
+}
+
 std::string verdict_sentence(const Diagnosis& d) {
   if (d.verdict == Verdict::unfinished) return "There is no verdict yet: the search for what is missing was interrupted.";
   if (d.verdict == Verdict::adequate) return "The model is adequate: what it leaves is noise.";
@@ -69,7 +76,7 @@ std::string verdict_sentence(const Diagnosis& d) {
           " % of the squared error (held-out error " + millimetres(d.steps.front().held_out_rms) + " to " +
           millimetres(d.best.held_out_rms) + ").";
   text += probabilities(d);
-  if (d.verdict == Verdict::unexplained) text += " None of them explains the data.";
+  if (d.verdict == Verdict::unexplained) text += rejection(d);
   std::vector<std::string> others;
   std::copy_if(d.set.begin(), d.set.end(), std::back_inserter(others),
                [&](const std::string& effect) { return std::count(found.begin(), found.end(), effect) == 0; });

@@ -289,6 +289,19 @@ TEST(DiagnosisSentence, NamesWhatIsMissingAndWhatFitsAsWell) {
   EXPECT_NE(diagnosis_json(d).find("\"left_out\": \"12 of 60 frames"), std::string::npos);
 }
 
+TEST(DiagnosisSentence, SaysWhyNothingIsNamed) {
+  Diagnosis d = example_diagnosis();
+  d.verdict = Verdict::unexplained;
+  d.none_of_these = 0.999;
+  d.candidates.front().probability = 0.001;
+  EXPECT_NE(diagnosis_sentence(d).find("none of these 100 %. None of them explains the data."), std::string::npos);
+  d.none_of_these = 0.3;
+  d.candidates.front().probability = 0.7;
+  EXPECT_EQ(diagnosis_sentence(d).find("Not explained; nearest: viscous damping ("), 0u);
+  EXPECT_NE(diagnosis_sentence(d).find("damping 70 %, none of these 30 %. That is not certain enough for a name."),
+            std::string::npos);
+}
+
 TEST(DiagnosisHtml, TellsTheStoryInOrder) {
   const DiagnosisTexts texts{"model.yaml",
                              "x.bag",
