@@ -1,6 +1,7 @@
 #include "diagnosis/finer_mesh.hpp"
 
 #include <Eigen/Cholesky>
+#include <utility>
 
 #include "diagnosis/candidates.hpp"
 #include "diagnosis/comparison_numbers.hpp"
@@ -25,9 +26,7 @@ std::shared_ptr<const RecordingFit> on_finer_mesh(const FittedModel& base, const
   const auto basis = [&](const TetMesh& mesh) {
     BasisOptions options = basis_beside(model.mesh(), mesh);
     options.keep_root = true;
-    options.around = base.fit.w;
-    options.reach = base.fit.covariance.diagonal().cwiseSqrt();
-    return options;
+    return RecordingFit::chosen_at(base.fit, std::move(options));
   };
   if (known != nullptr) return std::make_shared<const RecordingFit>(settings, *known, basis(known->model().mesh()));
   const TetMesh mesh = refined_mesh(model.mesh(), settings.mesh);

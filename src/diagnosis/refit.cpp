@@ -176,12 +176,10 @@ Refit refit_with(const FittedModel& base, const RefitTask& task, const RefitLimi
 void choose_basis_at_fit(const FittedModel& base, const FittedSteps& steps, Refit& refit) {
   const RecordingFit& known = *refit.model->recording_fit;
   if (known.model().nonlinear()) return;
-  BasisOptions basis = RecordingFit::keeping_root();
-  basis.around = refit.model->fit.w;
-  basis.reach = refit.model->fit.covariance.diagonal().cwiseSqrt();
   auto own = std::make_shared<FittedModel>();
-  own->recording_fit = std::make_unique<RecordingFit>(known.model().settings(), *base.recording_fit, basis);
-  own->fit = own->recording_fit->quick_fit(basis.around, kSpread * known.model().parameters().prior_std());
+  own->recording_fit = std::make_unique<RecordingFit>(known.model().settings(), *base.recording_fit,
+                                                      RecordingFit::chosen_at(refit.model->fit));
+  own->fit = own->recording_fit->quick_fit(refit.model->fit.w, kSpread * known.model().parameters().prior_std());
   own->rows = own->recording_fit->rows(own->fit.w);
   describe(base, *own, steps, no_rival, no_rival, refit);
   refit.model = std::move(own);

@@ -134,6 +134,12 @@ BasisOptions RecordingFit::keeping_root() {
   return basis;
 }
 
+BasisOptions RecordingFit::chosen_at(const BatchFit& fit, BasisOptions basis) {
+  basis.around = fit.w;
+  basis.reach = fit.covariance.diagonal().cwiseSqrt();
+  return basis;
+}
+
 void RecordingFit::borrow(const RecordingFit& base, const Eigen::VectorXd& w, const RecordingFit* seen,
                           const Eigen::VectorXd& seen_w) {
   if (!base.surrogate_ || !quick_) return;

@@ -40,6 +40,8 @@ class RecordingFit {
 
   /// Returns the basis options of a fit that others will reuse.
   static BasisOptions keeping_root();
+  /// Returns `basis` with its vectors chosen at a fit, and within the fit's standard deviations, in place of the prior.
+  static BasisOptions chosen_at(const BatchFit& fit, BasisOptions basis = keeping_root());
 
   const Model& model() const { return model_; }
   const Recording& recording() const { return recording_; }

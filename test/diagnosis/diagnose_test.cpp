@@ -87,7 +87,8 @@ TEST(Diagnose, JudgesAFindingByAnotherLikelihood) {
 // No finer mesh of a nonlinear model is run, so its test allows for a part of its own motion, and not for the mesh of the
 // base.
 TEST(Diagnose, TestsANonlinearModelWithTheErrorOfItsOwnMesh) {
-  const Recording recording = film({}, 1);
+  Recording recording = film({}, 1);
+  recording.frames.resize(20);
   ModelSettings settings = box_settings(bar_under_gravity("{prior: 20.0e3, factor: 3}"));
   settings.mesh.discretisation_error = true;
   FittedModel base = fit_recording(std::make_unique<RecordingFit>(settings, bar_mesh(), recording),
