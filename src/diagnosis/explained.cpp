@@ -12,7 +12,6 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr double kSteps[] = {1.0, 4.0};  // squared steps that are tried, over their prior's standard deviation
-constexpr double kSpread = 0.05;         // prior standard deviations, of the fit that starts where the linearisation leads
 
 // Returns the most probable unknowns of a linear model and its deviance there, with the noise as stated.
 Eigen::VectorXd most_probable(const Linearisation& model, const Eigen::VectorXd& error, Eigen::Index unknowns,
@@ -63,7 +62,8 @@ class SteppedFit {
       const RecordingFit::Place place = recording_fit_->scan_near(start, {});
       if (best.w.size() == 0 || place.cost < best.cost) best = place;
     }
-    if (best.w.size() > 0) fit_ = recording_fit_->quick_fit(best.w, kSpread * prior_, 1.0, rival);
+    const NestedParameters own(*recording_fit_, *recording_fit_);
+    if (best.w.size() > 0) fit_ = recording_fit_->quick_fit(best.w, own.spread(), 1.0, rival);
   }
   // Long steps lead a body that rings into another minimum, which no tangent shows.
   void fit_from_long_steps() {

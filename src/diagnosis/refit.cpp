@@ -14,7 +14,6 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kSpread = 0.05;          // prior standard deviations, around a known place
 constexpr double kShares[] = {0.6, 1.0};  // of the training frames, fitted in turn from a known place
 
 struct Start {
@@ -55,7 +54,7 @@ std::vector<Start> starts(const RecordingFit& recording_fit, const RecordingFit&
 Start start_of(const RecordingFit& recording_fit, const std::map<std::string, double>& parameters) {
   const Model& model = recording_fit.model();
   return {model.parameters().coordinates(parameters, model.parameters().prior_mean()),
-          kSpread * model.parameters().prior_std(),
+          NestedParameters(recording_fit, recording_fit).spread(),
           {}};
 }
 
@@ -179,7 +178,7 @@ void choose_basis_at_fit(const FittedModel& base, const FittedSteps& steps, Refi
   auto own = std::make_shared<FittedModel>();
   own->recording_fit = std::make_unique<RecordingFit>(known.model().settings(), *base.recording_fit,
                                                       RecordingFit::chosen_at(refit.model->fit));
-  own->fit = own->recording_fit->quick_fit(refit.model->fit.w, kSpread * known.model().parameters().prior_std());
+  own->fit = own->recording_fit->quick_fit(refit.model->fit.w, NestedParameters(known, known).spread());
   own->rows = own->recording_fit->rows(own->fit.w);
   describe(base, *own, steps, no_rival, no_rival, refit);
   refit.model = std::move(own);

@@ -16,11 +16,6 @@
 #include "types/stop_request.hpp"
 
 namespace tissue_stiffness {
-namespace {
-
-constexpr double kSpread = 0.05;  // prior standard deviations, of the sigma points of the base's fit from a refit's
-
-}  // namespace
 
 std::ptrdiff_t parameters_of(const Candidate& candidate) {
   const std::vector<Quantity> quantities = read_parameters(to_settings(candidate.proposal.refine));
@@ -79,7 +74,7 @@ void RefitList::keep(std::vector<std::optional<Refit>> done) {
     if (!refit) continue;
     comparison_.note(refit->explained->error);
     if (refit->model && refit->model->recording_fit->model().nonlinear() && screening_.finer.recording_fit)
-      test_by_own_mesh({Eigen::VectorXd::Zero(refit->model->rows.error.size())}, *refit);
+      test_by_own_mesh(finer_mesh(*refit->model), *refit);
     refits_.push_back(std::move(*refit));
   }
   assess();
@@ -136,14 +131,14 @@ bool RefitList::passes_without_mesh() const {
 bool RefitList::move_to_better_base() {
   const RecordingFit& recording_fit = *screening_.base.recording_fit;
   if (recording_fit.model().nonlinear()) return false;
-  RecordingFit::Place start =
-      recording_fit.scan_near(screening_.base.fit.w, NestedParameters(recording_fit, recording_fit).scanned());
+  const NestedParameters own(recording_fit, recording_fit);
+  RecordingFit::Place start = recording_fit.scan_near(screening_.base.fit.w, own.scanned());
   for (const Refit& refit : refits_) {
     RecordingFit::Place place = recording_fit.scan_near(
         recording_fit.model().parameters().coordinates(refit.parameters, screening_.base.fit.w), {});
     if (place.cost < start.cost) start = std::move(place);
   }
-  const BatchFit fit = recording_fit.quick_fit(start.w, kSpread * recording_fit.model().parameters().prior_std());
+  const BatchFit fit = recording_fit.quick_fit(start.w, own.spread());
   if (!(screening_.base.fit.cost - fit.cost > 2.0 * kComparison.worthwhile * comparison_.noise_variance())) return false;
   base_moved_ = true;
   screening_.move_base(fit, comparison_);
