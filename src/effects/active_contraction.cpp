@@ -16,8 +16,8 @@ enum Index { kAmplitude, kPeriod, kOnset, kDuration, kSharpness, kPeak, kAngle, 
 double twitch(double time, const Parameters& p) {
   const double since = time - p[kOnset];
   if (since <= 0.0) return 0.0;
-  const double part =
-      (since / p[kPeriod] - std::floor(since / p[kPeriod])) * p[kPeriod] / std::min(p[kDuration], p[kPeriod]);
+  const double within = since - p[kPeriod] * std::floor(since / p[kPeriod]);
+  const double part = within / std::min(p[kDuration], p[kPeriod]);
   const double height = std::min(part / p[kPeak], (1.0 - part) / (1.0 - p[kPeak]));
   return height > 0.0 ? std::pow(std::sin(0.5 * M_PI * height), p[kSharpness]) : 0.0;
 }

@@ -213,7 +213,6 @@ TEST(Pressure, FollowsTheSurfaceWhenTheStrainIsFinite) {
   EXPECT_LT((resultant(load(model, 0.0, u)) - expected).norm(), 1e-12 * expected.norm());
 }
 
-// The zero of a transducer acts as a pressure that never changes, with small and with finite strain.
 // Force at `time` along a bar whose fibres pull with that pulse, over the force at its peak.
 double activation(const std::string& pulse, double time) {
   const TetMesh mesh = bar_mesh();
@@ -242,6 +241,7 @@ TEST(ActiveContraction, RisesAndFallsAtRatesOfItsOwn) {
   EXPECT_NEAR(activation(pulse + ", sharpness: 4", 0.35), 0.25, 1e-9);
 }
 
+// The zero of a transducer acts as a pressure that never changes, with small and with finite strain.
 TEST(PressureOffset, IsAPressureThatStays) {
   const TetMesh mesh = bar_mesh();
   for (const std::string& law : {kLinear, kFinite}) {
