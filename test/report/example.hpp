@@ -2,8 +2,11 @@
 
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
 
 #include "report/results.hpp"
+#include "types/replay.hpp"
 
 namespace tissue_stiffness {
 
@@ -53,6 +56,44 @@ inline Results example(int frames) {
   results.command_line = "estimate model.yaml recording.bag --output out";
   results.versions = {{"tissue_stiffness", "0.1.0"}, {"Eigen", "3.4.0"}};
   return results;
+}
+
+/// Two triangles over three frames, one point tracked, one outline with its picture.
+inline Showing example_showing() {
+  Replay replay;
+  replay.name = "<the> estimate";
+  replay.time = {0.0, 0.5, 1.0};
+  replay.rms = {1e-4, 2e-4, std::numeric_limits<double>::quiet_NaN()};
+  ReplayTrack track{"vertex 2", "m", {"x", "y", "z"}, Eigen::MatrixXd(3, 3), Eigen::MatrixXd(3, 3)};
+  track.measured << 0.0, 0.01, std::numeric_limits<double>::quiet_NaN(), 1.0, 1.0, 1.0, -0.002, 0.002, 0.001;
+  track.predicted = track.measured;
+  replay.tracks = {track};
+  replay.surface.rest.resize(3, 4);
+  replay.surface.rest << 0, 1, 1, 0, 0, 0, 1, 1, 0, 0, 0, 0;
+  replay.surface.triangles.resize(3, 2);
+  replay.surface.triangles << 0, 0, 1, 2, 2, 3;
+  replay.surface.frames = {0, 2};
+  replay.surface.displacement.assign(2, Eigen::Matrix3Xd::Constant(3, 4, 0.25));
+  replay.surface.error.assign(2, Eigen::VectorXd::Constant(4, 2e-4));
+  replay.surface.error[1][3] = std::numeric_limits<double>::quiet_NaN();
+  replay.surface.sigmas.assign(2, Eigen::VectorXd::Constant(4, 2.0));
+  ReplayOutline outline{0, 0.5, 64, 48, Eigen::Matrix2Xd(2, 3), true, Eigen::Matrix4Xd(4, 1)};
+  outline.measured << 1.0, 2.04, std::numeric_limits<double>::quiet_NaN(), 4.0, 5.0, 6.0;
+  outline.predicted << 1.0, 2.0, 3.0, 4.0;
+  replay.outlines = {outline};
+  return {1500000000.0, {replay}, {{0, 1500000000.5, "jpeg"}}};
+}
+
+/// What the page's script reads.
+inline nlohmann::json data_of(const std::string& page) {
+  const std::string open = "<script type=\"application/json\" id=\"data\">";
+  const std::size_t from = page.find(open) + open.size();
+  return nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
+}
+
+/// The page without its libraries and licences, which are not ours to judge.
+inline std::string own_part(const std::string& page) {
+  return page.substr(0, page.find("id=\"made\""));
 }
 
 }  // namespace tissue_stiffness
