@@ -25,7 +25,7 @@ double least_weight(const Hypothesis& model, const std::vector<Hypothesis>& all)
   double least = -std::numeric_limits<double>::infinity();
   for (const Hypothesis& h : all) {
     if (!h.extends(model) || (h.random_force && !model.effects.empty())) continue;
-    least = std::max(least, h.log_weight - h.log_prior - log_bayes_factor_bound(model.test.z));
+    least = std::max(least, h.log_weight - h.log_prior - log_bayes_factor_of_test(model.test.z));
   }
   return least + model.log_prior;
 }
@@ -37,7 +37,7 @@ void bound_random_forces(const Hypothesis& best, std::vector<Hypothesis>& all) {
   const auto counts = [&best](const Hypothesis& h) {
     return h.random_force && (!h.superfluous || (h.same_effects(best) && !best.effects.empty()));
   };
-  const double over_best = best.log_weight + log_bayes_factor_bound(best.test.z);
+  const double over_best = best.log_weight + log_bayes_factor_of_test(best.test.z);
   const auto shown = [over_best](const Hypothesis& h) { return over_best + h.log_prior_of_force; };
   double sum = 0.0;
   for (Hypothesis& h : all) {

@@ -13,7 +13,8 @@ namespace {
 constexpr double kSame = 1e-9;  // sine of the angle below which directions are one
 constexpr double kFar = 30.0;   // standard deviations beyond which the tail's asymptote is exact; it underflows soon after
 constexpr int kBisections = 60;
-constexpr double kGone = 1e-6;  // share of a tangent: with less left it says nothing of its own
+constexpr double kGone = 1e-6;           // share of a tangent: with less left it says nothing of its own
+constexpr double kNearlyCertain = 1e-3;  // -log of a p-value below which its terms cancel
 
 Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& a) {
   if (a.cols() == 0) return a;
@@ -101,9 +102,10 @@ double averaged_z(const std::vector<double>& z) {
   return above < below ? upper_quantile(above) : -upper_quantile(below);  // the smaller one is exact
 }
 
-double log_bayes_factor_bound(double z) {
-  const double log_p = log_upper_tail(z);
-  return log_p < -1.0 ? -(1.0 + log_p + std::log(-log_p)) : 0.0;
+double log_bayes_factor_of_test(double z) {
+  const double l = -log_upper_tail(z);
+  if (l < kNearlyCertain) return std::log(0.5 + l / 6.0);  // its series, because the terms below cancel
+  return l - 2.0 * std::log(l) + std::log1p(-(1.0 + l) * std::exp(-l));
 }
 
 }  // namespace tissue_stiffness

@@ -50,9 +50,11 @@ double likelihood_ratio_p_value(double gain, double parameters);
 /// of an unknown nuisance, this is the test by the prior predictive p-value (Box 1980).
 double averaged_z(const std::vector<double>& z);
 
-/// Returns the largest log Bayes factor against a hypothesis whose test lies z standard deviations above its mean. It is
-/// taken over all alternatives that become likelier as z grows: -log(-e p log p), p = P(Z >= z). It is 0 where p > 1/e
-/// (Sellke, Bayarri & Berger 2001, eq. 2).
-double log_bayes_factor_bound(double z);
+/// Returns the log Bayes factor against a hypothesis whose test lies z standard deviations above its mean, p = P(Z >= z).
+/// Under something unknown, p has the density k p^(k - 1), 0 < k < 1, which is larger the smaller p is. Nothing is known of
+/// k, so the factor is the mean over k (Vovk & Wang 2021, Ann. Stat. 49(3), section 2):
+///   (1 - p + p log p) / (p (log p)^2).
+/// Its mean under the hypothesis is 1, as that of a Bayes factor has to be. It is at least 1/2.
+double log_bayes_factor_of_test(double z);
 
 }  // namespace tissue_stiffness

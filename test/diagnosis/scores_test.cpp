@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "filter/consistency.hpp"
+
 namespace tissue_stiffness {
 namespace {
 
@@ -88,14 +90,29 @@ TEST(AveragedZ, IsThatOfTheMeanPValue) {
   EXPECT_NEAR(averaged_z({200.0, 300.0}), 200.0, 0.01);  // what is least unlikely counts
 }
 
-// Sellke, Bayarri & Berger print -e p log p of p = 0.05 and 0.001 as 2.5 and 53 to one.
-TEST(LogBayesFactorBound, CalibratesAPValue) {
-  EXPECT_NEAR(std::exp(log_bayes_factor_bound(1.6449)), 2.456, 0.01);
-  EXPECT_NEAR(std::exp(log_bayes_factor_bound(3.0902)), 53.25, 0.1);
-  EXPECT_EQ(log_bayes_factor_bound(0.0), 0.0);
-  EXPECT_EQ(log_bayes_factor_bound(-20.0), 0.0);
-  EXPECT_NEAR(log_bayes_factor_bound(29.999), log_bayes_factor_bound(30.001), 0.1);  // on either side of the asymptote
-  EXPECT_NEAR(log_bayes_factor_bound(1000.0), 5e5, 100.0);
+// The factor is the mean of k p^(k - 1) over k, and its own mean over p is 1.
+TEST(LogBayesFactorOfTest, AveragesOverTheAlternatives) {
+  constexpr int steps = 20000;
+  for (const double z : {-20.0, -3.5, 0.0, 1.6449, 3.0902}) {
+    const double p = normal_cdf(-z);
+    double mean = 0.0;
+    for (int i = 0; i < steps; ++i) {
+      const double k = (i + 0.5) / steps;
+      mean += k * std::pow(p, k - 1.0) / steps;
+    }
+    EXPECT_NEAR(std::exp(log_bayes_factor_of_test(z)), mean, 1e-6 * mean) << z;
+  }
+  EXPECT_NEAR(std::exp(log_bayes_factor_of_test(1.6449)), 1.7834, 1e-3);  // (0.95 + 0.05 log 0.05) / (0.05 log^2 0.05)
+  EXPECT_NEAR(log_bayes_factor_of_test(29.999), log_bayes_factor_of_test(30.001), 0.1);  // on either side of the asymptote
+  EXPECT_NEAR(log_bayes_factor_of_test(1000.0), 5e5, 100.0);
+}
+
+TEST(LogBayesFactorOfTest, IsOneOnAverageUnderTheHypothesis) {
+  constexpr double step = 1e-3;
+  double mean = 0.0;
+  for (double z = -12.0; z < 12.0; z += step)
+    mean += step * std::exp(log_bayes_factor_of_test(z) - 0.5 * z * z) / std::sqrt(2.0 * M_PI);
+  EXPECT_NEAR(mean, 1.0, 0.02);  // its tail falls as slowly as 1 / z^2
 }
 
 TEST(LikelihoodRatio, HasThePValueOfChiSquared) {
