@@ -1,6 +1,6 @@
 include(CMakeFindDependencyMacro)
 find_dependency(Eigen3 3.3)
-find_dependency(OpenCV COMPONENTS core imgproc imgcodecs calib3d)
+find_dependency(OpenCV COMPONENTS core imgproc imgcodecs calib3d video aruco)
 find_dependency(PCL COMPONENTS common kdtree search sample_consensus filters)
 find_dependency(yaml-cpp)
 find_dependency(nlohmann_json)

@@ -73,13 +73,15 @@ def in_region(region):
 
 
 class Truth:
-    def __init__(self, kind, seed):
+    def __init__(self, kind, seed, one_modulus=False):
         self.rng = rng = np.random.default_rng([ord(c) for c in kind] + [seed])
         self.kind, self.body = kind, KINDS[kind][seed % len(KINDS[kind])]
         low, high = (np.array(bodies.BODIES[self.body][k], float) for k in ('low', 'high'))
         self.length = float(max(high - low))
         self.modulus = float(np.exp(rng.uniform(*np.log(MODULUS))))
         self.ratio = float(rng.choice((0.4, 0.6, 1.7, 2.5))) if kind == 'retraction' else 1.0
+        if one_modulus:
+            self.ratio = 1.0
         self.axis, self.foot = bodies.held_axis(self.body)
         self.middle = float(0.5 * (self.foot + high[self.axis]))
         self.regions = {'clamp': bodies.clamp(self.body), 'tool': bodies.end_of(self.body)[0]}
@@ -132,7 +134,7 @@ class Truth:
         body = sim(c, extra)
         to_surface, _ = simulate.p2_interp_matrix(body.X, body.cells, nodes[surface])
         body.init_accel()
-        positions, forces = [], []
+        positions, forces, whole = [], [], []
         for k in range(FRAMES):
             for _ in range(c['time']['substeps'] if k else 0):
                 body.step(1.0 / FPS / c['time']['substeps'])
@@ -140,14 +142,17 @@ class Truth:
             shift = self.motion(body.t)[0] if 'shake' in extra else 0.0
             positions.append(nodes[surface] + to_surface @ body.u.x.array.reshape(-1, 3) + shift)
             forces.append(body.reaction() if body.guides else np.zeros(3))
+            whole.append(body.u.x.array.reshape(-1, 3) + shift)
+        self.film = {'time': np.arange(FRAMES) / FPS, 'X': body.X, 'cells': body.cells,
+                     'surf6': simulate.surface_p2(body.cells, body.X), 'U': np.array(whole)}
         return nodes, tets, surface, np.array(positions), np.array(forces)
 
 
-def draw(simulator, kind, seed):
+def draw(simulator, kind, seed, one_modulus=False):
     sys.path.insert(0, simulator)
     logging.disable(logging.INFO)
     import simulate
-    truth = Truth(kind, seed)
+    truth = Truth(kind, seed, one_modulus)
     sim = gripped_sim(simulate)
     nodes, tets, surface, coarse, coarse_forces = truth.run(simulate, sim, STEP)
     _, _, _, fine, fine_forces = truth.run(simulate, sim, 0.5 * STEP)

@@ -147,7 +147,8 @@ SetupFindings check_place(const Cloud& cloud, const MeshSettings& mesh, double m
 SetupFindings check_first_frame(const ModelSettings& settings, const TetMesh& mesh, const FirstFrames& frames) {
   SetupFindings findings;
   for (const Observation& seen : frames.first.observations) {
-    if (seen.contour || traits_of(seen.kind).force || seen.points.cols() == 0) continue;
+    const ObservationTraits& traits = traits_of(seen.kind);
+    if (traits.image || traits.force || seen.points.cols() == 0) continue;
     const Cloud cloud = make_cloud(settings.observations[static_cast<std::size_t>(seen.source)], mesh, seen);
     const SetupFindings unit = check_unit(cloud);
     if (!unit.empty()) {

@@ -12,7 +12,7 @@ SetupFindings check_images(const ObservationSettings& observation, const std::ve
   const SegmentationSettings& segmentation = observation.segmentation;
   const bool silhouette = segmentation.kind == SegmentationSettings::Kind::silhouette;
   const bool by_colour = segmentation.body == SegmentationSettings::Body::colour;
-  if (!traits_of(observation.kind).image || !silhouette || by_colour) return {};
+  if (observation.kind != ObservationKind::contour || !silhouette || by_colour) return {};
   const bool bright = segmentation.body == SegmentationSettings::Body::bright;
   const auto is_wrong = [&](const cv::Mat& image) {
     const cv::Mat part = segmentation.roi ? image(rectangle_in(image, *segmentation.roi)) : image;

@@ -47,12 +47,9 @@ std::vector<NeededTopic> needed_topics(const ModelSettings& settings) {
   for (std::size_t i = 0; i < settings.observations.size(); ++i) {
     const ObservationSettings& observation = settings.observations[i];
     const std::string key = "observations[" + std::to_string(i) + "]";
-    if (traits_of(observation.kind).image) {
-      add(key + ".contour.image", observation.topic, traits_of(observation.kind).message);
-      add(key + ".contour.camera_info", observation.camera_info, "sensor_msgs/CameraInfo");
-    } else {
-      add(key + "." + traits_of(observation.kind).name + ".topic", observation.topic, traits_of(observation.kind).message);
-    }
+    const ObservationTraits& traits = traits_of(observation.kind);
+    add(key + "." + traits.name + (traits.image ? ".image" : ".topic"), observation.topic, traits.message);
+    if (traits.image) add(key + "." + traits.name + ".camera_info", observation.camera_info, "sensor_msgs/CameraInfo");
   }
   for (EffectSettings effect : settings.effects) {  // a copy: asking marks keys as known
     const std::optional<LoadInput::Kind> kind = effect_spec(effect).load;

@@ -76,9 +76,7 @@ MotionStudy::MotionStudy(const ModelSettings& settings, const TetMesh& mesh, con
       frame_of_.push_back(static_cast<int>(k));
     }
     for (const Observation& seen : shown_[k].observations) {
-      const Eigen::Index points = seen.contour ? seen.contour->size() : seen.points.cols();
-      const Eigen::Index rows = seen.ids.size() > 0 ? 3 * points : points;
-      sources_.insert(sources_.end(), static_cast<std::size_t>(rows), seen.source);
+      sources_.insert(sources_.end(), static_cast<std::size_t>(seen.row_count()), seen.source);
     }
   }
   sources_.resize(all.size(), sources_.empty() ? 0 : sources_.back());

@@ -26,7 +26,8 @@ Eigen::Vector2d centroid(const Eigen::Matrix2Xd& points) {
 Eigen::Vector3d centre(const Observation& observation, const Eigen::Vector3d& body_centre) {
   if (!traits_of(observation.kind).image) return observation.points.rowwise().mean();
   const Camera& camera = *observation.camera;
-  const Eigen::Vector2d pixel = centroid(observation.contour->points);
+  const Eigen::Vector2d pixel = observation.contour ? centroid(observation.contour->points)
+                                                    : Eigen::Vector2d(observation.tracks->pixels.rowwise().mean());
   const Eigen::Vector2d ray((pixel.x() - camera.cx) / camera.fx, (pixel.y() - camera.cy) / camera.fy);
   if (camera.projection == Camera::Projection::slice)
     return camera.model_from_sensor * Eigen::Vector3d(ray.x(), ray.y(), 0);

@@ -225,7 +225,8 @@ InputLinearisation::Row InputLinearisation::row(std::size_t index, const std::ve
   out.modes = modes_seen(frame, thetas[0], seen, modes);
   out.direct = Eigen::MatrixXd::Zero(rows, direct_columns());
   if (sensor_column_count() > 0)
-    out.direct.leftCols(sensor_column_count()) = sensor_columns(frame, there, seen.rightCols(models_.rigid.cols()));
+    out.direct.leftCols(sensor_column_count()) =
+        sensor_columns(frame, there, u.col(0), seen.rightCols(models_.rigid.cols()));
   if (mesh_columns_ > 0)
     out.direct.rightCols(mesh_columns_) = mesh_columns(index, out.modes, force_noise_.precision(frame, there));
   Prediction corrected = there;
@@ -277,7 +278,7 @@ const Eigen::MatrixXd& InputLinearisation::motions_seen(const Frame& frame, cons
   return known != named_.end() ? known->second : named_.emplace(std::move(key), seen()).first->second;
 }
 
-Eigen::MatrixXd InputLinearisation::sensor_columns(const Frame& frame, const Prediction& there,
+Eigen::MatrixXd InputLinearisation::sensor_columns(const Frame& frame, const Prediction& there, const Eigen::VectorXd& u,
                                                    const Eigen::MatrixXd& rigid) const {
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(rigid.rows(), sensor_column_count());
   const Eigen::Index poses = 6 * static_cast<Eigen::Index>(poses_.size());
@@ -287,8 +288,11 @@ Eigen::MatrixXd InputLinearisation::sensor_columns(const Frame& frame, const Pre
     for (std::size_t k = 0; k < poses_.size(); ++k) {
       if (poses_[k].source != observation.source) continue;
       const Eigen::Index column = 6 * static_cast<Eigen::Index>(k);
-      out.block(first, column, count, 3) = poses_[k].offset * rigid.block(first, 0, count, 3);
-      out.block(first, column + 3, count, 3) = poses_[k].rotation * rigid.block(first, 3, count, 3);
+      const auto& sensor = *models_.operators[static_cast<std::size_t>(observation.source)];
+      const std::optional<Eigen::MatrixXd> own = sensor.pose_tangent(observation, u);
+      const Eigen::MatrixXd pose = own ? *own : rigid.middleRows(first, count);
+      out.block(first, column, count, 3) = poses_[k].offset * pose.leftCols<3>();
+      out.block(first, column + 3, count, 3) = poses_[k].rotation * pose.rightCols<3>();
     }
     for (std::size_t k = 0; k < force_sensors_.size(); ++k) {
       const ForceSensor& sensor = force_sensors_[k];

@@ -104,7 +104,8 @@ class InputLinearisation {
   Row row(std::size_t index, const std::vector<Eigen::VectorXd>& thetas, const Eigen::MatrixXd& u,
           const ReducedModes& modes, const Eigen::VectorXd& z);
   const Eigen::MatrixXd& motions_seen(const Frame& frame, const Eigen::VectorXd& theta, const Eigen::VectorXd& u);
-  Eigen::MatrixXd sensor_columns(const Frame& frame, const Prediction& there, const Eigen::MatrixXd& rigid) const;
+  Eigen::MatrixXd sensor_columns(const Frame& frame, const Prediction& there, const Eigen::VectorXd& u,
+                                 const Eigen::MatrixXd& rigid) const;
   Eigen::MatrixXd mesh_columns(std::size_t frame, const Eigen::MatrixXd& modes, const Eigen::VectorXd& precision) const;
   Eigen::Index sensor_column_count() const {
     return 6 * static_cast<Eigen::Index>(poses_.size()) + 7 * static_cast<Eigen::Index>(force_sensors_.size());

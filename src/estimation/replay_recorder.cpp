@@ -109,7 +109,7 @@ void ReplayRecorder::add_tracks(const FreeFrame& frame) {
     const Eigen::Index rows = observation.row_count();
     const Key whole{observation.source, -1};
     const ObservationTraits& traits = traits_of(observation.kind);
-    if (traits.image) {
+    if (observation.contour) {
       kinds_[whole] = observation.kind;
       const FacingPoints points = facing_points(*observation.contour, frame.prediction, from);
       seen_.back()[whole] = {edges(points.measured), edges(points.predicted)};
@@ -129,10 +129,11 @@ void ReplayRecorder::add_tracks(const FreeFrame& frame) {
 }
 
 void ReplayRecorder::add_named(const Observation& observation, const Prediction& p, Eigen::Index from) {
+  const Eigen::Index rows = traits_of(observation.kind).rows;
   for (Eigen::Index i = 0; i < observation.ids.size(); ++i) {
     const Key key{observation.source, observation.ids[i]};
     kinds_[key] = observation.kind;
-    seen_.back()[key] = {p.measured.segment<3>(from + 3 * i), p.predicted.segment<3>(from + 3 * i)};
+    seen_.back()[key] = {p.measured.segment(from + rows * i, rows), p.predicted.segment(from + rows * i, rows)};
   }
 }
 
@@ -157,7 +158,7 @@ void ReplayRecorder::add_surface(const FreeFrame& frame) {
 ReplayTrack ReplayRecorder::track(const Key& key, ObservationKind kind) const {
   ReplayTrack out;
   out.unit = "m";
-  if (traits_of(kind).image) {
+  if (kind == ObservationKind::contour) {
     out.name = "outline " + std::to_string(key.first + 1);
     out.unit = "pixel";
     out.components = {"left edge", "right edge", "upper edge", "lower edge"};
@@ -168,6 +169,9 @@ ReplayTrack ReplayRecorder::track(const Key& key, ObservationKind kind) const {
   } else if (!traits_of(kind).identified) {
     out.name = "points " + std::to_string(key.first + 1);
     out.components = {"mean distance from the surface"};
+  } else if (kind == ObservationKind::tracks) {
+    out.name = "feature " + std::to_string(key.second);
+    out.components = {"right", "down"};
   } else {
     out.name = (kind == ObservationKind::vertices ? "vertex " : "marker ") + std::to_string(key.second);
     out.components = {"x", "y", "z"};

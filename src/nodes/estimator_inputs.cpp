@@ -32,11 +32,16 @@ EstimatorInputs::EstimatorInputs(const ros::NodeHandle& node, const ModelSetting
 void EstimatorInputs::listen(std::uint32_t queue_size) {
   if (!subscribers_.empty()) return;
   for (const LoadInput& input : load_topics(settings_)) listen_load(input, queue_size);
-  int contours = 0;
+  int contours = 0, tracks = 0;
+  const auto numbered = [](const std::string& name, int number) {
+    return number == 1 ? name : name + "_" + std::to_string(number);
+  };
   for (std::size_t i = 0; i < settings_.observations.size(); ++i) {
     const ObservationTraits& traits = traits_of(settings_.observations[i].kind);
-    if (traits.image) {
-      listen_contour(static_cast<int>(i), ++contours, queue_size);
+    if (settings_.observations[i].kind == ObservationKind::contour) {
+      listen_contour(static_cast<int>(i), numbered("contour", ++contours), queue_size);
+    } else if (settings_.observations[i].kind == ObservationKind::tracks) {
+      listen_tracks(static_cast<int>(i), numbered("tracks", ++tracks), queue_size);
     } else if (traits.force) {
       listen_reaction(static_cast<int>(i), queue_size);
     } else {
@@ -48,6 +53,7 @@ void EstimatorInputs::listen(std::uint32_t queue_size) {
 void EstimatorInputs::set_mesh(const TetMesh& mesh) {
   vertex_count_ = mesh.corner_count;
   body_points_ = make_body_points(settings_, mesh);
+  anchors_ = make_feature_anchors(settings_, mesh);
 }
 
 // Checks the stamp and hands the message to `add`. Errors in the message are reported and never thrown into the spinner.
@@ -95,7 +101,7 @@ void EstimatorInputs::listen_reaction(int source, std::uint32_t queue_size) {
       });
 }
 
-void EstimatorInputs::listen_contour(int source, int number, std::uint32_t queue_size) {
+void EstimatorInputs::listen_camera(int source) {
   const std::string camera_info = settings_.observations[static_cast<std::size_t>(source)].camera_info;
   const boost::function<void(const sensor_msgs::CameraInfoConstPtr&)> keep =
       [this, camera_info](const sensor_msgs::CameraInfoConstPtr& info) {
@@ -103,14 +109,27 @@ void EstimatorInputs::listen_contour(int source, int number, std::uint32_t queue
         cameras_[camera_info] = info;
       };
   subscribers_.push_back(node_.subscribe<sensor_msgs::CameraInfo>(camera_info, 10, keep));
-  const std::string topic = number == 1 ? "contour" : "contour_" + std::to_string(number);
+}
+
+void EstimatorInputs::listen_contour(int source, const std::string& topic, std::uint32_t queue_size) {
+  listen_camera(source);
   subscribe<ContourMessage>(topic, queue_size, [this, topic, source](const ContourConstPtr& contour) {
     queue_.add_observation(topic, contour->header.stamp,
                            [this, topic, source, contour] { return observe_contour(*contour, source, topic); });
   });
 }
 
-Observation EstimatorInputs::observe_contour(const ContourMessage& message, int source, const std::string& topic) const {
+void EstimatorInputs::listen_tracks(int source, const std::string& topic, std::uint32_t queue_size) {
+  listen_camera(source);
+  subscribe<FeatureTracksMessage>(
+      topic, queue_size, [this, topic, source](const boost::shared_ptr<const FeatureTracksMessage>& tracks) {
+        queue_.add_observation(topic, tracks->header.stamp,
+                               [this, topic, source, tracks] { return observe_tracks(*tracks, source, topic); });
+      });
+}
+
+Camera EstimatorInputs::camera_of(const std_msgs::Header& header, int width, int height, int source,
+                                  const std::string& topic) const {
   const ObservationSettings& settings = settings_.observations[static_cast<std::size_t>(source)];
   sensor_msgs::CameraInfoConstPtr info;
   {
@@ -118,23 +137,33 @@ Observation EstimatorInputs::observe_contour(const ContourMessage& message, int 
     const auto known = cameras_.find(settings.camera_info);
     if (known != cameras_.end()) info = known->second;
   }
-  if (!info) throw InputError(topic, "a contour before any camera_info", "a message on " + settings.camera_info);
+  if (!info) throw InputError(topic, "an image before any camera_info", "a message on " + settings.camera_info);
+  Camera camera = to_camera(*info, settings, poses_.model_from(header, topic), settings.camera_info);
+  if (width != camera.width || height != camera.height) {
+    throw InputError(
+        topic, "an image of " + std::to_string(width) + " x " + std::to_string(height),
+        std::to_string(camera.width) + " x " + std::to_string(camera.height) + " as in " + settings.camera_info);
+  }
+  return camera;
+}
+
+Observation EstimatorInputs::observe_contour(const ContourMessage& message, int source, const std::string& topic) const {
   Observation out;
   out.source = source;
   out.kind = ObservationKind::contour;
   out.time = message.header.stamp.toSec();
   auto contour = std::make_shared<Contour>(to_contour(message, topic));
-  auto camera =
-      std::make_shared<Camera>(to_camera(*info, settings, poses_.model_from(message.header, topic), settings.camera_info));
-  if (contour->width != camera->width || contour->height != camera->height) {
-    throw InputError(
-        topic, "an image of " + std::to_string(contour->width) + " x " + std::to_string(contour->height),
-        std::to_string(camera->width) + " x " + std::to_string(camera->height) + " as in " + settings.camera_info);
-  }
-  undistort(*camera, contour.get());
+  out.camera = std::make_shared<Camera>(camera_of(message.header, contour->width, contour->height, source, topic));
+  undistort(*out.camera, contour.get());
   out.contour = contour;
-  out.camera = camera;
   return out;
+}
+
+Observation EstimatorInputs::observe_tracks(const FeatureTracksMessage& message, int source, const std::string& topic) {
+  FeatureTracks tracks = to_tracks(message, topic);
+  const Camera camera = camera_of(message.header, tracks.width, tracks.height, source, topic);
+  undistort(camera, &tracks);
+  return anchors_.at(source).observe(tracks, camera, source, topic);
 }
 
 void EstimatorInputs::listen_load(const LoadInput& input, std::uint32_t queue_size) {

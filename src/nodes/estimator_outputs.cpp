@@ -22,7 +22,7 @@ void EstimatorOutputs::prepare(const ModelSettings& settings, const TetMesh& mes
   std::map<int, ModelOutline> outlines;
   int contours = 0;
   for (std::size_t i = 0; i < settings.observations.size(); ++i) {
-    if (!traits_of(settings.observations[i].kind).image) continue;
+    if (settings.observations[i].kind != ObservationKind::contour) continue;
     const int source = static_cast<int>(i);
     outlines.emplace(source, ModelOutline(settings, settings.observations[i], mesh));
     const std::string topic = ++contours == 1 ? "predicted_contour" : "predicted_contour_" + std::to_string(contours);

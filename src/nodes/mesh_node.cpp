@@ -38,7 +38,7 @@ MeshNode::MeshNode(ros::NodeHandle node, const NodeSettings& settings)
       folder_(read_text(settings.own, key("mesh_folder"))) {
   camera_info_topic_ = node_.resolveName("camera_info");
   for (const ObservationSettings& observation : settings_.observations) {
-    if (!traits_of(observation.kind).image) continue;
+    if (observation.kind != ObservationKind::contour) continue;
     observation_ = observation;
     if (camera_info_topic_ == node_.resolveName("camera_info", false)) camera_info_topic_ = observation.camera_info;
     break;

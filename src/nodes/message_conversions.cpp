@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "meshing/tet_file_check.hpp"
 #include "tissue_stiffness/types/error.hpp"
@@ -77,6 +78,55 @@ Contour to_contour(const ContourMessage& message, const std::string& topic) {
     throw InputError(topic + ": normal_u, normal_v", "a normal whose length is not 1", "unit vectors");
   }
   if (!(out.sigma.array() > 0.0).all()) throw InputError(topic + ": sigma", "a number that is not > 0", "> 0 [pixel]");
+  return out;
+}
+
+FeatureTracksMessage to_message(const FeatureTracks& tracks, const std_msgs::Header& header) {
+  FeatureTracksMessage out;
+  out.header = header;
+  out.width = static_cast<std::uint32_t>(tracks.width);
+  out.height = static_cast<std::uint32_t>(tracks.height);
+  out.id.assign(tracks.ids.data(), tracks.ids.data() + tracks.ids.size());
+  out.u = to_floats(tracks.pixels.row(0));
+  out.v = to_floats(tracks.pixels.row(1));
+  out.reference_u = to_floats(tracks.reference.row(0));
+  out.reference_v = to_floats(tracks.reference.row(1));
+  out.window = to_floats(tracks.windows.transpose());
+  out.sigma = to_floats(tracks.sigma.transpose());
+  return out;
+}
+
+FeatureTracks to_tracks(const FeatureTracksMessage& message, const std::string& topic) {
+  const std::size_t n = message.id.size();
+  require_size(message.u.size(), n, topic + ": u");
+  require_size(message.v.size(), n, topic + ": v");
+  require_size(message.reference_u.size(), n, topic + ": reference_u");
+  require_size(message.reference_v.size(), n, topic + ": reference_v");
+  require_size(message.window.size(), n, topic + ": window");
+  require_size(message.sigma.size(), n, topic + ": sigma");
+  FeatureTracks out;
+  out.stamp = message.header.stamp.toSec();
+  out.width = static_cast<int>(message.width);
+  out.height = static_cast<int>(message.height);
+  const auto columns = static_cast<Eigen::Index>(n);
+  out.ids = Eigen::Map<const Eigen::VectorXi>(message.id.data(), columns);
+  std::set<int> numbers;
+  for (const int id : message.id) {
+    if (!numbers.insert(id).second) throw InputError(topic + ": id", std::to_string(id) + " twice", "each number once");
+  }
+  out.pixels.resize(2, columns);
+  out.pixels << to_row(message.u), to_row(message.v);
+  out.reference.resize(2, columns);
+  out.reference << to_row(message.reference_u), to_row(message.reference_v);
+  out.windows = to_row(message.window).transpose();
+  if (!out.windows.allFinite() || (out.windows.array() < 0.0).any())
+    throw InputError(topic + ": window", "a number that is not finite and >= 0", ">= 0 [pixel]");
+  out.sigma = to_row(message.sigma).transpose();
+  if (!out.pixels.allFinite()) throw InputError(topic + ": u, v", "a number that is not finite", "finite numbers");
+  if (!out.reference.allFinite())
+    throw InputError(topic + ": reference_u, reference_v", "a number that is not finite", "finite numbers");
+  if (!out.sigma.allFinite() || !(out.sigma.array() > 0.0).all())
+    throw InputError(topic + ": sigma", "a number that is not finite and > 0", "> 0 [pixel]");
   return out;
 }
 

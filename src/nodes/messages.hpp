@@ -8,6 +8,7 @@
 #include <std_msgs/Header.h>
 
 #define Contour ContourMessage
+#define FeatureTracks FeatureTracksMessage
 #define TetMesh TetMeshMessage
 #define Misfit MisfitMessage
 #define MissingEffect MissingEffectMessage
@@ -16,11 +17,13 @@
 #include <tissue_stiffness/Contour.h>
 #include <tissue_stiffness/Diagnose.h>
 #include <tissue_stiffness/Diagnosis.h>
+#include <tissue_stiffness/FeatureTracks.h>
 #include <tissue_stiffness/Misfit.h>
 #include <tissue_stiffness/MissingEffect.h>
 #include <tissue_stiffness/StiffnessMap.h>
 #include <tissue_stiffness/TetMesh.h>
 #undef Contour
+#undef FeatureTracks
 #undef TetMesh
 #undef Misfit
 #undef MissingEffect

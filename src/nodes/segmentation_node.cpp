@@ -23,7 +23,7 @@ constexpr std::size_t kMostWaiting = 30;  // images for the model's outline: an 
 const ObservationSettings* find_contour(const ModelSettings& model, int number) {
   int contours = 0;
   for (const ObservationSettings& observation : model.observations) {
-    if (traits_of(observation.kind).image && ++contours == number) return &observation;
+    if (observation.kind == ObservationKind::contour && ++contours == number) return &observation;
   }
   if (contours == 0) return nullptr;
   throw InputError(model.name + ": contour_number", std::to_string(number), "1 to " + std::to_string(contours));
@@ -48,9 +48,10 @@ SegmentationNode::SegmentationNode(const ros::NodeHandle& node, const ros::NodeH
     settings.own.at("segmentation").require_all_read();
   } else {
     const ModelSettings model = read_model(settings.model, settings.directory);
+    follow_features(model);
     const ObservationSettings* contour = find_contour(model, number);
     if (contour == nullptr) {
-      ROS_INFO("the model observes no contour: nothing to segment");
+      if (tracks_.empty()) ROS_INFO("the model observes no contour: nothing to segment");
       return;
     }
     segmentation_ = contour->segmentation;
@@ -63,6 +64,14 @@ SegmentationNode::SegmentationNode(const ros::NodeHandle& node, const ros::NodeH
   contour_publisher_ = node_.advertise<ContourMessage>("contour", queue_size_, on_listener, on_listener);
   overlay_publisher_ = transport_.advertise("overlay", 10, on_viewer, on_viewer);
   predicted_subscriber_ = node_.subscribe("predicted_contour", queue_size_, &SegmentationNode::on_predicted, this);
+}
+
+void SegmentationNode::follow_features(const ModelSettings& model) {
+  for (const ObservationSettings& observation : model.observations) {
+    if (observation.kind != ObservationKind::tracks) continue;
+    const std::string topic = tracks_.empty() ? "tracks" : "tracks_" + std::to_string(tracks_.size() + 1);
+    tracks_.push_back(std::make_unique<TrackPublisher>(node_, observation, topic, queue_size_, diagnostics_));
+  }
 }
 
 void SegmentationNode::connect() {

@@ -5,10 +5,12 @@
 
 #include <deque>
 #include <memory>
+#include <vector>
 
 #include "nodes/diagnostics.hpp"
 #include "nodes/messages.hpp"
 #include "nodes/ros_settings.hpp"
+#include "nodes/track_publisher.hpp"
 #include "tissue_stiffness/segmentation/segmenter.hpp"
 
 namespace tissue_stiffness {
@@ -17,6 +19,8 @@ namespace tissue_stiffness {
 /// the image with this outline and the model's. If an estimator publishes `predicted_contour`, the overlay waits for the
 /// one with the image's stamp. The node works only while it has subscribers, so that it does not consume the first image of
 /// a recording that waits for them.
+///
+/// With a model it also follows the features of all its `tracks`, and publishes them on `tracks`, `tracks_2`, ...
 ///
 /// Private parameters: `segmentation: {kind, ...}`, or `model` (a file or the model's keys), whose contour number
 /// `contour_number` (1) is used. With a model the image topic is the model's, unless `image` is remapped. `queue_size`
@@ -27,6 +31,7 @@ class SegmentationNode {
   int exit_code() const { return 0; }
 
  private:
+  void follow_features(const ModelSettings& model);
   void connect();
   void on_image(const sensor_msgs::ImageConstPtr& message);
   void on_camera_info(const sensor_msgs::CameraInfoConstPtr& message);
@@ -46,6 +51,7 @@ class SegmentationNode {
   Diagnostics diagnostics_;
   SegmentationSettings segmentation_;
   std::unique_ptr<Segmenter> segmenter_;  ///< null: the model has no contour
+  std::vector<std::unique_ptr<TrackPublisher>> tracks_;
   std::string image_topic_, camera_info_topic_;
   std::uint32_t queue_size_ = 100;
   ros::Time last_;

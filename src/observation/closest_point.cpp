@@ -36,6 +36,24 @@ SurfacePoint closest_surface_point(const TetMesh& mesh, const Eigen::Vector3d& q
   return best;
 }
 
+// Each facet is tested after Moeller & Trumbore (1997, J. Graph. Tools 2(1)).
+SurfacePoint first_surface_point(const TetMesh& mesh, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
+  SurfacePoint best;
+  best.distance = std::numeric_limits<double>::infinity();
+  for (int f = 0; f < mesh.facet_count(); ++f) {
+    const Eigen::Vector3d a = mesh.nodes.col(mesh.facets(0, f)), ab = mesh.nodes.col(mesh.facets(1, f)) - a,
+                          ac = mesh.nodes.col(mesh.facets(2, f)) - a, normal = ab.cross(ac), across = direction.cross(ac);
+    if (!(normal.dot(direction) < 0.0)) continue;  // it faces away
+    const double determinant = ab.dot(across);
+    const Eigen::Vector3d from = origin - a, turned = from.cross(ab);
+    const double second = from.dot(across) / determinant, third = direction.dot(turned) / determinant,
+                 distance = ac.dot(turned) / determinant;
+    if (!(second >= 0.0 && third >= 0.0 && second + third <= 1.0 && distance > 0.0 && distance < best.distance)) continue;
+    best = {f, origin + distance * direction, normal.normalized(), distance};
+  }
+  return best;
+}
+
 SurfaceTriangles split_facets(const TetMesh& mesh, const std::vector<int>& facets) {
   static constexpr std::array<std::array<int, 3>, 4> kQuadratic{{{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}};
   SurfaceTriangles out;

@@ -22,6 +22,10 @@ Eigen::Vector3d closest_on_triangle(const Eigen::Vector3d& p, const Eigen::Vecto
 /// Returns the point of the rest surface that is closest to `query`. It tests every facet, as the triangle of its corners.
 SurfacePoint closest_surface_point(const TetMesh& mesh, const Eigen::Vector3d& query);
 
+/// Returns the first point of the rest surface that a ray from outside meets, as the triangles of the facets' corners; the
+/// distance is that along the ray. The facet is -1 where it meets none. `direction` is a unit vector.
+SurfacePoint first_surface_point(const TetMesh& mesh, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction);
+
 /// The surface is split into plain triangles; a 6-node facet gives four. `nodes` is 3 x count and holds node numbers,
 /// counter-clockwise from outside. `facet` tells which facet each triangle came from.
 struct SurfaceTriangles {

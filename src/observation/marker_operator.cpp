@@ -1,24 +1,20 @@
 // Markers may stand off the surface. Each is carried by the facet nearest to it at rest, as if by a rigid pin.
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <Eigen/SVD>
-#include <limits>
 
 #include "observation/closest_point.hpp"
 #include "observation/named_points.hpp"
 #include "observation/observation_operator.hpp"
+#include "observation/surface_anchor.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
 struct Attachment {
-  int tet;
-  Eigen::VectorXd shape;      ///< shape functions of the tetrahedron at the foot point
-  Eigen::Matrix3Xd gradient;  ///< their gradients there [1/m]
-  Eigen::Vector3d foot;       ///< on the rest surface [m]
-  Eigen::Vector3d pin;        ///< from the foot to the marker at rest [m]
-  int node;                   ///< nearest mesh node
+  SurfaceAnchor anchor;  ///< of the foot point
+  Eigen::Vector3d foot;  ///< on the rest surface [m]
+  Eigen::Vector3d pin;   ///< from the foot to the marker at rest [m]
 };
 
 class MarkerOperator : public ObservationOperator {
@@ -42,7 +38,7 @@ class MarkerOperator : public ObservationOperator {
     for (Eigen::Index i = 0; i < observation.ids.size(); ++i) {
       const Attachment& a = attachments_[static_cast<std::size_t>(observation.ids[i])];
       p.predicted.segment<3>(3 * i) = carried(a, u);
-      p.nodes.segment<3>(3 * i).setConstant(a.node);
+      p.nodes.segment<3>(3 * i).setConstant(a.anchor.node);
     }
     return p;
   }
@@ -50,7 +46,7 @@ class MarkerOperator : public ObservationOperator {
   std::vector<int> nodes(const Observation& observation) const override {
     std::vector<int> list;
     for (Eigen::Index i = 0; i < observation.ids.size(); ++i) {
-      const auto tet = mesh_.tets.col(attachments_[static_cast<std::size_t>(observation.ids[i])].tet);
+      const auto tet = mesh_.tets.col(attachments_[static_cast<std::size_t>(observation.ids[i])].anchor.tet);
       list.insert(list.end(), tet.data(), tet.data() + tet.size());
     }
     return list;
@@ -58,44 +54,22 @@ class MarkerOperator : public ObservationOperator {
 
  private:
   Attachment attach(const Eigen::Vector3d& marker) const {
-    SurfacePoint best = closest_surface_point(mesh_, marker);
-    Attachment a;
-    a.tet = mesh_.facet_tet[best.facet];
-    a.foot = best.point;
-    a.pin = marker - best.point;
-    // The foot is expressed in the tetrahedron's own coordinates, which its straight corners define.
-    Eigen::Matrix3d edges;
-    const Eigen::Vector3d origin = mesh_.nodes.col(mesh_.tets(0, a.tet));
-    for (int i = 0; i < 3; ++i) edges.col(i) = mesh_.nodes.col(mesh_.tets(i + 1, a.tet)) - origin;
-    const Eigen::Vector3d rst = edges.inverse() * (best.point - origin);
-    const int n = static_cast<int>(mesh_.tets.rows());
-    a.shape = tet_shape(n, rst);
-    const Eigen::MatrixXd derivative = tet_shape_derivative(n, rst);
-    Eigen::Matrix3Xd x(3, n);
-    for (int k = 0; k < n; ++k) x.col(k) = mesh_.nodes.col(mesh_.tets(k, a.tet));
-    a.gradient = (derivative * x.transpose()).inverse() * derivative;
-    Eigen::Index nearest = 0;
-    (x.colwise() - marker).colwise().squaredNorm().minCoeff(&nearest);
-    a.node = mesh_.tets(nearest, a.tet);
-    return a;
+    const SurfacePoint foot = closest_surface_point(mesh_, marker);
+    return {anchor_on(mesh_, foot.facet, foot.point), foot.point, marker - foot.point};
   }
 
   // Returns the displaced foot + R pin. For small strain the rotation is linear, R = I + skew(grad u).
   Eigen::Vector3d carried(const Attachment& a, const Eigen::Ref<const Eigen::VectorXd>& u) const {
-    Eigen::Vector3d displacement = Eigen::Vector3d::Zero();
     Eigen::Matrix3d gradient = Eigen::Matrix3d::Zero();
-    for (Eigen::Index k = 0; k < a.shape.size(); ++k) {
-      const Eigen::Vector3d uk = u.segment<3>(3 * mesh_.tets(k, a.tet));
-      displacement += a.shape[k] * uk;
-      gradient += uk * a.gradient.col(k).transpose();
-    }
+    for (Eigen::Index k = 0; k < a.anchor.shape.size(); ++k)
+      gradient += u.segment<3>(3 * mesh_.tets(k, a.anchor.tet)) * a.anchor.gradient.col(k).transpose();
     Eigen::Matrix3d turn = 0.5 * (gradient - gradient.transpose()) + Eigen::Matrix3d::Identity();
     if (finite_) {
       const Eigen::JacobiSVD<Eigen::Matrix3d> svd(Eigen::Matrix3d::Identity() + gradient,
                                                   Eigen::ComputeFullU | Eigen::ComputeFullV);
       turn = svd.matrixU() * svd.matrixV().transpose();
     }
-    return a.foot + displacement + turn * a.pin;
+    return a.foot + a.anchor.displacement(mesh_, u) + turn * a.pin;
   }
 
   const TetMesh& mesh_;

@@ -21,6 +21,9 @@ std::vector<std::unique_ptr<ObservationOperator>> make_observation_operators(con
       case ObservationSettings::Kind::contour:
         operators.push_back(make_contour_operator(model, settings));
         break;
+      case ObservationSettings::Kind::tracks:
+        operators.push_back(make_track_operator(model, settings));
+        break;
       case ObservationSettings::Kind::reaction:
         operators.push_back(make_reaction_operator(model, settings));
         break;

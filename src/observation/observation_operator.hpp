@@ -29,6 +29,11 @@ class ObservationOperator {
   virtual std::optional<RowTangent> tangent(const Observation&, const Eigen::Ref<const Eigen::VectorXd>&) const {
     return {};
   }
+  /// Returns d predicted rows / d (offset [m], rotation [rad]) of the body against the sensor, rows x 6, about the mean
+  /// of the mesh's nodes. It is for sensors that only see the motion since rest; to the others the body seems moved.
+  virtual std::optional<Eigen::MatrixXd> pose_tangent(const Observation&, const Eigen::Ref<const Eigen::VectorXd>&) const {
+    return {};
+  }
   /// Returns the mesh nodes that a prediction of this observation depends on.
   virtual std::vector<int> nodes(const Observation& observation) const = 0;
   /// Returns the model's outline in the sensor's image as separate segments (u0, v0, u1, v1) [pixel]. It is empty for
@@ -44,6 +49,7 @@ std::unique_ptr<ObservationOperator> make_vertex_operator(const Model& model, co
 std::unique_ptr<ObservationOperator> make_marker_operator(const Model& model, const ObservationSettings& settings);
 std::unique_ptr<ObservationOperator> make_point_operator(const Model& model, const ObservationSettings& settings);
 std::unique_ptr<ObservationOperator> make_contour_operator(const Model& model, const ObservationSettings& settings);
+std::unique_ptr<ObservationOperator> make_track_operator(const Model& model, const ObservationSettings& settings);
 /// Its predictions need a run's whole output, see Model::output_size.
 std::unique_ptr<ObservationOperator> make_reaction_operator(const Model& model, const ObservationSettings& settings);
 

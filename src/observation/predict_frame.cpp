@@ -18,6 +18,15 @@ double seconds_since_start(const Model& model, const Frame& frame) {
   return frame.time - model.loads().first_stamp() - model.settings().time.start;
 }
 
+/// Returns the displacement that a sensor shows: as its effects change it, and less what they show at rest where it is
+/// matched to the body there.
+Eigen::VectorXd apparent_displacement(const Model& model, const Eigen::VectorXd& theta, const Eigen::VectorXd& observed,
+                                      ObservationKind kind) {
+  if (!traits_of(kind).since_rest) return observed;
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(observed.size());
+  return observed - model.sensors().observe(theta, 0.0, rest).displacement;
+}
+
 /// How a frame's observations change where the body moves along shapes. Differences are taken where a sensor has no
 /// tangent.
 class SeenAlong {
@@ -32,7 +41,9 @@ class SeenAlong {
   Eigen::MatrixXd rows_of(const Observation& observation) {
     const bool observes = model_.sensors().any();
     using Field = Eigen::Ref<const Eigen::VectorXd>;
-    const Field u = observes ? Field(apparent_) : Field(output_.head(model_.fem().dof_count()));
+    const Eigen::VectorXd seen =
+        observes ? apparent_displacement(model_, theta_, apparent_, observation.kind) : Eigen::VectorXd();
+    const Field u = observes ? Field(seen) : Field(output_.head(model_.fem().dof_count()));
     const auto& sensor = *operators_[static_cast<std::size_t>(observation.source)];
     const std::optional<RowTangent> tangent = sensor.tangent(observation, u);
     if (!tangent) return differences(observation);
@@ -98,7 +109,7 @@ bool sees_named_nodes(const Model& model, const Frame& frame) {
   return !model.sensors().any() &&
          std::all_of(frame.observations.begin(), frame.observations.end(), [](const Observation& o) {
            const ObservationTraits& traits = traits_of(o.kind);
-           return traits.identified || traits.force;
+           return (traits.identified && !traits.image) || traits.force;
          });
 }
 
@@ -111,9 +122,11 @@ Prediction predict_frame(const Model& model, const std::vector<std::unique_ptr<O
   const ObservedMotion seen =
       observes ? model.sensors().observe(theta, since, displacement) : ObservedMotion{model.mesh(), since, {}};
   using Field = Eigen::Ref<const Eigen::VectorXd>;
-  const Field u = observes ? Field(seen.displacement) : displacement;
   std::vector<Prediction> parts;
   for (const Observation& observation : frame.observations) {
+    const Eigen::VectorXd apparent =
+        observes ? apparent_displacement(model, theta, seen.displacement, observation.kind) : Eigen::VectorXd();
+    const Field u = observes ? Field(apparent) : displacement;
     const auto& sensor = *operators[static_cast<std::size_t>(observation.source)];
     const ObservationTraits& traits = traits_of(observation.kind);
     parts.push_back(sensor.predict(observation, traits.force ? output : u));

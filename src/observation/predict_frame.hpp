@@ -15,8 +15,8 @@ namespace tissue_stiffness {
 Prediction predict_frame(const Model& model, const std::vector<std::unique_ptr<ObservationOperator>>& operators,
                          const Frame& frame, const Eigen::VectorXd& theta, const Eigen::Ref<const Eigen::VectorXd>& output);
 
-/// Returns true if the frame holds only forces and displacements of named nodes or markers, and no parameter of a sensor
-/// changes them.
+/// Returns true if the frame holds only forces and positions of named nodes or markers, which are linear in the
+/// displacement, and no parameter of a sensor changes them.
 bool sees_named_nodes(const Model& model, const Frame& frame);
 
 /// Returns d predicted rows / d amplitude of each of `shapes` (3n x count) about a run's output, as rows x count. Rows

@@ -32,7 +32,7 @@ void bind_model(py::module& module) {
   py::class_<ObservationSettings>(module, "ObservationSettings", "One entry of the model's list `observations`.")
       .def_property_readonly(
           "kind", [](const ObservationSettings& o) { return traits_of(o.kind).name; },
-          "vertices, markers, points, contour or reaction")
+          "vertices, markers, points, contour, tracks or reaction")
       .def_readonly("topic", &ObservationSettings::topic)
       .def_readonly("noise", &ObservationSettings::noise, "1 sigma [m]; of a reaction [N]");
   py::class_<ModelFile>(module, "Model",

@@ -124,19 +124,20 @@ void bind_inputs(py::module& module) {
       .def_readonly("source", &Observation::source, "Index in the model's list `observations`.")
       .def_property_readonly(
           "kind", [](const Observation& o) { return traits_of(o.kind).name; },
-          "vertices, markers, points, contour or reaction")
+          "vertices, markers, points, contour, tracks or reaction")
       .def_readonly("time", &Observation::time, "[s] on the recording's clock")
       .def_property_readonly(
           "points", [](const Observation& o) { return as_rows(o.points); },
-          "(n, 3) [m]; of a reaction its force (1, 3) [N]; empty for a contour")
+          "(n, 3) [m]; of tracks those at rest; of a reaction its force (1, 3) [N]; empty for a contour")
       .def_property_readonly(
           "count",
           [](const Observation& o) {
             if (traits_of(o.kind).force) return Eigen::Index{0};
-            return traits_of(o.kind).image ? o.contour->size() : o.points.cols();
+            return o.contour ? o.contour->size() : o.points.cols();
           },
           "Number of points, or of pieces of a contour; 0 of a force.")
-      .def_readonly("ids", &Observation::ids, "(n,) mesh vertex, or index of a marker; empty otherwise");
+      .def_readonly("ids", &Observation::ids,
+                    "(n,) mesh vertex, index of a marker, or number of a feature; empty otherwise");
   py::class_<LoadSample>(module, "LoadSample", "One measured value of a load.")
       .def_readonly("topic", &LoadSample::topic)
       .def_readonly("time", &LoadSample::time, "[s] on the recording's clock")

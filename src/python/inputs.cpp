@@ -68,7 +68,7 @@ int Inputs::source(const py::object& topic) const {
 }
 
 void Inputs::require_ids(const Observation& observation, const std::string& where) const {
-  if (!traits_of(observation.kind).identified) return;
+  if (!traits_of(observation.kind).identified || observation.tracks) return;
   const ObservationSettings& sensor = sensors_[static_cast<std::size_t>(observation.source)];
   const bool markers = observation.kind == ObservationKind::markers;
   const int count = markers ? static_cast<int>(sensor.rest.cols()) : vertices_;
@@ -95,7 +95,7 @@ Observation Inputs::observation(const py::object& topic, double time, const py::
   const ObservationTraits& traits = traits_of(sensor.kind);
   const std::string where = at(sensor.topic, time);
   out.kind = sensor.kind;
-  if (traits.image) throw InputError(where, "an array", "a recording: outlines come from its images");
+  if (traits.image) throw InputError(where, "an array", "a recording: what images show comes from them");
   if (traits.force) {
     const Eigen::VectorXd force = to_numbers(points, where + ": points");
     if (force.size() != 3)

@@ -146,6 +146,11 @@ void undistort(const Camera& camera, Contour* contour) {
   }
 }
 
+void undistort(const Camera& camera, FeatureTracks* tracks) {
+  tracks->pixels = undistort(camera, tracks->pixels);
+  tracks->reference = undistort(camera, tracks->reference);
+}
+
 cv::Mat undistort(const Camera& camera, const cv::Mat& image) {
   if (camera.lens == Lens::none) return image;
   cv::Mat out;

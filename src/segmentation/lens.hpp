@@ -6,6 +6,7 @@
 
 #include "tissue_stiffness/types/camera.hpp"
 #include "tissue_stiffness/types/contour.hpp"
+#include "tissue_stiffness/types/feature_tracks.hpp"
 
 namespace tissue_stiffness {
 
@@ -29,6 +30,9 @@ Eigen::Matrix2Xd undistort(const Camera& camera, const Eigen::Matrix2Xd& points)
 /// Moves a contour of the camera's image, with its normals and sigmas, to the undistorted image. A point that has no place
 /// there keeps its own with an infinite sigma.
 void undistort(const Camera& camera, Contour* contour);
+
+/// Moves features to the undistorted image. One without a place there gets NaN, and sigmas stay as they are.
+void undistort(const Camera& camera, FeatureTracks* tracks);
 
 /// Returns the undistorted image, in the same size.
 cv::Mat undistort(const Camera& camera, const cv::Mat& image);

@@ -10,7 +10,7 @@
 
 namespace tissue_stiffness {
 
-cv::Mat to_grey(const cv::Mat& image) {
+cv::Mat grey_bytes(const cv::Mat& image) {
   if (image.empty()) throw InputError("image", "an empty image", "8-bit images with 1 or 3 channels");
   if (image.type() != CV_8UC1 && image.type() != CV_8UC3) {
     const std::string type =
@@ -19,8 +19,12 @@ cv::Mat to_grey(const cv::Mat& image) {
   }
   cv::Mat grey = image;
   if (image.channels() == 3) cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
+  return grey;
+}
+
+cv::Mat to_grey(const cv::Mat& image) {
   cv::Mat result;
-  grey.convertTo(result, CV_32F);
+  grey_bytes(image).convertTo(result, CV_32F);
   return result;
 }
 

@@ -19,6 +19,10 @@ Eigen::Matrix2Xd to_matrix(const std::vector<Point>& points) {
   return out;
 }
 
+/// Converts CV_8UC1 or CV_8UC3 (BGR) to grey CV_8UC1; grey is not copied. Throws InputError for another type or an empty
+/// image.
+cv::Mat grey_bytes(const cv::Mat& image);
+
 /// Converts CV_8UC1 or CV_8UC3 (BGR) to grey CV_32FC1. Throws InputError for another type or an empty image.
 cv::Mat to_grey(const cv::Mat& image);
 

@@ -78,6 +78,25 @@ std::vector<KeySpec> pose_keys(const std::string& path) {
                      "of the sensor's pose along each axis, 1 sigma; the noise when absent")};
 }
 
+void add_image_keys(const std::string& path, const std::string& noise, std::vector<KeySpec>& keys) {
+  keys.insert(keys.end(),
+              {required_key(path + ".image", Kind::text, "", "topic of the images, sensor_msgs/Image"),
+               required_key(path + ".camera_info", Kind::text, "",
+                            "topic of the calibration, sensor_msgs/CameraInfo; for a slice fx and fy are pixels a metre"),
+               plain_key(path + ".rectified", Kind::boolean, "",
+                         "whether the images are rectified, so that P of the calibration counts and K and D do not"),
+               positive(path + ".noise", "m", noise)});
+  const std::vector<KeySpec> pose = pose_keys(path);
+  keys.insert(keys.end(), pose.begin(), pose.end());
+}
+
+// These are in the order of OpenCV's predefined dictionaries.
+std::vector<std::string> tag_dictionaries() {
+  return {"4X4_50",   "4X4_100",  "4X4_250",        "4X4_1000",      "5X5_50",        "5X5_100",        "5X5_250",
+          "5X5_1000", "6X6_50",   "6X6_100",        "6X6_250",       "6X6_1000",      "7X7_50",         "7X7_100",
+          "7X7_250",  "7X7_1000", "ARUCO_ORIGINAL", "APRILTAG_16h5", "APRILTAG_25h9", "APRILTAG_36h10", "APRILTAG_36h11"};
+}
+
 std::vector<KeySpec> observation_keys() {
   std::vector<KeySpec> keys{required_key("observations", Kind::list, "", "what is measured, one sensor an entry")};
   for (const char* kind : {"vertices", "markers", "points"}) {
@@ -105,14 +124,11 @@ std::vector<KeySpec> observation_keys() {
        integer_key(depth + ".neighbours", 0, 100, 4,
                    "points with fewer others within 2.5 voxels are left out, as flying pixels are")});
   const std::string contour = "observations[].contour";
+  keys.push_back(plain_key(contour, Kind::map, "", "outline in images; the sensor's pose comes from tf"));
+  add_image_keys(contour, "1 sigma along the outline's normal", keys);
   keys.insert(
       keys.end(),
-      {plain_key(contour, Kind::map, "", "outline in images; the sensor's pose comes from tf"),
-       required_key(contour + ".image", Kind::text, "", "topic of the images, sensor_msgs/Image"),
-       required_key(contour + ".camera_info", Kind::text, "",
-                    "topic of the calibration, sensor_msgs/CameraInfo; for a slice fx and fy are pixels a metre"),
-       positive(contour + ".noise", "m", "1 sigma along the outline's normal"), pose_keys(contour)[0],
-       pose_keys(contour)[1], plain_key(contour + ".segmentation", Kind::map, "", "how the outline is found"),
+      {plain_key(contour + ".segmentation", Kind::map, "", "how the outline is found"),
        choice_key(contour + ".segmentation.kind", {"silhouette", "cavity", "mask"}, true,
                   "the body against a darker background, a dark pool inside a bright wall (B-mode), or a mask that another "
                   "program has made: 0 is background, all else the body"),
@@ -128,9 +144,22 @@ std::vector<KeySpec> observation_keys() {
                   "distance in the plane a*, b* of CIE Lab that is still this colour"),
        choice_key(contour + ".projection", {"silhouette", "slice"}, false,
                   "the outline that a pinhole sees, or the surface cut by the image plane"),
-       plain_key(contour + ".rectified", Kind::boolean, "",
-                 "whether the images are rectified, so that P of the calibration counts and K and D do not"),
        plain_key(contour + ".region", Kind::text, "", "part of the surface that the outline belongs to; all when absent")});
+  const std::string tracks = "observations[].tracks";
+  keys.push_back(plain_key(tracks, Kind::map, "",
+                           "features of the surface, followed in images from a first one that shows the body at rest; the "
+                           "camera's pose comes from tf"));
+  add_image_keys(tracks, "1 sigma across the line of sight, at least; the tracker's own where that is larger", keys);
+  const std::string features = tracks + ".features";
+  keys.insert(
+      keys.end(),
+      {plain_key(features, Kind::map, "", "what is followed; texture when absent"),
+       choice_key(features + ".kind", {"texture", "tags"}, false,
+                  "corners of the surface's own texture, or the corners of printed tags (ArUco, AprilTag)"),
+       plain_key(features + ".roi", Kind::numbers, "pixel",
+                 "[u, v, width, height] of the part of the first image in which features are chosen"),
+       integer_key(features + ".most", 10, 2000, 200, "features of a texture that are followed"),
+       choice_key(features + ".dictionary", tag_dictionaries(), false, "of the tags, by OpenCV's name without DICT_")});
   const std::string reaction = "observations[].reaction";
   keys.insert(
       keys.end(),

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -39,14 +40,34 @@ PixelBox read_box(const Value& list) {
   return {whole(0, 0), whole(1, 0), whole(2, kLeastPixels), whole(3, kLeastPixels)};
 }
 
+void read_images(const Value& map, ObservationSettings& observation) {
+  const std::string path = std::string("observations[].") + traits_of(observation.kind).name;
+  observation.topic = read_text(map, key(path + ".image"));
+  observation.camera_info = read_text(map, key(path + ".camera_info"));
+  if (map.has("rectified")) observation.rectified = read_boolean(map, key(path + ".rectified"));
+}
+
 void read_contour(const Value& map, ObservationSettings& observation) {
-  observation.topic = read_text(map, key("observations[].contour.image"));
-  observation.camera_info = read_text(map, key("observations[].contour.camera_info"));
   if (map.has("segmentation")) observation.segmentation = read_segmentation(map.at("segmentation"));
   const bool slice = read_choice(map, key("observations[].contour.projection")) == "slice";
   observation.projection = slice ? ObservationSettings::Projection::slice : ObservationSettings::Projection::silhouette;
-  if (map.has("rectified")) observation.rectified = read_boolean(map, key("observations[].contour.rectified"));
   observation.region = read_text(map, key("observations[].contour.region"));
+}
+
+FeatureSettings read_features(const Value& map) {
+  const std::string path = "observations[].tracks.features.";
+  FeatureSettings out;
+  const bool tags = read_choice(map, key(path + "kind")) == "tags";
+  out.kind = tags ? FeatureSettings::Kind::tags : FeatureSettings::Kind::texture;
+  if (map.has("roi")) out.roi = read_box(map.at("roi"));
+  if (tags) {
+    const std::vector<std::string>& names = key(path + "dictionary").choices;
+    const auto name = std::find(names.begin(), names.end(), read_choice(map, key(path + "dictionary")));
+    out.dictionary = static_cast<int>(name - names.begin());
+  } else {
+    out.most = read_integer(map, key(path + "most"));
+  }
+  return out;
 }
 
 DepthCameraSettings read_depth_camera(const Value& map) {
@@ -80,11 +101,14 @@ ObservationSettings read_observation(const Value& entry) {
   }
   const Value& map = entry.at(keys.front());
   if (!known) throw InputError(map.path(), "`" + keys.front() + "`" + did_you_mean(keys.front(), names), join_words(names));
-  if (observation.kind == Kind::contour) {
-    read_contour(map, observation);
+  if (traits_of(observation.kind).image) {
+    read_images(map, observation);
   } else {
     observation.topic = read_text(map, key("observations[]." + keys.front() + ".topic"));
   }
+  if (observation.kind == Kind::contour) read_contour(map, observation);
+  if (observation.kind == Kind::tracks)
+    observation.features = read_features(map.has("features") ? map.at("features") : Value::map({}, map.path()));
   if (observation.kind == Kind::markers) observation.rest = read_rest(map.at("rest"));
   if (observation.kind == Kind::points && map.has("depth_camera")) {
     observation.depth_camera = read_depth_camera(map.at("depth_camera"));

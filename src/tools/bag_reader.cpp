@@ -50,6 +50,7 @@ BagReader::BagReader(const std::string& file, const ModelSettings& settings, std
 void BagReader::set_mesh(const TetMesh& mesh) {
   vertex_count_ = mesh.corner_count;
   body_points_ = make_body_points(settings_, mesh);
+  anchors_ = make_feature_anchors(settings_, mesh);
 }
 
 void BagReader::open() {
@@ -288,7 +289,7 @@ std::optional<Instant> BagReader::next() {
 }
 
 void BagReader::convert(const Measurement& measurement, Instant& instant) {
-  if (measurement.image) return segment(measurement, instant);
+  if (measurement.image) return look_at_image(measurement, instant);
   const std_msgs::Header& header = measurement.wrench ? measurement.wrench->header : measurement.cloud->header;
   const auto model_from_sensor = pose(header, instant.reason);
   if (!model_from_sensor) return;
@@ -308,7 +309,7 @@ void BagReader::convert(const Measurement& measurement, Instant& instant) {
   instant.frame.observations.push_back(std::move(out));
 }
 
-void BagReader::segment(const Measurement& measurement, Instant& instant) {
+void BagReader::look_at_image(const Measurement& measurement, Instant& instant) {
   if (come_[measurement.source]++ % image_stride_ != 0) return;
   const ObservationSettings& settings = settings_.observations[static_cast<std::size_t>(measurement.source)];
   const std_msgs::Header& header = measurement.image->header;
@@ -316,8 +317,6 @@ void BagReader::segment(const Measurement& measurement, Instant& instant) {
   if (!model_from_sensor) return;
   auto camera = std::make_shared<Camera>(
       to_camera(*camera_info(settings.camera_info, header.stamp), settings, *model_from_sensor, settings.camera_info));
-  std::unique_ptr<Segmenter>& segmenter = segmenters_[measurement.source];
-  if (!segmenter) segmenter = make_segmenter(settings.segmentation);
   const cv::Mat image = to_image(measurement.image, settings.segmentation.kind, settings.topic);
   if (image.cols != camera->width || image.rows != camera->height) {
     throw InputError(
@@ -326,20 +325,49 @@ void BagReader::segment(const Measurement& measurement, Instant& instant) {
   }
   keep_picture(measurement, image, *camera);
   const auto start = std::chrono::steady_clock::now();
-  Segmentation found = segmenter->segment(image, header.stamp.toSec());
+  if (settings.kind == ObservationKind::tracks) {
+    track(measurement.source, image, *camera, instant);
+  } else {
+    segment(measurement.source, image, camera, instant);
+  }
   instant.segment_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void BagReader::segment(int source, const cv::Mat& image, const std::shared_ptr<Camera>& camera, Instant& instant) {
+  const ObservationSettings& settings = settings_.observations[static_cast<std::size_t>(source)];
+  std::unique_ptr<Segmenter>& segmenter = segmenters_[source];
+  if (!segmenter) segmenter = make_segmenter(settings.segmentation);
+  Segmentation found = segmenter->segment(image, instant.frame.time);
   if (!found.found()) {
     instant.reason = settings.topic + ": " + found.reason;
     return;
   }
   undistort(*camera, &found.contour);
   Observation out;
-  out.source = measurement.source;
+  out.source = source;
   out.kind = ObservationKind::contour;
-  out.time = header.stamp.toSec();
+  out.time = instant.frame.time;
   out.contour = std::make_shared<Contour>(std::move(found.contour));
-  out.camera = std::move(camera);
+  out.camera = camera;
   instant.frame.observations.push_back(std::move(out));
+}
+
+void BagReader::track(int source, const cv::Mat& image, const Camera& camera, Instant& instant) {
+  const ObservationSettings& settings = settings_.observations[static_cast<std::size_t>(source)];
+  std::unique_ptr<FeatureTracker>& tracker = trackers_[source];
+  if (!tracker) tracker = make_feature_tracker(settings.features);
+  TrackedFeatures found = tracker->track(image, instant.frame.time);
+  const auto anchors = anchors_.find(source);
+  if (!found.found() || anchors == anchors_.end()) {
+    instant.reason = settings.topic + ": " + (found.found() ? "no mesh yet that carries the features" : found.reason);
+    return;
+  }
+  undistort(camera, &found.tracks);
+  try {
+    instant.frame.observations.push_back(anchors->second.observe(found.tracks, camera, source, settings.topic));
+  } catch (const InputError& error) {
+    instant.reason = error.what();
+  }
 }
 
 // Undistorted, because the outlines that the report draws over it are.

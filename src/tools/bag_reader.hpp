@@ -20,6 +20,8 @@
 
 #include "nodes/stamp_filter.hpp"
 #include "observation/body_points.hpp"
+#include "observation/feature_anchors.hpp"
+#include "segmentation/feature_tracker.hpp"
 #include "tissue_stiffness/segmentation/segmenter.hpp"
 #include "tissue_stiffness/settings/model_settings.hpp"
 #include "tissue_stiffness/types/load_sample.hpp"
@@ -104,7 +106,9 @@ class BagReader {
   bool front_is_complete() const;
 
   void convert(const Measurement& measurement, Instant& instant);
-  void segment(const Measurement& measurement, Instant& instant);
+  void look_at_image(const Measurement& measurement, Instant& instant);
+  void segment(int source, const cv::Mat& image, const std::shared_ptr<Camera>& camera, Instant& instant);
+  void track(int source, const cv::Mat& image, const Camera& camera, Instant& instant);
   void keep_picture(const Measurement& measurement, const cv::Mat& image, const Camera& camera);
   sensor_msgs::CameraInfoConstPtr camera_info(const std::string& topic, const ros::Time& stamp) const;
   std::optional<Eigen::Isometry3d> pose(const std_msgs::Header& header, std::string& reason) const;
@@ -119,16 +123,18 @@ class BagReader {
   std::size_t frame_count_ = 0, image_stride_ = 1;
   int vertex_count_ = std::numeric_limits<int>::max();
   std::map<int, BodyPoints> body_points_;  ///< by index of the observation
+  std::map<int, FeatureAnchors> anchors_;  ///< by index of the observation
   int late_ = 0;
   double now_ = 0.0;  ///< when the recorder received the last message [s]
   std::string last_broken_;
   std::map<std::string, Filter> filters_;
 
   tf2::BufferCore poses_;
-  std::map<int, std::unique_ptr<Segmenter>> segmenters_;  ///< by index of the observation
-  std::map<int, std::size_t> images_;                     ///< images that were segmented, by index of the observation
-  std::map<int, RateLimit> limits_;                       ///< of forces, by index of the observation
-  std::map<int, std::size_t> come_;                       ///< all images, by index of the observation
+  std::map<int, std::unique_ptr<Segmenter>> segmenters_;     ///< by index of the observation
+  std::map<int, std::unique_ptr<FeatureTracker>> trackers_;  ///< by index of the observation
+  std::map<int, std::size_t> images_;                        ///< images that were segmented, by index of the observation
+  std::map<int, RateLimit> limits_;                          ///< of forces, by index of the observation
+  std::map<int, std::size_t> come_;                          ///< all images, by index of the observation
   std::vector<Picture> pictures_;
   std::map<std::string, std::map<ros::Time, sensor_msgs::CameraInfoConstPtr>> cameras_;
   std::map<ros::Time, std::vector<Measurement>> pending_;

@@ -33,6 +33,7 @@ cv::Mat cloudy(int width, int height, cv::RNG& random) {
 /// Pattern that is fixed to the body. It consists of waves in random directions of the rest position.
 class Texture {
  public:
+  Texture() = default;
   Texture(double size, cv::RNG& random) {
     for (Wave& wave : waves_) {
       const double number = 2.0 * M_PI * random.uniform(4.0, 25.0) / size;
@@ -72,9 +73,9 @@ class CameraRenderer : public Renderer {
       : mesh_(model.mesh()), scene_(scene), seed_(seed), triangles_(split_facets(mesh_)) {
     cv::RNG random(seed);
     const Eigen::Vector3d low = mesh_.nodes.rowwise().minCoeff(), high = mesh_.nodes.rowwise().maxCoeff();
-    const Texture texture((high - low).norm(), random);
-    texture_.resize(mesh_.node_count());
-    for (int i = 0; i < mesh_.node_count(); ++i) texture_[i] = texture.at(mesh_.nodes.col(i));
+    texture_ = Texture((high - low).norm(), random);
+    at_nodes_ = Eigen::VectorXd::Zero(mesh_.node_count());
+    for (int i = 0; i < mesh_.node_count() && !scene.fine; ++i) at_nodes_[i] = texture_.at(mesh_.nodes.col(i));
     const Camera& camera = scene.camera;
     background_ = kBackground + kClouds * cloudy(camera.width, camera.height, random);
     if (const auto plane = floor_of(model.settings())) draw_floor(*plane, 0.5 * (low + high));
@@ -133,7 +134,7 @@ class CameraRenderer : public Renderer {
     static const Eigen::Vector3d to_light = Eigen::Vector3d(-0.3, -0.5, -0.8).normalized();
     Eigen::VectorXd out(local.cols());
     for (Eigen::Index i = 0; i < local.cols(); ++i) {
-      out[i] = kAmbient + kLit * std::max(0.0, normals.col(i).normalized().dot(to_light)) + kTexture * texture_[i];
+      out[i] = kAmbient + kLit * std::max(0.0, normals.col(i).normalized().dot(to_light)) + kTexture * at_nodes_[i];
     }
     return out;
   }
@@ -151,7 +152,9 @@ class CameraRenderer : public Renderer {
   void fill(const Eigen::Vector3i& nodes, const Eigen::Matrix3Xd& local, const Eigen::Matrix2Xd& pixels,
             const Eigen::VectorXd& shade, cv::Mat& grey, cv::Mat& depth) const {
     Eigen::Matrix<double, 2, 3> p;
+    Eigen::Matrix3d rest;
     for (int i = 0; i < 3; ++i) {
+      rest.col(i) = mesh_.nodes.col(nodes[i]);
       if (local(2, nodes[i]) <= 0.0) return;
       p.col(i) = kSuper * (pixels.col(nodes[i]).array() + 0.5) - 0.5;
     }
@@ -175,8 +178,9 @@ class CameraRenderer : public Renderer {
                                           weights[2] * local(2, nodes[2]));
         if (z >= depth.at<float>(v, u)) continue;
         depth.at<float>(v, u) = z;
-        grey.at<float>(v, u) =
-            static_cast<float>(weights[0] * shade[nodes[0]] + weights[1] * shade[nodes[1]] + weights[2] * shade[nodes[2]]);
+        double value = weights[0] * shade[nodes[0]] + weights[1] * shade[nodes[1]] + weights[2] * shade[nodes[2]];
+        if (scene_.fine) value += kTexture * texture_.at(rest * weights);
+        grey.at<float>(v, u) = static_cast<float>(value);
       }
     }
   }
@@ -185,7 +189,8 @@ class CameraRenderer : public Renderer {
   ImageScene scene_;
   std::uint64_t seed_;
   SurfaceTriangles triangles_;
-  Eigen::VectorXd texture_;
+  Texture texture_;
+  Eigen::VectorXd at_nodes_;  ///< the texture at the nodes, 0 if it is finer
   cv::Mat background_;
 };
 

@@ -43,9 +43,10 @@ SensorScene read_sensor(const Value* map, const ObservationSettings& observation
   sensor.noise = observation.noise;
   if (observation.kind == ObservationSettings::Kind::points)
     sensor.points = read_integer(Value::map({}, where), scene_key("sensors.*.count"));
-  if (observation.kind == ObservationSettings::Kind::contour) {
+  if (traits_of(observation.kind).image) {
     if (map == nullptr) throw InputError(where, "nothing for " + observation.topic, "the camera of that topic");
     sensor.image = read_image_scene(*map, observation);
+    sensor.image->fine = observation.kind == ObservationSettings::Kind::tracks;
     return sensor;
   }
   if (map == nullptr) return sensor;

@@ -36,6 +36,7 @@ struct ImageScene {
   Camera camera;
   double noise = 3.0;  ///< 1 sigma of the grey value, 0-255
   double blur = 0.8;   ///< 1 sigma of the optics [pixel]
+  bool fine = false;   ///< whether the body's texture is as fine as the pixels, or as the mesh
   // The following members are for B-mode only.
   Eigen::Vector2d apex = Eigen::Vector2d::Zero();  ///< apex of the sector [pixel]
   double sector = 0.0;                             ///< full angle of the sector [rad]
@@ -66,7 +67,7 @@ struct SensorScene {
 ///         /tool/wrench: {rate: 200, noise: 0,
 ///                        terms: [{direction: [0, 0, -1], raised_cosine: {amplitude: 2, frequency: 1}}]}
 ///         /tissue/pressure: {rate: 200, terms: [{sine: {amplitude: 100, frequency: 1}}]}
-///       sensors:               # one entry for each contour; others may have one
+///       sensors:               # one entry for each contour and for tracks; others may have one
 ///         # or ids: [..]; default: every surface vertex, the model's noise
 ///         /tissue/vertices: {every: 3, noise: 1e-4, memory: 0.5}
 ///         /tissue/points: {count: 500}

@@ -69,7 +69,7 @@ std::vector<KeySpec> load_keys() {
 
 std::vector<KeySpec> sensor_keys() {
   const std::string of = "sensors.*.";
-  return {other("sensors", Kind::map, "", false, "one entry for each contour; clouds may have one"),
+  return {other("sensors", Kind::map, "", false, "one entry for each contour and for tracks; clouds may have one"),
           other("sensors.*", Kind::map, "", false, "the sensor on that topic"),
           number(of + "noise", "m or grey values", 0, kInfinity, std::numeric_limits<double>::quiet_NaN(),
                  "1 sigma of a coordinate, or of an image's grey values (0 to 255); the observation's, or 3, when absent"),

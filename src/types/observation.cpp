@@ -6,10 +6,11 @@ namespace tissue_stiffness {
 
 const ObservationTraits& traits_of(ObservationKind kind) {
   static const char* const cloud = "sensor_msgs/PointCloud2";
-  static const ObservationTraits vertices{"vertices", true, false, false, cloud},
-      markers{"markers", true, false, false, cloud}, points{"points", false, false, false, cloud},
-      contour{"contour", false, true, false, "sensor_msgs/Image"},
-      reaction{"reaction", false, false, true, "geometry_msgs/WrenchStamped"};
+  static const char* const image = "sensor_msgs/Image";
+  static const ObservationTraits vertices{"vertices", true, false, false, false, 3, cloud},
+      markers{"markers", true, false, false, false, 3, cloud}, points{"points", false, false, false, false, 1, cloud},
+      contour{"contour", false, true, false, false, 1, image}, tracks{"tracks", true, true, false, true, 2, image},
+      reaction{"reaction", false, false, true, false, 3, "geometry_msgs/WrenchStamped"};
   switch (kind) {
     case ObservationKind::vertices:
       return vertices;
@@ -19,6 +20,8 @@ const ObservationTraits& traits_of(ObservationKind kind) {
       return points;
     case ObservationKind::contour:
       return contour;
+    case ObservationKind::tracks:
+      return tracks;
     case ObservationKind::reaction:
       break;
   }
@@ -26,14 +29,12 @@ const ObservationTraits& traits_of(ObservationKind kind) {
 }
 
 Eigen::Index Observation::row_count() const {
-  const ObservationTraits& traits = traits_of(kind);
-  if (traits.image) return contour->size();
-  return traits.identified || traits.force ? points.size() : points.cols();
+  return traits_of(kind).rows * (contour ? contour->size() : points.cols());
 }
 
 bool Observation::holds_anything() const {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  if (traits_of(kind).image) return (contour->sigma.array() < infinity).any() && contour->points.array().isFinite().any();
+  if (contour) return (contour->sigma.array() < infinity).any() && contour->points.array().isFinite().any();
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     if (points.col(i).allFinite()) return true;
   }

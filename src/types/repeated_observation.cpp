@@ -12,8 +12,9 @@ bool equal(const Matrix& a, const Matrix& b) {
 }
 
 bool same(const Observation& a, const Observation& b) {
-  if (a.source != b.source || a.time != b.time || !a.contour != !b.contour) return false;
-  return equal(a.points, b.points) && equal(a.ids, b.ids) && (!a.contour || equal(a.contour->points, b.contour->points));
+  if (a.source != b.source || a.time != b.time || !a.contour != !b.contour || !a.tracks != !b.tracks) return false;
+  return equal(a.points, b.points) && equal(a.ids, b.ids) && (!a.contour || equal(a.contour->points, b.contour->points)) &&
+         (!a.tracks || equal(a.tracks->pixels, b.tracks->pixels));
 }
 
 using Iterator = std::vector<Observation>::const_iterator;

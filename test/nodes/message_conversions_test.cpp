@@ -62,6 +62,51 @@ TEST(ContourMessage, IsChecked) {
   refused([](ContourMessage& m) { m = ContourMessage(); }, {"contour: u", "3 points"});
 }
 
+FeatureTracks two_features() {
+  FeatureTracks tracks;
+  tracks.width = 64;
+  tracks.height = 48;
+  tracks.ids = Eigen::Vector2i(3, 8);
+  tracks.pixels.resize(2, 2);
+  tracks.pixels << 10.25, 20, 30, 40.5;
+  tracks.reference.resize(2, 2);
+  tracks.reference << 11, 21, 29, 39;
+  tracks.sigma = Eigen::Vector2d(0.25, 0.5);
+  tracks.windows = Eigen::Vector2d(15, 0);
+  return tracks;
+}
+
+TEST(FeatureTracksMessage, ComesBackTheSame) {
+  std_msgs::Header header;
+  header.stamp = ros::Time(3, 0);
+  const FeatureTracks in = two_features(), out = to_tracks(to_message(in, header), "tracks");
+  EXPECT_EQ(out.stamp, 3.0);
+  EXPECT_EQ(out.width, 64);
+  EXPECT_EQ(out.height, 48);
+  EXPECT_EQ(out.ids, in.ids);
+  EXPECT_EQ(out.pixels, in.pixels);
+  EXPECT_EQ(out.reference, in.reference);
+  EXPECT_EQ(out.sigma, in.sigma);
+  EXPECT_EQ(out.windows, in.windows);
+}
+
+TEST(FeatureTracksMessage, IsChecked) {
+  const auto refused = [](const auto& spoil, const std::vector<std::string>& parts) {
+    FeatureTracksMessage message = to_message(two_features(), std_msgs::Header());
+    spoil(message);
+    expect_input_error([&] { to_tracks(message, "tracks"); }, parts);
+  };
+  refused([](FeatureTracksMessage& m) { m.v.pop_back(); }, {"tracks: v", "1 entries", "2"});
+  refused([](FeatureTracksMessage& m) { m.reference_u.clear(); }, {"tracks: reference_u", "0 entries"});
+  refused([](FeatureTracksMessage& m) { m.window.clear(); }, {"tracks: window", "0 entries"});
+  refused([](FeatureTracksMessage& m) { m.u[0] = std::nanf(""); }, {"tracks: u, v", "finite"});
+  refused([](FeatureTracksMessage& m) { m.reference_v[1] = std::nanf(""); },
+          {"tracks: reference_u, reference_v", "finite"});
+  refused([](FeatureTracksMessage& m) { m.window[1] = -1.0F; }, {"tracks: window", ">= 0"});
+  refused([](FeatureTracksMessage& m) { m.sigma[1] = 0.0F; }, {"tracks: sigma", "> 0"});
+  refused([](FeatureTracksMessage& m) { m.id[1] = 3; }, {"tracks: id", "3 twice"});
+}
+
 TEST(TetMeshMessage, ComesBackTheSame) {
   const TetMesh in = tetrahedron();
   const TetMesh out = to_mesh(to_message(in, std_msgs::Header()), "mesh");

@@ -109,6 +109,22 @@ TEST_F(RoundTrip, FindsTheModulusFromImages) {
   EXPECT_LT((outline.measured - outline.predicted).cwiseAbs().maxCoeff(), 3.0);  // pixels
 }
 
+// An endoscope looks at the bar from above, through its lens.
+TEST_F(RoundTrip, FindsTheModulusFromFeaturesOfTheSurface) {
+  const EstimationRun run = this->run(
+      4e5, "- tracks: {image: /endoscope/image, camera_info: /endoscope/info, noise: 1e-5}\n",
+      "simulation: {duration: 0.4, rate: 60, step: 0.0005, sensors: {/endoscope/image: {size: [480, 320], "
+      "focal_length: 500, position: [0.06, -0.06, 0.11], target: [0.05, 0.01, 0], distortion: [-0.2, 0.05, 0, 0]}}}\n");
+  EXPECT_NEAR(run.results.parameters.at(0).mean, 4e5, 0.02 * 4e5);
+  EXPECT_EQ(run.results.used(), 24);
+  EXPECT_LT(run.results.rms_error, 1e-4);
+  const Replay& replay = run.showing.replays.at(0);
+  ASSERT_GT(replay.tracks.size(), 4U);
+  EXPECT_EQ(replay.tracks[0].name.substr(0, 8), "feature ");
+  EXPECT_EQ(replay.tracks[0].components.size(), 2U);
+  EXPECT_EQ(run.showing.pictures.size(), 24U);
+}
+
 // A wide-angle camera close to the bar. What its lens bends by up to a dozen pixels changes E by less than a hundredth.
 TEST_F(RoundTrip, FindsTheSameModulusThroughALens) {
   const auto modulus = [&](const std::string& lens) {

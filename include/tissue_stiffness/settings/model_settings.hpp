@@ -74,6 +74,15 @@ struct SegmentationSettings {
   double tolerance = 0.0;                            ///< distance in the plane a*, b* of CIE Lab that is still this colour
 };
 
+/// How features of the body's surface are found and followed in images.
+struct FeatureSettings {
+  enum class Kind { texture, tags };
+  Kind kind = Kind::texture;
+  std::optional<PixelBox> roi{};  ///< part of the reference image that they are looked for in; all when absent
+  int most = 0;                   ///< only for texture: number of features
+  int dictionary = 0;             ///< only for tags: number of OpenCV's predefined dictionary
+};
+
 /// What is done with the clouds of a depth camera, which also sees what is not the body.
 struct DepthCameraSettings {
   double margin = 0.0;  ///< around the mesh at rest; points farther away are left out [m]
@@ -85,16 +94,18 @@ struct ObservationSettings {
   using Kind = ObservationKind;
   enum class Projection { silhouette, slice };
   Kind kind = Kind::vertices;
-  std::string topic;        ///< topic of the point cloud, or of the images for a contour
-  std::string camera_info;  ///< topic of the calibration; only for a contour
+  std::string topic;        ///< topic of the point cloud, or of the images for a contour and for tracks
+  std::string camera_info;  ///< topic of the calibration; only for a contour and for tracks
   double noise = 0.0;       ///< 1 sigma [m]; of a reaction [N]
   double rotation = 0.0;    ///< tolerance of the sensor's orientation, 1 sigma about each axis [rad]
   double offset = 0.0;      ///< tolerance of the sensor's position, 1 sigma along each axis [m]
   Eigen::Matrix3Xd rest;    ///< only for markers: their positions at rest [m]
   std::optional<DepthCameraSettings> depth_camera;  ///< only for points
-  SegmentationSettings segmentation;
+  SegmentationSettings segmentation;                ///< only for a contour
+  FeatureSettings features;                         ///< only for tracks
   Projection projection = Projection::silhouette;
-  std::optional<bool> rectified;  ///< only for a contour: its images have no distortion any more; absent: not stated
+  std::optional<bool>
+      rectified;       ///< only for a contour and for tracks: the images have no distortion any more; absent: not stated
   std::string region;  ///< contour: part of the surface it belongs to, empty: all; reaction: the region that is pushed
   double gain = 0.0;   ///< only for a reaction: relative error of the force's scale, 1 sigma
   double bias = 0.0;   ///< the same: constant offset of each component, 1 sigma [N]; negative: a share of the largest force
