@@ -20,8 +20,8 @@ class SensorRotation : public Effect, public SensorModel {
 
 // Proposes a rotation where points are known at rest. Outlines and clouds would show the rotated body itself.
 std::vector<Proposal> propose(const ProposalContext& context) {
-  const bool points =
-      context.observes(ObservationSettings::Kind::vertices) || context.observes(ObservationSettings::Kind::markers);
+  using Kind = ObservationSettings::Kind;
+  const bool points = context.observes(Kind::vertices) || context.observes(Kind::markers) || context.observes(Kind::tracks);
   if (context.holds("sensor_rotation") || !points) return {};
   const EffectEntry entry{"sensor_rotation", {{"angles", normal_prior(Eigen::Vector3d::Zero(), 0.1)}}};
   return {{entry, "angles", entry}};
