@@ -76,7 +76,7 @@ ReplayRecorder::ReplayRecorder(const TetMesh& mesh, double first_stamp, const st
 void ReplayRecorder::add(const FreeFrame& frame) {
   const std::size_t number = count_++;
   for (const Observation& observation : frame.frame.observations) {
-    if (observation.contour && picture_stamps_.count(observation.time) > 0) add_outline(observation, frame);
+    if (traits_of(observation.kind).image && picture_stamps_.count(observation.time) > 0) add_outline(observation, frame);
   }
   if (number % surface_stride_ == 0) {
     add_surface(frame);
@@ -141,10 +141,11 @@ void ReplayRecorder::add_outline(const Observation& observation, const FreeFrame
   ReplayOutline out;
   out.source = observation.source;
   out.time = observation.time - first_stamp_;
-  out.width = observation.contour->width;
-  out.height = observation.contour->height;
-  out.closed = observation.contour->closed;
-  out.measured = observation.contour->points;
+  out.width = observation.camera->width;
+  out.height = observation.camera->height;
+  out.joined = observation.contour != nullptr;
+  out.closed = out.joined && observation.contour->closed;
+  out.measured = out.joined ? observation.contour->points : observation.tracks->pixels;
   out.predicted = frame.outline(observation);
   replay_.outlines.push_back(std::move(out));
 }

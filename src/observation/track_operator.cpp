@@ -101,6 +101,17 @@ class TrackOperator : public ObservationOperator {
     return out;
   }
 
+  Eigen::Matrix4Xd outline(const Observation& observation, const Eigen::VectorXd& u) const override {
+    const std::vector<const SurfaceAnchor*> anchors = anchors_of(observation);
+    Eigen::Matrix4Xd out(4, observation.points.cols());
+    for (Eigen::Index i = 0; i < out.cols(); ++i) {
+      const Eigen::Vector3d rest = observation.points.col(i);
+      out.col(i) << observation.camera->project(rest),
+          observation.camera->project(rest + anchors[static_cast<std::size_t>(i)]->displacement(mesh_, u));
+    }
+    return out;
+  }
+
   std::vector<int> nodes(const Observation& observation) const override {
     std::vector<int> list;
     for (const SurfaceAnchor* anchor : anchors_of(observation)) {

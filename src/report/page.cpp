@@ -141,8 +141,8 @@ std::string player(const Showing& showing, bool arrows) {
       std::string(cameras.size() > 1
                       ? "<div class=\"controls\"><label>Images of <select id=\"camera\"></select></label></div>"
                       : "") +
-      "<canvas id=\"picture\"></canvas><p class=\"key\"><i class=\"measured\"></i>measured outline "
-      "<i class=\"predicted\"></i>predicted outline</p>";
+      "<canvas id=\"picture\"></canvas><p class=\"key\"><i class=\"measured\"></i>measured "
+      "<i class=\"predicted\"></i>predicted</p>";
   const std::string motion =
       "<div class=\"controls\"><label>Show <select id=\"track\"></select></label> <label>along <select id=\"component\">"
       "</select></label></div><div class=\"grid\">" +

@@ -117,6 +117,7 @@ json outline_json(const ReplayOutline& outline) {
           {"width", outline.width},
           {"height", outline.height},
           {"closed", outline.closed},
+          {"joined", outline.joined},
           {"measured", pixels(outline.measured, stride)},
           {"predicted", pixels(outline.predicted, 1)}};
 }

@@ -29,9 +29,10 @@ struct ReplayOutline {
   int source = 0;             ///< index in the model file's list `observations`
   double time = 0.0;          ///< [s] since the first stamp
   int width = 0, height = 0;  ///< size of the image [pixel]
-  Eigen::Matrix2Xd measured;  ///< points along the outline [pixel]
+  Eigen::Matrix2Xd measured;  ///< points along the outline, or features [pixel]
   bool closed = true;
-  Eigen::Matrix4Xd predicted;  ///< separate pieces (u0, v0, u1, v1) [pixel]
+  Eigen::Matrix4Xd predicted;  ///< separate pieces (u0, v0, u1, v1), or the way of each feature since rest [pixel]
+  bool joined = true;          ///< false: the points are features
 };
 
 /// What acts on the body at a place, over the kept frames: the force of a load, or a prescribed motion.

@@ -123,6 +123,10 @@ TEST_F(RoundTrip, FindsTheModulusFromFeaturesOfTheSurface) {
   EXPECT_EQ(replay.tracks[0].name.substr(0, 8), "feature ");
   EXPECT_EQ(replay.tracks[0].components.size(), 2U);
   EXPECT_EQ(run.showing.pictures.size(), 24U);
+  ASSERT_EQ(replay.outlines.size(), 24U);
+  EXPECT_FALSE(replay.outlines[9].joined);
+  ASSERT_EQ(replay.outlines[9].measured.cols(), replay.outlines[9].predicted.cols());
+  EXPECT_LT((replay.outlines[9].measured - replay.outlines[9].predicted.bottomRows<2>()).colwise().norm().maxCoeff(), 1.0);
 }
 
 // A wide-angle camera close to the bar. What its lens bends by up to a dozen pixels changes E by less than a hundredth.

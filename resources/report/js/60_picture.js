@@ -1,4 +1,6 @@
-// Camera images with the measured and the predicted outline.
+// Camera images with the measured and the predicted outline, or with features and their predicted ways since rest.
+const FEATURE = 7;  // radius in the canvas's pixels
+
 function startPicture() {
   const canvas = $("picture");
   if (!canvas) return;
@@ -38,9 +40,14 @@ function startPicture() {
     const p = outline.predicted, m = outline.measured;
     context.lineJoin = context.lineCap = "round";
     context.beginPath();
-    for (let i = 0; i + 1 < m.length; i += 2) context.lineTo(scale * m[i] + half, scale * m[i + 1] + half);
+    for (let i = 0; i + 1 < m.length; i += 2) {
+      const u = scale * m[i] + half, v = scale * m[i + 1] + half;
+      if (!outline.joined) context.moveTo(u + FEATURE, v);
+      if (outline.joined) context.lineTo(u, v);
+      else context.arc(u, v, FEATURE, 0, 2 * Math.PI);
+    }
     if (outline.closed) context.closePath();
-    stroke(colour("measured-on-image"), 5);
+    stroke(colour("measured-on-image"), outline.joined ? 5 : 3);
     context.beginPath();
     for (let i = 0; i + 3 < p.length; i += 4) {
       context.moveTo(scale * p[i] + half, scale * p[i + 1] + half);
