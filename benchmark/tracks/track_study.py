@@ -2,6 +2,7 @@
 usage: track_study.py ROOT --output FOLDER [--seeds N] [--estimate PROGRAM] [--draw-only]"""
 import argparse
 import json
+import multiprocessing
 import os
 import sys
 
@@ -103,7 +104,11 @@ def main():
     for kind in CASES:
         for seed in range(args.seeds) if args.only is None else [args.only]:
             folder = os.path.join(args.output, '%s_%d' % (kind.replace(' ', '_'), seed))
-            recorded(args, kind, seed, folder)
+            make = multiprocessing.Process(target=recorded, args=(args, kind, seed, folder))  # whose memory ends with it
+            make.start()
+            make.join()
+            if make.exitcode != 0:
+                raise RuntimeError('%s %d cannot be simulated' % (kind, seed))
             if args.draw_only:
                 continue
             with open(os.path.join(folder, 'truth.json')) as file:
