@@ -61,8 +61,8 @@ def recorded(args, kind, seed, folder):
 PAGE = """# Features in a film: how far E is off
 
 `scripts/measure_tracks` writes this page. The truths come from an independent simulator (FEniCSx, other mesh, other integrator), and its renderer draws
-the films: {width} x {height} pixels, {fps:.0f} Hz, from {distance:.2f} m, with {noise:.0f} grey values of noise, highlights, and a shade that changes as the surface
-turns. [What the sensor may be](sensors.md#features-of-a-surface) says how features are followed.
+the films. They have {width} x {height} pixels at {fps:.0f} Hz, from {distance:.2f} m. The pixels have {noise:.0f} grey values of noise, the surface has highlights, and its shade
+changes as it turns. [What the sensor may be](sensors.md#features-of-a-surface) says how features are followed.
 
 A retraction knows the pose of a jaw and the force on it, and a shaken base the pose of the base. Nothing else is known of the body's motion than the
 film. The prior is off by a factor of 0.4 to 2.5.
