@@ -162,6 +162,24 @@ TEST_F(Tracks, RowsAreThePixelsMotionInMetres) {
   EXPECT_EQ(sensors_[0]->predict(o, Eigen::VectorXd::Zero(3 * model_->mesh().node_count())).predicted.norm(), 0.0);
 }
 
+// A camera that moves sees the features elsewhere. They are the points that the first image showed.
+TEST_F(Tracks, FeaturesStayWhileTheCameraMoves) {
+  make();
+  FeatureAnchors anchors(model_->mesh());
+  const Eigen::Matrix3Xd rest = on_top();
+  FeatureTracks tracks = tracks_of(rest, stretched);
+  anchors.observe(tracks, camera_, 0, "/image");
+  Camera later = camera_;
+  later.model_from_sensor = Eigen::Translation3d(0.01, -0.02, 0.03) * camera_.model_from_sensor *
+                            Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitZ());
+  for (Eigen::Index i = 0; i < rest.cols(); ++i) tracks.pixels.col(i) = later.project(stretched(rest.col(i)));
+  const Observation o = anchors.observe(tracks, later, 0, "/image");
+  ASSERT_EQ(o.points.cols(), rest.cols());
+  EXPECT_LT((o.points - rest).colwise().norm().maxCoeff(), 1e-9);
+  const Prediction p = sensors_[0]->predict(o, moved(stretched));
+  EXPECT_LT((p.predicted - p.measured).cwiseAbs().maxCoeff(), 1e-9);
+}
+
 TEST_F(Tracks, TangentAgreesWithDifferences) {
   make();
   FeatureAnchors anchors(model_->mesh());
