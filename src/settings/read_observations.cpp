@@ -107,8 +107,10 @@ ObservationSettings read_observation(const Value& entry) {
     observation.topic = read_text(map, key("observations[]." + keys.front() + ".topic"));
   }
   if (observation.kind == Kind::contour) read_contour(map, observation);
-  if (observation.kind == Kind::tracks)
-    observation.features = read_features(map.has("features") ? map.at("features") : Value::map({}, map.path()));
+  if (observation.kind == Kind::tracks) {
+    const Value none = Value::map({}, map.path());
+    observation.features = read_features(map.has("features") ? std::ref(map.at("features")) : std::ref(none));
+  }
   if (observation.kind == Kind::markers) observation.rest = read_rest(map.at("rest"));
   if (observation.kind == Kind::points && map.has("depth_camera")) {
     observation.depth_camera = read_depth_camera(map.at("depth_camera"));

@@ -27,6 +27,8 @@ observations:
 - reaction: {topic: /f, region: ball, noise: 0.01, gain: 0.02, bias: 0.03, rotation_tolerance: 0.04, rate: 100}
 - contour: {image: /i, rotation_tolerance: 0.01, offset_tolerance: 1e-3, camera_info: /c, segmentation: {kind: cavity, seed: [1, 2], roi: [3, 4, 50, 60]}, projection: slice, rectified: true, noise: 6e-4, region: egg}
 - contour: {image: /i, camera_info: /c, noise: 6e-4, segmentation: {kind: silhouette, body: colour, colour: [120, 60, 160], tolerance: 30}}
+- tracks: {image: /i, camera_info: /c, rectified: false, noise: 2e-5, rotation_tolerance: 0.01, offset_tolerance: 1e-3, features: {kind: texture, most: 50, roi: [3, 4, 50, 60]}}
+- tracks: {image: /i, camera_info: /c, noise: 2e-5, features: {kind: tags, dictionary: APRILTAG_36h11}}
 time: {start: 0.09, step: 0.004}
 initial: {velocity: [0, 0, -4]}
 estimator: paper

@@ -222,6 +222,32 @@ TEST(ModelSettings, ReadsByWhatABodyDiffersFromItsBackground) {
   EXPECT_THROW(segmentation("kind: cavity, body: dark"), InputError);
 }
 
+TEST(ModelSettings, ReadsWhichFeaturesAreFollowed) {
+  const auto features = [](const std::string& keys) {
+    return read(
+               "mesh: {file: m}\neffects: [inertia: {density: 1}]\nobservations:\n- tracks: {image: /i, camera_info: /c, "
+               "noise: 1e-5" +
+               keys + "}\n")
+        .observations.at(0)
+        .features;
+  };
+  using Kind = FeatureSettings::Kind;
+  EXPECT_EQ(features("").kind, Kind::texture);
+  EXPECT_EQ(features("").most, 200);
+  EXPECT_FALSE(features("").roi);
+  const FeatureSettings texture = features(", features: {kind: texture, most: 50, roi: [1, 2, 40, 50]}");
+  EXPECT_EQ(texture.most, 50);
+  ASSERT_TRUE(texture.roi);
+  EXPECT_EQ(texture.roi->height, 50);
+  const FeatureSettings tags = features(", features: {kind: tags, dictionary: APRILTAG_36h11}");
+  EXPECT_EQ(tags.kind, Kind::tags);
+  EXPECT_EQ(tags.dictionary, 20) << "its number in OpenCV";
+  EXPECT_EQ(features(", features: {kind: tags}").dictionary, 0);
+  EXPECT_THROW(features(", features: {kind: tags, most: 50}"), InputError) << "a number that nobody reads";
+  EXPECT_THROW(features(", features: {dictionary: 4X4_50}"), InputError);
+  EXPECT_THROW(features(", features: {kind: tags, dictionary: 36h11}"), InputError);
+}
+
 TEST(ModelSettings, RefusesWhatIsNotAModel) {
   EXPECT_THROW(read(""), InputError);
   EXPECT_THROW(read("[1, 2]"), InputError);
