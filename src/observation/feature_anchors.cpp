@@ -32,6 +32,7 @@ std::vector<Eigen::Index> nearest(const Eigen::Matrix2Xd& places, Eigen::Index t
   const std::size_t count = std::min(kNeighbours, all.size());
   std::partial_sort(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count), all.end());
   std::vector<Eigen::Index> out;
+  out.reserve(count);
   for (std::size_t k = 0; k < count; ++k) out.push_back(all[k].second);
   return out;
 }
@@ -44,10 +45,12 @@ std::vector<bool> agreeing(const Eigen::Matrix2Xd& places, const Eigen::Matrix2X
     Eigen::Vector2d middle;
     for (int c = 0; c < 2 && around.size() >= kFewestNeighbours; ++c) {
       std::vector<double> values;
+      values.reserve(around.size());
       for (const Eigen::Index k : around) values.push_back(motion(c, k));
       middle[c] = median(values);
     }
     std::vector<double> differences;
+    differences.reserve(around.size());
     for (const Eigen::Index k : around) differences.push_back((motion.col(k) - middle).norm());
     out.push_back(around.size() < kFewestNeighbours ||
                   (motion.col(i) - middle).norm() < kOtherwise * (median(differences) + kAlike));

@@ -40,10 +40,8 @@ class SeenAlong {
 
   Eigen::MatrixXd rows_of(const Observation& observation) {
     const bool observes = model_.sensors().any();
-    using Field = Eigen::Ref<const Eigen::VectorXd>;
-    const Eigen::VectorXd seen =
-        observes ? apparent_displacement(model_, theta_, apparent_, observation.kind) : Eigen::VectorXd();
-    const Field u = observes ? Field(seen) : Field(output_.head(model_.fem().dof_count()));
+    const Eigen::VectorXd u = observes ? apparent_displacement(model_, theta_, apparent_, observation.kind)
+                                       : Eigen::VectorXd(output_.head(model_.fem().dof_count()));
     const auto& sensor = *operators_[static_cast<std::size_t>(observation.source)];
     const std::optional<RowTangent> tangent = sensor.tangent(observation, u);
     if (!tangent) return differences(observation);

@@ -11,6 +11,7 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr double kSigma = 0.1;  // [pixel] of a refined corner
+static_assert(cv::aruco::DICT_4X4_50 == 0 && cv::aruco::DICT_APRILTAG_36h11 == 20, "the numbers that settings read");
 
 }  // namespace
 

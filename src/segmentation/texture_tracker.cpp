@@ -51,7 +51,7 @@ TrackedFeatures TextureTracker::track(const cv::Mat& image, double stamp) {
   for (std::size_t i = 0; i < features_.size(); ++i) {
     const Feature& feature = features_[i];
     if (feature.sigma < 0.0) continue;
-    add_feature({static_cast<int>(i), feature.last, feature.reference, feature.sigma, TextureWindow::edge / 2}, out);
+    add_feature({static_cast<int>(i), feature.last, feature.reference, feature.sigma, TextureWindow::half}, out);
   }
   if (out.size() >= static_cast<Eigen::Index>(kFewest)) return {std::move(out), ""};
   return {{}, std::to_string(out.size()) + " of " + std::to_string(features_.size()) + " features" + allowed};
@@ -95,7 +95,7 @@ bool TextureTracker::choose(const cv::Mat& grey) {
   cv::goodFeaturesToTrack(grey, corners, settings_.most, kQuality, std::max(3.0, apart), mask);
   const cv::Mat smooth = smooth_image(grey);
   const double noise = image_noise(grey);
-  constexpr int half = TextureWindow::edge / 2;
+  constexpr int half = TextureWindow::half;
   const cv::Rect inside(half, half, grey.cols - 2 * half, grey.rows - 2 * half);
   for (const cv::Point2f& corner : corners) {
     const cv::Point pixel(cvRound(corner.x), cvRound(corner.y));

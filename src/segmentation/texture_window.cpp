@@ -46,7 +46,7 @@ cv::Rect around(const cv::Point& centre, int half) {
 }  // namespace
 
 TextureWindow::TextureWindow(const cv::Mat& smooth, const cv::Point& centre) : deformation_(cv::Matx22f::eye()) {
-  const cv::Mat part = smooth(around(centre, edge / 2));  // filters see what lies around it, too
+  const cv::Mat part = smooth(around(centre, half));  // filters see what lies around it, too
   cv::Mat right, down;
   cv::Sobel(part, right, CV_32F, 1, 0, 3, 1.0 / 8.0);
   cv::Sobel(part, down, CV_32F, 0, 1, 3, 1.0 / 8.0);
@@ -55,7 +55,7 @@ TextureWindow::TextureWindow(const cv::Mat& smooth, const cv::Point& centre) : d
   cv::meanStdDev(window_, mean, deviation);
   contrast_ = deviation[0];
   cv::Mat x(edge, edge, CV_32F), y;
-  for (int u = 0; u < edge; ++u) x.col(u).setTo(u - edge / 2);
+  for (int u = 0; u < edge; ++u) x.col(u).setTo(u - half);
   y = x.t();
   const std::array<cv::Mat, 8> tangents{right,
                                         down,
@@ -82,7 +82,7 @@ TextureWindow::TextureWindow(const cv::Mat& smooth, const cv::Point& centre) : d
 double TextureWindow::sigma(double noise) const {
   constexpr double count = edge * edge;
   double second_moment = 0.0;
-  for (int u = -edge / 2; u <= edge / 2; ++u) second_moment += u * u * edge;
+  for (int u = -half; u <= half; ++u) second_moment += u * u * edge;
   Matrix own = information_;
   const double gradient = filtered_noise().gradient * noise * noise;
   for (const int i : {0, 1}) own(i, i) -= gradient * count;
@@ -99,17 +99,17 @@ double TextureWindow::sigma(double noise) const {
   if (!(values.at<double>(7) > kSingular)) return std::numeric_limits<double>::infinity();
   const Matrix inverse = scale * (scale * own * scale).inv(cv::DECOMP_CHOLESKY) * scale;
   const Matrix covariance = 2.0 * noise * noise * inverse * noise_ * inverse;
-  const double half = 0.5 * (covariance(0, 0) + covariance(1, 1)),
+  const double mean = 0.5 * (covariance(0, 0) + covariance(1, 1)),
                apart = std::hypot(0.5 * (covariance(0, 0) - covariance(1, 1)), covariance(0, 1));
-  return std::hypot(kLeastSigma, std::sqrt(half + apart));
+  return std::hypot(kLeastSigma, std::sqrt(mean + apart));
 }
 
 std::optional<TextureWindow::Place> TextureWindow::find(const cv::Mat& smooth, const cv::Point2f& there) {
   const cv::Rect all(0, 0, smooth.cols, smooth.rows),
-      part = around(cv::Point(cvRound(there.x), cvRound(there.y)), edge / 2 + kMargin) & all;
+      part = around(cv::Point(cvRound(there.x), cvRound(there.y)), half + kMargin) & all;
   if (part.width < edge || part.height < edge) return {};
   const cv::Point2f origin(static_cast<float>(part.x), static_cast<float>(part.y));
-  const cv::Vec2f centre(edge / 2, edge / 2), turned = deformation_ * centre;
+  const cv::Vec2f centre(half, half), turned = deformation_ * centre;
   cv::Mat warp = (cv::Mat_<float>(2, 3) << deformation_(0, 0), deformation_(0, 1), there.x - origin.x - turned[0],
                   deformation_(1, 0), deformation_(1, 1), there.y - origin.y - turned[1]);
   double correlation = 0.0;

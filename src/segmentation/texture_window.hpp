@@ -9,7 +9,7 @@ namespace tissue_stiffness {
 /// The part of a reference image around a feature, and where it is in other images.
 class TextureWindow {
  public:
-  static constexpr int edge = 31;  ///< [pixel]
+  static constexpr int half = 15, edge = 2 * half + 1;  ///< [pixel]
 
   struct Place {
     cv::Point2f centre;  ///< [pixel]

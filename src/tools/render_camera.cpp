@@ -109,7 +109,8 @@ class CameraRenderer : public Renderer {
     const double depth = (camera.model_from_sensor.inverse() * centre).z();
     Eigen::Matrix2Xd pixels(2, Eigen::Index{camera.width} * camera.height);
     for (Eigen::Index i = 0; i < pixels.cols(); ++i) {
-      pixels.col(i) << static_cast<double>(i % camera.width), static_cast<double>(i / camera.width);
+      const Eigen::Index row = i / camera.width;
+      pixels.col(i) << static_cast<double>(i % camera.width), static_cast<double>(row);
     }
     pixels = undistort(camera, pixels);
     for (int v = 0; v < camera.height; ++v) {
