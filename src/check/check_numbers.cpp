@@ -13,7 +13,7 @@ constexpr double kSoftest = 100.0;  // [Pa] brain and fat have several hundred
 constexpr double kStiffest = 1e9;   // [Pa] tendon; bone is no soft tissue
 constexpr double kLightest = 5.0;   // [kg/m^3] the lightest foams have 6
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::array<const char*, 4> kHolders = {"fixed", "elastic_support", "foundation", "contact_plane"};
+constexpr std::array<const char*, 5> kHolders = {"fixed", "elastic_support", "foundation", "contact_plane", "moved"};
 
 /// Returns the value, median or mean of a number of the effect.
 double central(const Value& value, const std::string& unit) {

@@ -28,6 +28,7 @@ ModelSettings model(const std::string& modulus = "{prior: 24e3, factor: 3}", con
 TEST(CheckNumbers, SayNothingOfAPlausibleModel) {
   EXPECT_TRUE(nothing(check_numbers(model())));
   EXPECT_TRUE(nothing(check_numbers(model("{prior: 500, factor: 4}", "30", "- contact_plane: {}\n"))));
+  EXPECT_TRUE(nothing(check_numbers(model("12e3", "1060", "- moved: {region: table, topic: /jaw/pose}\n"))));
 }
 
 TEST(CheckNumbers, NameAPriorInKilopascal) {
