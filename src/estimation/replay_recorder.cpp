@@ -141,9 +141,9 @@ void ReplayRecorder::add_outline(const Observation& observation, const FreeFrame
   ReplayOutline out;
   out.source = observation.source;
   out.time = observation.time - first_stamp_;
-  out.width = observation.camera->width;
-  out.height = observation.camera->height;
   out.joined = observation.contour != nullptr;
+  out.width = out.joined ? observation.contour->width : observation.tracks->width;
+  out.height = out.joined ? observation.contour->height : observation.tracks->height;
   out.closed = out.joined && observation.contour->closed;
   out.measured = out.joined ? observation.contour->points : observation.tracks->pixels;
   out.predicted = frame.outline(observation);
