@@ -16,7 +16,7 @@ from moving_study import write_pose
 from rig_recordings import FAR_PRIOR, estimated, write_force
 from study_arguments import study_arguments
 
-WANTED = 0.03
+WANTED = 0.02
 VIEWS = ('iso', 'top', 'iso', 'side')
 CASES = {'retraction': 'a grasp pulls, with its force', 'shaken base': 'the base shakes'}
 NOISE = 2e-5  # m, at least: the tracker states its own
