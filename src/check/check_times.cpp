@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "check/check_topics.hpp"
 #include "check/words.hpp"
+#include "types/median.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -27,9 +29,7 @@ double longest_gap(const std::vector<double>& times) {
 double lead(const TopicTimes& times) {
   std::vector<double> leads;
   for (std::size_t i = 0; i < times.stamps.size(); ++i) leads.push_back(times.stamps[i] - times.arrivals[i]);
-  const auto middle = leads.begin() + static_cast<std::ptrdiff_t>(leads.size() / 2);
-  std::nth_element(leads.begin(), middle, leads.end());
-  return *middle;
+  return median_of(std::move(leads));
 }
 
 /// Returns the time from the end of one topic to the start of the other [s]; it is negative where they overlap.

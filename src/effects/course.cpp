@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <utility>
 
 #include "tissue_stiffness/types/error.hpp"
+#include "types/median.hpp"
 #include "types/read_pose.hpp"
 #include "types/read_table.hpp"
 
@@ -71,9 +73,7 @@ std::optional<Course::Silence> Course::silence(double time) const {
   for (auto sample = next - 1; sample != next - 1 - std::min(before - 1, kMost); --sample) {
     intervals.push_back(*sample - *(sample - 1));
   }
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  const Silence out{time - offset_ - *(next - 1), *middle};
+  const Silence out{time - offset_ - *(next - 1), median_of(std::move(intervals))};
   return out.since > kPauses * out.interval ? std::optional(out) : std::nullopt;
 }
 

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "filter/consistency.hpp"
+#include "types/median.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -33,9 +35,7 @@ Eigen::VectorXd robust_weights(const Eigen::VectorXd& standardised, int group) {
   }
   Eigen::VectorXd weights = Eigen::VectorXd::Ones(standardised.size());
   if (finite.empty()) return weights;
-  const auto middle = finite.begin() + static_cast<std::ptrdiff_t>(finite.size() / 2);
-  std::nth_element(finite.begin(), middle, finite.end());
-  const double reach = robust_core * std::max(1.0, *middle / normal_median(group));
+  const double reach = robust_core * std::max(1.0, median_of(std::move(finite)) / normal_median(group));
   for (Eigen::Index i = 0; i < groups; ++i) {
     if (size[i] > reach) weights.segment(i * group, group).setConstant(std::pow(reach / size[i], 2));
   }

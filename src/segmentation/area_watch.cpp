@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "segmentation/outline.hpp"
+#include "types/median.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -6,6 +6,7 @@
 #include "segmentation/cavity.hpp"
 #include "segmentation/edge_fit.hpp"
 #include "segmentation/outline.hpp"
+#include "types/median.hpp"
 
 namespace tissue_stiffness {
 namespace {

@@ -10,6 +10,7 @@
 #include "segmentation/outline.hpp"
 #include "segmentation/region_of_interest.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "types/median.hpp"
 
 namespace tissue_stiffness {
 namespace {

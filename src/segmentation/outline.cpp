@@ -120,13 +120,6 @@ Eigen::Vector2d centroid(const Eigen::Matrix2Xd& points) {
   return sum / (6.0 * signed_area(points));
 }
 
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 Eigen::VectorXd curvature(const Eigen::Matrix2Xd& points, double sigma) {
   const Eigen::Matrix2Xd smooth = smooth_closed(points, sigma);
   const double sign = signed_area(points) >= 0.0 ? 1.0 : -1.0;

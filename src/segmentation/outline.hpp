@@ -53,9 +53,6 @@ Eigen::Matrix2Xd outward_normals(const Eigen::Matrix2Xd& points, double sigma);
 /// Returns the centre of the enclosed area.
 Eigen::Vector2d centroid(const Eigen::Matrix2Xd& points);
 
-/// Returns the upper median; 0 without values.
-double median_of(std::vector<double> values);
-
 /// Returns the signed curvature [1/pixel], smoothed over `sigma` points. It is positive where the enclosed area is convex.
 Eigen::VectorXd curvature(const Eigen::Matrix2Xd& points, double sigma);
 

@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "segmentation/outline.hpp"
+#include "types/median.hpp"
 
 namespace tissue_stiffness {
 namespace {
