@@ -8,6 +8,7 @@
 
 #include "effects/registry.hpp"
 #include "nodes/message_conversions.hpp"
+#include "nodes/numbered_topic.hpp"
 #include "segmentation/lens.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
@@ -32,16 +33,13 @@ EstimatorInputs::EstimatorInputs(const ros::NodeHandle& node, const ModelSetting
 void EstimatorInputs::listen(std::uint32_t queue_size) {
   if (!subscribers_.empty()) return;
   for (const LoadInput& input : load_topics(settings_)) listen_load(input, queue_size);
-  int contours = 0, tracks = 0;
-  const auto numbered = [](const std::string& name, int number) {
-    return number == 1 ? name : name + "_" + std::to_string(number);
-  };
+  std::size_t contours = 0, tracks = 0;
   for (std::size_t i = 0; i < settings_.observations.size(); ++i) {
     const ObservationTraits& traits = traits_of(settings_.observations[i].kind);
     if (settings_.observations[i].kind == ObservationKind::contour) {
-      listen_contour(static_cast<int>(i), numbered("contour", ++contours), queue_size);
+      listen_contour(static_cast<int>(i), numbered_topic("contour", ++contours), queue_size);
     } else if (settings_.observations[i].kind == ObservationKind::tracks) {
-      listen_tracks(static_cast<int>(i), numbered("tracks", ++tracks), queue_size);
+      listen_tracks(static_cast<int>(i), numbered_topic("tracks", ++tracks), queue_size);
     } else if (traits.force) {
       listen_reaction(static_cast<int>(i), queue_size);
     } else {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "nodes/message_conversions.hpp"
+#include "nodes/numbered_topic.hpp"
 #include "nodes/surface_view.hpp"
 #include "segmentation/lens.hpp"
 
@@ -20,12 +21,12 @@ EstimatorOutputs::EstimatorOutputs(ros::NodeHandle node, std::string model_frame
 
 void EstimatorOutputs::prepare(const ModelSettings& settings, const TetMesh& mesh) {
   std::map<int, ModelOutline> outlines;
-  int contours = 0;
+  std::size_t contours = 0;
   for (std::size_t i = 0; i < settings.observations.size(); ++i) {
     if (settings.observations[i].kind != ObservationKind::contour) continue;
     const int source = static_cast<int>(i);
     outlines.emplace(source, ModelOutline(settings, settings.observations[i], mesh));
-    const std::string topic = ++contours == 1 ? "predicted_contour" : "predicted_contour_" + std::to_string(contours);
+    const std::string topic = numbered_topic("predicted_contour", ++contours);
     if (outline_topics_.count(source) == 0) outline_topics_[source] = node_.advertise<ContourMessage>(topic, 10);
   }
   outlines_ = std::move(outlines);

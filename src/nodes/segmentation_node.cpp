@@ -7,6 +7,7 @@
 
 #include "nodes/message_conversions.hpp"
 #include "nodes/node_keys.hpp"
+#include "nodes/numbered_topic.hpp"
 #include "nodes/sensor_conversions.hpp"
 #include "segmentation/overlay.hpp"
 #include "settings/read_sections.hpp"
@@ -69,7 +70,7 @@ SegmentationNode::SegmentationNode(const ros::NodeHandle& node, const ros::NodeH
 void SegmentationNode::follow_features(const ModelSettings& model) {
   for (const ObservationSettings& observation : model.observations) {
     if (observation.kind != ObservationKind::tracks) continue;
-    const std::string topic = tracks_.empty() ? "tracks" : "tracks_" + std::to_string(tracks_.size() + 1);
+    const std::string topic = numbered_topic("tracks", tracks_.size() + 1);
     tracks_.push_back(std::make_unique<TrackPublisher>(node_, observation, topic, queue_size_, diagnostics_));
   }
 }
