@@ -18,11 +18,8 @@ double seconds_since_start(const Model& model, const Frame& frame) {
   return frame.time - model.loads().first_stamp() - model.settings().time.start;
 }
 
-/// Returns the displacement that a sensor shows: as its effects change it, and less what they show at rest where it is
-/// matched to the body there.
-Eigen::VectorXd apparent_displacement(const Model& model, const Eigen::VectorXd& theta, const Eigen::VectorXd& observed,
-                                      ObservationKind kind) {
-  if (!traits_of(kind).since_rest) return observed;
+/// Returns what sensors show of a displacement that are matched to the body at rest: less what the others show there.
+Eigen::VectorXd since_rest(const Model& model, const Eigen::VectorXd& theta, const Eigen::VectorXd& observed) {
   const Eigen::VectorXd rest = Eigen::VectorXd::Zero(observed.size());
   return observed - model.sensors().observe(theta, 0.0, rest).displacement;
 }
@@ -40,8 +37,11 @@ class SeenAlong {
 
   Eigen::MatrixXd rows_of(const Observation& observation) {
     const bool observes = model_.sensors().any();
-    const Eigen::VectorXd u = observes ? apparent_displacement(model_, theta_, apparent_, observation.kind)
-                                       : Eigen::VectorXd(output_.head(model_.fem().dof_count()));
+    using Field = Eigen::Ref<const Eigen::VectorXd>;
+    Eigen::VectorXd relative;
+    if (observes && traits_of(observation.kind).since_rest) relative = since_rest(model_, theta_, apparent_);
+    const Field observed = relative.size() > 0 ? Field(relative) : Field(apparent_);
+    const Field u = observes ? observed : Field(output_.head(model_.fem().dof_count()));
     const auto& sensor = *operators_[static_cast<std::size_t>(observation.source)];
     const std::optional<RowTangent> tangent = sensor.tangent(observation, u);
     if (!tangent) return differences(observation);
@@ -120,13 +120,15 @@ Prediction predict_frame(const Model& model, const std::vector<std::unique_ptr<O
   const ObservedMotion seen =
       observes ? model.sensors().observe(theta, since, displacement) : ObservedMotion{model.mesh(), since, {}};
   using Field = Eigen::Ref<const Eigen::VectorXd>;
+  const Field u = observes ? Field(seen.displacement) : displacement;
   std::vector<Prediction> parts;
   for (const Observation& observation : frame.observations) {
-    const Eigen::VectorXd apparent =
-        observes ? apparent_displacement(model, theta, seen.displacement, observation.kind) : Eigen::VectorXd();
-    const Field u = observes ? Field(apparent) : displacement;
     const auto& sensor = *operators[static_cast<std::size_t>(observation.source)];
     const ObservationTraits& traits = traits_of(observation.kind);
+    if (observes && traits.since_rest) {
+      parts.push_back(sensor.predict(observation, since_rest(model, theta, seen.displacement)));
+      continue;
+    }
     parts.push_back(sensor.predict(observation, traits.force ? output : u));
     if (!traits.identified && !traits.force) parts.back().predicted.array() += seen.outward;
   }
