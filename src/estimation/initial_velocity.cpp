@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "types/sensor_ray.hpp"
+
 namespace tissue_stiffness {
 namespace {
 
@@ -28,11 +30,7 @@ Eigen::Vector3d centre(const Observation& observation, const Eigen::Vector3d& bo
   const Camera& camera = *observation.camera;
   const Eigen::Vector2d pixel = observation.contour ? centroid(observation.contour->points)
                                                     : Eigen::Vector2d(observation.tracks->pixels.rowwise().mean());
-  const Eigen::Vector2d ray((pixel.x() - camera.cx) / camera.fx, (pixel.y() - camera.cy) / camera.fy);
-  if (camera.projection == Camera::Projection::slice)
-    return camera.model_from_sensor * Eigen::Vector3d(ray.x(), ray.y(), 0);
-  const double depth = (camera.model_from_sensor.inverse() * body_centre).z();
-  return camera.model_from_sensor * Eigen::Vector3d(depth * ray.x(), depth * ray.y(), depth);
+  return place_of(camera, pixel, depth_of(camera, body_centre));
 }
 
 }  // namespace

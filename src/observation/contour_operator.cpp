@@ -10,6 +10,7 @@
 #include "observation/outline.hpp"
 #include "tissue_stiffness/types/error.hpp"
 #include "types/body_size.hpp"
+#include "types/sensor_ray.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -53,7 +54,7 @@ class ContourOperator : public ObservationOperator {
     p.nodes = Eigen::VectorXi::Zero(n);
     for (Eigen::Index i = 0; i < n; ++i) {
       p.sigma[i] = std::max(settings_.noise, contour.sigma[i] * scale);
-      p.places.col(i) = place(*observation.camera, contour.points.col(i), scale);
+      p.places.col(i) = place_of(*observation.camera, contour.points.col(i), scale * observation.camera->fx);
       std::size_t k = 0;
       const double d = distance(contour, i, outline, k);
       if (!std::isfinite(d)) continue;
@@ -133,16 +134,6 @@ class ContourOperator : public ObservationOperator {
     if (outline.empty() || !std::isfinite(contour.sigma[i])) return std::numeric_limits<double>::quiet_NaN();
     return distance_along_normal(outline, contour.points.col(i), contour.normals.col(i),
                                  kReach * size_ / outline.front().scale, segment);
-  }
-
-  static Eigen::Vector3d place(const Camera& camera, const Eigen::Vector2d& pixel, double scale) {
-    if (camera.projection == Camera::Projection::slice) {
-      return camera.model_from_sensor *
-             Eigen::Vector3d((pixel.x() - camera.cx) / camera.fx, (pixel.y() - camera.cy) / camera.fy, 0.0);
-    }
-    const double depth = scale * camera.fx;
-    return camera.model_from_sensor *
-           Eigen::Vector3d((pixel.x() - camera.cx) / camera.fx * depth, (pixel.y() - camera.cy) / camera.fy * depth, depth);
   }
 
   const TetMesh& mesh_;

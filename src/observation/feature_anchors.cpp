@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "tissue_stiffness/types/error.hpp"
+#include "types/median.hpp"
+#include "types/sensor_ray.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -16,12 +18,6 @@ constexpr double kSteepest = 5.0;  // distance of points of one surface, over th
 constexpr std::size_t kNeighbours = 8, kFewestNeighbours = 5;
 constexpr double kOtherwise = 4.0;
 constexpr double kAlike = 0.25;  // [pixel] by which neighbours differ anyway
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // Returns the columns nearest to a column, without it.
 std::vector<Eigen::Index> nearest(const Eigen::Matrix2Xd& places, Eigen::Index to) {
@@ -47,13 +43,13 @@ std::vector<bool> agreeing(const Eigen::Matrix2Xd& places, const Eigen::Matrix2X
       std::vector<double> values;
       values.reserve(around.size());
       for (const Eigen::Index k : around) values.push_back(motion(c, k));
-      middle[c] = median(values);
+      middle[c] = median_of(values);
     }
     std::vector<double> differences;
     differences.reserve(around.size());
     for (const Eigen::Index k : around) differences.push_back((motion.col(k) - middle).norm());
     out.push_back(around.size() < kFewestNeighbours ||
-                  (motion.col(i) - middle).norm() < kOtherwise * (median(differences) + kAlike));
+                  (motion.col(i) - middle).norm() < kOtherwise * (median_of(differences) + kAlike));
   }
   return out;
 }
@@ -127,19 +123,18 @@ const SurfacePoint& FeatureAnchors::place(const FeatureTracks& tracks, Eigen::In
 }
 
 SurfacePoint FeatureAnchors::meet(const Eigen::Vector2d& pixel, const Camera& camera) const {
-  const Eigen::Vector3d ray((pixel.x() - camera.cx) / camera.fx, (pixel.y() - camera.cy) / camera.fy, 1.0);
   return first_surface_point(mesh_, camera.model_from_sensor.translation(),
-                             (camera.model_from_sensor.linear() * ray).normalized());
+                             (camera.model_from_sensor.linear() * sensor_ray(camera, pixel)).normalized());
 }
 
 bool FeatureAnchors::shows_body_alone(const SurfacePoint& place, const Eigen::Vector2d& reference, double window,
                                       const Camera& camera) const {
-  if (place.facet < 0) return false;
+  if (place.facet < 0 || window == 0.0) return place.facet >= 0;
   const double apart = kSteepest * std::sqrt(2.0) * window * place.distance / camera.fx;
   for (const Eigen::Vector2d& corner :
        {Eigen::Vector2d(-1, -1), Eigen::Vector2d(1, -1), Eigen::Vector2d(1, 1), Eigen::Vector2d(-1, 1)}) {
     const SurfacePoint there = meet(reference + window * corner, camera);
-    if (window > 0.0 && (there.facet < 0 || (there.point - place.point).norm() > apart)) return false;
+    if (there.facet < 0 || (there.point - place.point).norm() > apart) return false;
   }
   return true;
 }

@@ -37,7 +37,7 @@ class ObservationOperator {
   /// Returns the mesh nodes that a prediction of this observation depends on.
   virtual std::vector<int> nodes(const Observation& observation) const = 0;
   /// Returns what the model shows in the sensor's image, as separate segments (u0, v0, u1, v1) [pixel]: its outline, or the
-  /// way of each feature since rest. It is empty for sensors without images.
+  /// displacement of each feature since rest. It is empty for sensors without images.
   virtual Eigen::Matrix4Xd outline(const Observation&, const Eigen::VectorXd&) const { return {}; }
 };
 

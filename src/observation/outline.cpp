@@ -100,20 +100,27 @@ std::vector<OutlineSegment> section_by_plane(const SurfaceTriangles& triangles,
   return outline;
 }
 
+namespace {
+
+// `across`: what moves the pixel along the depth, over what moves the depth.
+Eigen::Matrix<double, 2, 3> pixel_tangent_across(const Eigen::Vector3d& across, double depth, const Camera& camera) {
+  const Eigen::Matrix3d turn = camera.model_from_sensor.inverse().linear();
+  const Eigen::Matrix<double, 2, 3> flat = turn.topRows<2>() - across.head<2>() / across.z() * turn.row(2);
+  return Eigen::Vector2d(camera.fx, camera.fy).asDiagonal() * flat / depth;
+}
+
+}  // namespace
+
+Eigen::Matrix<double, 2, 3> pixel_tangent(const Eigen::Vector3d& point, const Camera& camera) {
+  const Eigen::Vector3d across = camera.model_from_sensor.inverse() * point;
+  return pixel_tangent_across(across, across.z(), camera);
+}
+
 Eigen::Matrix<double, 2, 3> pixel_tangent(const OutlineEnd& end, const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
                                           const Camera& camera) {
-  const Eigen::Isometry3d to_sensor = camera.model_from_sensor.inverse();
-  const Eigen::Vector2d focal(camera.fx, camera.fy);
-  Eigen::Vector3d across;  // what moves the pixel along the depth, over what moves the depth
-  if (camera.projection == Camera::Projection::slice) {
-    across = to_sensor.linear() * (positions.col(end.other) - positions.col(end.node));
-  } else {
-    across = to_sensor * positions.col(end.node);
-  }
-  const Eigen::Matrix3d turn = to_sensor.linear();
-  const Eigen::Matrix<double, 2, 3> flat = turn.topRows<2>() - across.head<2>() / across.z() * turn.row(2);
-  const double depth = camera.projection == Camera::Projection::slice ? 1.0 : across.z();
-  return focal.asDiagonal() * flat / depth;
+  if (camera.projection == Camera::Projection::pinhole) return pixel_tangent(positions.col(end.node), camera);
+  const Eigen::Vector3d along_edge = positions.col(end.other) - positions.col(end.node);
+  return pixel_tangent_across(camera.model_from_sensor.inverse().linear() * along_edge, 1.0, camera);
 }
 
 double distance_along_normal(const std::vector<OutlineSegment>& outline, const Eigen::Vector2d& point,

@@ -41,6 +41,9 @@ std::vector<OutlineSegment> section_by_plane(const SurfaceTriangles& triangles,
                                              const Eigen::Ref<const Eigen::Matrix3Xd>& positions, const Camera& camera,
                                              bool cavity);
 
+/// Returns d pixel / d point of the model frame, 2 x 3 [pixel/m], of a pinhole.
+Eigen::Matrix<double, 2, 3> pixel_tangent(const Eigen::Vector3d& point, const Camera& camera);
+
 /// Returns d pixel / d position of the end's nodes, 2 x 3 [pixel/m]. That of `node` is (1 - share) times this matrix, and
 /// that of `other` is `share` times it. In a slice the end slides along its mesh edge, so that it stays in the image's
 /// plane.

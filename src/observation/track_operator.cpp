@@ -8,9 +8,11 @@
 
 #include "observation/closest_point.hpp"
 #include "observation/observation_operator.hpp"
+#include "observation/outline.hpp"
 #include "observation/surface_anchor.hpp"
 #include "tissue_stiffness/types/error.hpp"
 #include "types/body_size.hpp"
+#include "types/sensor_ray.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -51,7 +53,7 @@ class TrackOperator : public ObservationOperator {
       p.measured.segment<2>(2 * i) = scale.cwiseProduct(seen - pixel);
       p.predicted.segment<2>(2 * i) = scale.cwiseProduct(camera.project(now) - pixel);
       p.sigma.segment<2>(2 * i) = (tracks.sigma[i] * scale).cwiseMax(noise_);
-      p.places.middleCols<2>(2 * i) = place(camera, seen, rest).replicate<1, 2>();
+      p.places.middleCols<2>(2 * i) = place_of(camera, seen, depth_of(camera, rest)).replicate<1, 2>();
       p.nodes.segment<2>(2 * i).setConstant(anchor.node);
     }
     return p;
@@ -66,7 +68,7 @@ class TrackOperator : public ObservationOperator {
       const SurfaceAnchor& anchor = *anchors[static_cast<std::size_t>(i)];
       const Eigen::Vector3d rest = observation.points.col(i);
       const Eigen::Matrix<double, 2, 3> rows =
-          scale_at(camera, rest).asDiagonal() * pixel_tangent(camera, rest + anchor.displacement(mesh_, u));
+          scale_at(camera, rest).asDiagonal() * pixel_tangent(rest + anchor.displacement(mesh_, u), camera);
       for (Eigen::Index k = 0; k < anchor.shape.size(); ++k) {
         for (int r = 0; r < 2; ++r) {
           for (int c = 0; c < 3; ++c)
@@ -126,24 +128,8 @@ class TrackOperator : public ObservationOperator {
 
   // Returns metres a pixel, to the right and down, at the depth of a point.
   static Eigen::Vector2d scale_at(const Camera& camera, const Eigen::Vector3d& point) {
-    const double depth = (camera.model_from_sensor.inverse() * point).z();
+    const double depth = depth_of(camera, point);
     return {depth / camera.fx, depth / camera.fy};
-  }
-
-  // Returns where a pixel is at the depth of a point.
-  static Eigen::Vector3d place(const Camera& camera, const Eigen::Vector2d& pixel, const Eigen::Vector3d& point) {
-    const double depth = (camera.model_from_sensor.inverse() * point).z();
-    return camera.model_from_sensor *
-           Eigen::Vector3d((pixel.x() - camera.cx) / camera.fx * depth, (pixel.y() - camera.cy) / camera.fy * depth, depth);
-  }
-
-  // Returns d pixel / d point of the model frame.
-  static Eigen::Matrix<double, 2, 3> pixel_tangent(const Camera& camera, const Eigen::Vector3d& point) {
-    const Eigen::Vector3d x = camera.model_from_sensor.inverse() * point;
-    Eigen::Matrix<double, 2, 3> out;
-    out << camera.fx / x.z(), 0.0, -camera.fx * x.x() / (x.z() * x.z()), 0.0, camera.fy / x.z(),
-        -camera.fy * x.y() / (x.z() * x.z());
-    return out * camera.model_from_sensor.linear().transpose();
   }
 
   // Returns a rigid motion of the body: an offset along an axis, or a rotation about one through its middle.

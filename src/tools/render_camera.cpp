@@ -8,6 +8,7 @@
 #include "observation/closest_point.hpp"
 #include "segmentation/lens.hpp"
 #include "tools/render.hpp"
+#include "types/sensor_ray.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -106,7 +107,7 @@ class CameraRenderer : public Renderer {
   // Draws the plane's near edge, at the depth of the body's centre.
   void draw_floor(const Plane& plane, const Eigen::Vector3d& centre) {
     const Camera& camera = scene_.camera;
-    const double depth = (camera.model_from_sensor.inverse() * centre).z();
+    const double depth = depth_of(camera, centre);
     Eigen::Matrix2Xd pixels(2, Eigen::Index{camera.width} * camera.height);
     for (Eigen::Index i = 0; i < pixels.cols(); ++i) {
       const Eigen::Index row = i / camera.width;
@@ -116,9 +117,7 @@ class CameraRenderer : public Renderer {
     for (int v = 0; v < camera.height; ++v) {
       for (int u = 0; u < camera.width; ++u) {
         const Eigen::Vector2d pixel = pixels.col(Eigen::Index{v} * camera.width + u);
-        const Eigen::Vector3d local((pixel.x() - camera.cx) / camera.fx * depth,
-                                    (pixel.y() - camera.cy) / camera.fy * depth, depth);
-        if ((camera.model_from_sensor * local - plane.point).dot(plane.normal) < 0.0) {
+        if ((place_of(camera, pixel, depth) - plane.point).dot(plane.normal) < 0.0) {
           background_.at<float>(v, u) += static_cast<float>(kFloor - kBackground);
         }
       }
