@@ -3,7 +3,6 @@ import os
 
 import cv2
 import numpy as np
-import rosbag
 import yaml
 from geometry_msgs.msg import TransformStamped
 from scipy.spatial.transform import Rotation
@@ -60,7 +59,3 @@ def write(bag, folder):
         bag.write('/endoscope/camera_info', info, header.stamp)
         bag.write('/endoscope/image_raw', Image(header=header, height=picture.shape[0], width=picture.shape[1], encoding='mono8',
                                                 step=picture.shape[1], data=picture.tobytes()), header.stamp)
-
-
-def rosbag_of(path):
-    return rosbag.Bag(path, 'w')

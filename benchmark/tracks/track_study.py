@@ -7,6 +7,7 @@ import os
 import sys
 
 import numpy as np
+import rosbag
 import yaml
 
 import meshes
@@ -46,7 +47,7 @@ def recorded(args, kind, seed, folder):
     meshes.write_vtk(os.path.join(folder, 'mesh.vtk'), nodes, tets)
     track_film.draw(render, truth, truth.config(simulate, truths.STEP), VIEWS[seed % len(VIEWS)], seed + 1, folder)
     force_noise = 0.0
-    with track_film.rosbag_of(os.path.join(folder, 'recording.bag')) as bag:
+    with rosbag.Bag(os.path.join(folder, 'recording.bag'), 'w') as bag:
         track_film.write(bag, folder)
         write_pose(bag, truth, truth.rng)
         if kind != 'shaken base':

@@ -94,10 +94,11 @@ double TextureWindow::sigma(double noise) const {
     unit[i] = 1.0 / std::sqrt(own(i, i));
   }
   const Matrix scale = Matrix::diag(unit);
+  const Matrix correlations = scale * own * scale;
   cv::Mat values;
-  cv::eigen(scale * own * scale, values);
+  cv::eigen(correlations, values);
   if (!(values.at<double>(7) > kSingular)) return std::numeric_limits<double>::infinity();
-  const Matrix inverse = scale * (scale * own * scale).inv(cv::DECOMP_CHOLESKY) * scale;
+  const Matrix inverse = scale * correlations.inv(cv::DECOMP_CHOLESKY) * scale;
   const Matrix covariance = 2.0 * noise * noise * inverse * noise_ * inverse;
   const double mean = 0.5 * (covariance(0, 0) + covariance(1, 1)),
                apart = std::hypot(0.5 * (covariance(0, 0) - covariance(1, 1)), covariance(0, 1));

@@ -109,7 +109,8 @@ ObservationSettings read_observation(const Value& entry) {
   if (observation.kind == Kind::contour) read_contour(map, observation);
   if (observation.kind == Kind::tracks) {
     const Value none = Value::map({}, map.path());
-    observation.features = read_features(map.has("features") ? std::ref(map.at("features")) : std::ref(none));
+    const Value& features = map.has("features") ? map.at("features") : none;
+    observation.features = read_features(features);
   }
   if (observation.kind == Kind::markers) observation.rest = read_rest(map.at("rest"));
   if (observation.kind == Kind::points && map.has("depth_camera")) {

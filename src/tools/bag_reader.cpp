@@ -289,7 +289,7 @@ std::optional<Instant> BagReader::next() {
 }
 
 void BagReader::convert(const Measurement& measurement, Instant& instant) {
-  if (measurement.image) return look_at_image(measurement, instant);
+  if (measurement.image) return observe_image(measurement, instant);
   const std_msgs::Header& header = measurement.wrench ? measurement.wrench->header : measurement.cloud->header;
   const auto model_from_sensor = pose(header, instant.reason);
   if (!model_from_sensor) return;
@@ -309,7 +309,7 @@ void BagReader::convert(const Measurement& measurement, Instant& instant) {
   instant.frame.observations.push_back(std::move(out));
 }
 
-void BagReader::look_at_image(const Measurement& measurement, Instant& instant) {
+void BagReader::observe_image(const Measurement& measurement, Instant& instant) {
   if (come_[measurement.source]++ % image_stride_ != 0) return;
   const ObservationSettings& settings = settings_.observations[static_cast<std::size_t>(measurement.source)];
   const std_msgs::Header& header = measurement.image->header;

@@ -106,7 +106,7 @@ class BagReader {
   bool front_is_complete() const;
 
   void convert(const Measurement& measurement, Instant& instant);
-  void look_at_image(const Measurement& measurement, Instant& instant);
+  void observe_image(const Measurement& measurement, Instant& instant);
   void segment(int source, const cv::Mat& image, const std::shared_ptr<Camera>& camera, Instant& instant);
   void track(int source, const cv::Mat& image, const Camera& camera, Instant& instant);
   void keep_picture(const Measurement& measurement, const cv::Mat& image, const Camera& camera);

@@ -31,7 +31,7 @@ struct ReplayOutline {
   int width = 0, height = 0;  ///< size of the image [pixel]
   Eigen::Matrix2Xd measured;  ///< points along the outline, or features [pixel]
   bool closed = true;
-  Eigen::Matrix4Xd predicted;  ///< separate pieces (u0, v0, u1, v1), or the way of each feature since rest [pixel]
+  Eigen::Matrix4Xd predicted;  ///< separate pieces (u0, v0, u1, v1), or each feature's displacement since rest [pixel]
   bool joined = true;          ///< false: the points are features
 };
 

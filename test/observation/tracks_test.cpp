@@ -156,9 +156,9 @@ TEST_F(Tracks, RowsAreThePixelsMotionInMetres) {
     EXPECT_LT((camera_.project(p.places.col(2 * i + 1)) - o.tracks->pixels.col(i)).norm(), 1e-9);
   }
   EXPECT_GT(p.measured.cwiseAbs().maxCoeff(), 1e-3);
-  const Eigen::Matrix4Xd ways = sensors_[0]->outline(o, moved(stretched));
-  EXPECT_LT((ways.topRows<2>() - o.tracks->reference).norm(), 1e-9);
-  EXPECT_LT((ways.bottomRows<2>() - o.tracks->pixels).norm(), 1e-9);
+  const Eigen::Matrix4Xd displaced = sensors_[0]->outline(o, moved(stretched));
+  EXPECT_LT((displaced.topRows<2>() - o.tracks->reference).norm(), 1e-9);
+  EXPECT_LT((displaced.bottomRows<2>() - o.tracks->pixels).norm(), 1e-9);
   EXPECT_EQ(sensors_[0]->predict(o, Eigen::VectorXd::Zero(3 * model_->mesh().node_count())).predicted.norm(), 0.0);
 }
 

@@ -1,4 +1,4 @@
-// Camera images with the measured and the predicted outline, or with features and their predicted ways since rest.
+// Camera images with the measured and the predicted outline, or with features and their predicted displacements.
 const FEATURE = 7;  // radius in the canvas's pixels
 
 function startPicture() {
