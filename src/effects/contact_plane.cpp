@@ -41,6 +41,7 @@ class ContactPlane : public RigidContact {
     }
     plane_ = std::make_shared<const Plane>(arguments.at("point").as_vector3("m"), normal.normalized());
   }
+  double travel(double /*from*/, double /*to*/) const override { return 0.0; }
 
  private:
   std::shared_ptr<const Obstacle> obstacle(double /*time*/, const Parameters& /*p*/) const override { return plane_; }

@@ -1,6 +1,7 @@
 // A rigid tool, whose pose is measured, touches the surface wherever it is: a ball, a capsule or a flat punch.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "effects/registry.hpp"
@@ -15,6 +16,7 @@ constexpr double kRelativePenalty = 100.0;                   // of E over the fa
 constexpr double kLeastRadius = 1e-5, kLargestRadius = 1.0;  // [m]
 constexpr double kResolution = 0.25;                         // of the radius, for the quadrature
 constexpr double kVelocityStep = 5e-4;                       // [s]
+constexpr double kPathStep = 0.01;                           // [s] between the poses that a path is read at
 constexpr LoadTolerance kExact{0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0};
 enum Index { kRadius, kOffset, kStiffness, kFriction, kOwn };
 
@@ -98,6 +100,7 @@ class ToolContact : public RigidContact {
         course_(load_course(arguments, LoadInput::Kind::pose, context)),
         from_(arguments.at("center").as_vector3("m")),
         to_(arguments.has("end") ? arguments.at("end").as_vector3("m") : from_),
+        size_(arguments.at("radius").as_quantity(kLeastRadius, kLargestRadius, "m").value),
         flat_(arguments.has("flat") && arguments.at("flat").as_boolean()),
         solids_(context.solids.size()) {
     if (flat_ && from_ == to_) {
@@ -110,6 +113,18 @@ class ToolContact : public RigidContact {
 
   bool needs_elasticity() const override { return true; }
   std::string reacting_region() const override { return region_; }
+  double travel(double from, double to) const override {
+    const int steps = std::max(1, static_cast<int>(std::ceil((to - from) / kPathStep)));
+    double length = 0.0;
+    std::optional<Pose> last = course_->pose(from);
+    for (int k = 1; k <= steps && last; ++k) {
+      const std::optional<Pose> next = course_->pose(from + (to - from) * k / steps);
+      const auto moved = [&](const Eigen::Vector3d& end) { return (apply(*next, end) - apply(*last, end)).norm(); };
+      length += std::max(moved(from_), moved(to_));
+      last = next;
+    }
+    return last ? length / size_ : std::numeric_limits<double>::infinity();
+  }
 
  private:
   std::shared_ptr<const Obstacle> obstacle(double time, const Parameters& p) const override {
@@ -138,6 +153,7 @@ class ToolContact : public RigidContact {
   std::string region_;
   std::shared_ptr<Course> course_;
   Eigen::Vector3d from_, to_;  ///< in the tool's frame [m]
+  double size_;                ///< radius that the model starts from [m]
   bool flat_;
   std::size_t solids_;
 };

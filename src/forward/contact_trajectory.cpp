@@ -16,6 +16,8 @@ constexpr double kSettled = 1e-9;  // body sizes
 constexpr int kMostIterations = 60;
 constexpr double kCut = 0.4, kLeastCut = 0.01;  // of a step
 constexpr double kCloser = 0.95;                // what a step has to leave of the distance
+constexpr double kTravel = 0.02;                // of a tool's size, in a step
+constexpr double kSameSpan = 1e-9;              // of a step
 
 Eigen::MatrixXd rows_of(const Eigen::MatrixXd& m, const std::vector<int>& rows) {
   Eigen::MatrixXd out(static_cast<Eigen::Index>(rows.size()), m.cols());
@@ -72,10 +74,20 @@ ContactTrajectory::ContactTrajectory(const ContactModel& owner, const Eigen::Vec
   }
 }
 
+// Where nothing but tools moves the body, its motion is as slow as theirs: how far they go says how many steps there are.
+// The parameters do not, so that runs with other ones differ by these alone.
+int ContactTrajectory::steps_to(double time) const {
+  const int most = force_steps(time - linear_.time());
+  if (!linear_.idle()) return most;
+  double travel = 0.0;
+  for (const Part& part : parts_) travel = std::max(travel, part.contact->travel(linear_.time(), time));
+  return static_cast<int>(std::clamp(std::ceil(travel / kTravel), 1.0, static_cast<double>(most)));
+}
+
 void ContactTrajectory::advance(double time) {
   const double start = linear_.time(), span = time - start;
   if (!(span > 0.0)) return;
-  const int steps = force_steps(span);
+  const int steps = steps_to(time);
   for (int k = 1; k <= steps; ++k) step(k == steps ? time : start + span * k / steps);
 }
 
@@ -112,11 +124,14 @@ ContactTrajectory::Step ContactTrajectory::begin_step(double time) {
   return out;
 }
 
-Eigen::MatrixXd ContactTrajectory::response_between(const Step& step, const std::vector<int>& forced) const {
+const Eigen::MatrixXd& ContactTrajectory::response_between(const Step& step, const std::vector<int>& forced) {
+  if (response_.forced == forced && std::abs(response_.span - step.span) < kSameSpan * step.span) return response_.between;
   const Eigen::MatrixXd shapes = rows_of(shapes_, forced);
   const Eigen::VectorXd modal = step.modal - softness_ / step.resistance;
-  return flexibility_.unit->between(forced) / (flexibility_.ratio * step.resistance) +
-         shapes * (modal.asDiagonal() * shapes.transpose());
+  response_ = {forced, step.span,
+               flexibility_.unit->between(forced) / (flexibility_.ratio * step.resistance) +
+                   shapes * (modal.asDiagonal() * shapes.transpose())};
+  return response_.between;
 }
 
 Eigen::VectorXd ContactTrajectory::response(const Step& step, const std::vector<int>& forced,

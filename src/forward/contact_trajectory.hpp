@@ -48,13 +48,14 @@ class ContactTrajectory : public Trajectory {
     Eigen::VectorXd off;        ///< u - free - H f [m]
   };
   ContactTrajectory(const ContactModel& owner, const Eigen::VectorXd& theta, ReducedTrajectory linear);
+  int steps_to(double time) const;
   void step(double time);
   Step begin_step(double time);
   Forces forces_at(const Step& step, Eigen::VectorXd u);
   void add_touches(const std::vector<Contact::Touch>& touches, double span, Forces& out) const;
   /// H is the response to the contacts' forces at the step's end. These return H between some of dofs() [m/N], and the
   /// displacement H f at all of them under forces at some [m].
-  Eigen::MatrixXd response_between(const Step& step, const std::vector<int>& forced) const;
+  const Eigen::MatrixXd& response_between(const Step& step, const std::vector<int>& forced);
   Eigen::VectorXd response(const Step& step, const std::vector<int>& forced, const Eigen::VectorXd& forces) const;
   void end_step(const Step& step, const Forces& forces);
   Eigen::VectorXd coordinates() const;
@@ -71,10 +72,16 @@ class ContactTrajectory : public Trajectory {
   Eigen::MatrixXd state_;  ///< response of the modes to the contacts: columns q, q', z...
   Eigen::VectorXd force_;  ///< of the contacts at dofs() [N]
   Eigen::VectorXd modal_force_;
-  Eigen::VectorXd stretch_;                  ///< s at dofs() [N]
-  Eigen::MatrixXd relaxed_;                  ///< z of each branch at dofs() [N]
-  Eigen::VectorXd at_;                       ///< displacement at dofs() [m]
-  Eigen::VectorXd reactions_;                ///< of the last step [N]
+  Eigen::VectorXd stretch_;    ///< s at dofs() [N]
+  Eigen::MatrixXd relaxed_;    ///< z of each branch at dofs() [N]
+  Eigen::VectorXd at_;         ///< displacement at dofs() [m]
+  Eigen::VectorXd reactions_;  ///< of the last step [N]
+  /// What response_between() returned last. It is asked for the same again while the tool touches the same nodes.
+  struct Response {
+    std::vector<int> forced;
+    double span = 0.0;
+    Eigen::MatrixXd between;
+  } response_;
   Eigen::VectorXd displacement_, velocity_;  ///< of all nodes, for the contacts: zero at other nodes than theirs
 };
 

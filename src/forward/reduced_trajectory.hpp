@@ -24,6 +24,8 @@ class ReducedTrajectory : public Trajectory {
   /// Returns the reactions to prescribed motions [N], 3 rows each. `further` is added to the state: columns q, q', z...
   Eigen::VectorXd reactions() const { return reactions_with({}); }
   Eigen::VectorXd reactions_with(const Eigen::MatrixXd& further) const;
+  /// Returns whether the body is at rest and no load of the model ever moves it.
+  bool idle() const { return loads_.empty() && prescribed_.empty() && constant_force_.isZero(0.0) && state_.isZero(0.0); }
   Eigen::VectorXd velocity() const override { return reduced_.basis() * (modes_->shapes * state_.col(1)); }
   /// Returns the displacement in coordinates of the reduced basis.
   Eigen::VectorXd coordinates() const { return modes_->shapes * state_.col(0); }
