@@ -51,7 +51,7 @@ TetMesh mesh_of_file(const MeshSettings& settings, const std::function<void()>& 
     return smooth_unless_faceted(settings, load_tet_mesh(settings.file, settings.scale, settings.order));
   const std::string where = "mesh file " + settings.file;
   if (!is_surface_file(settings.file)) {
-    throw InputError(where, "ending '" + file_ending(settings.file) + "'", ".vtk, .node, .ele, .msh, .stl, .ply or .obj");
+    throw InputError(where, "ending '" + file_ending(settings.file) + "'", tet_endings() + ", .stl, .ply or .obj");
   }
   const TriangleSurface surface = load_surface(settings.file, settings.scale);
   return smooth_unless_faceted(settings, fill(surface, settings, false, where, checkpoint));

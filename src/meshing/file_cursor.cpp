@@ -16,15 +16,14 @@ bool is_space(char c) {
   return std::isspace(static_cast<unsigned char>(c)) != 0;
 }
 
-// Replaces what cannot be printed: words of a binary file in a message must not disturb the terminal.
+}  // namespace
+
 std::string printable(const std::string& text) {
   std::string shown = "'" + text.substr(0, 32) + "'";
   std::replace_if(
       shown.begin(), shown.end(), [](char c) { return std::isprint(static_cast<unsigned char>(c)) == 0; }, '?');
   return shown;
 }
-
-}  // namespace
 
 FileCursor::FileCursor(const std::string& file)
     : file_(file), bytes_(read_file(file, "mesh file " + file, "an existing mesh file", kLargestMeshFile)) {

@@ -14,6 +14,10 @@ inline std::string format_point(const Eigen::Vector3d& p) {
   return out.str();
 }
 
+/// Returns the beginning of a text in quotes, without what cannot be printed: words of a binary file in a message must not
+/// disturb the terminal.
+std::string printable(const std::string& text);
+
 /// Reads the bytes of a file word by word. Every failure is an InputError "FILE:LINE: found ...; allowed: ...".
 class FileCursor {
  public:

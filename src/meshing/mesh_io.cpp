@@ -4,6 +4,7 @@
 #include <cctype>
 #include <iomanip>
 #include <limits>
+#include <map>
 #include <ostream>
 
 #include "meshing/file_ending.hpp"
@@ -13,6 +14,12 @@
 
 namespace tissue_stiffness {
 namespace {
+
+std::map<std::string, TetReader>& readers() {
+  static std::map<std::string, TetReader> by_ending = {
+      {".ele", read_node_ele}, {".inp", read_inp}, {".msh", read_msh}, {".node", read_node_ele}, {".vtk", read_vtk}};
+  return by_ending;
+}
 
 void write_vtk(const TetMesh& mesh, std::ostream& out) {
   out << "# vtk DataFile Version 3.0\ntissue_stiffness mesh, m\nASCII\nDATASET UNSTRUCTURED_GRID\n";
@@ -43,16 +50,24 @@ std::string file_ending(const std::string& file) {
 }
 
 bool is_tet_file(const std::string& file) {
-  const std::string ending = file_ending(file);
-  return ending == ".vtk" || ending == ".node" || ending == ".ele" || ending == ".msh";
+  return readers().count(file_ending(file)) > 0;
+}
+
+std::string tet_endings() {
+  std::string out;
+  for (const auto& [ending, reader] : readers()) out += (out.empty() ? "" : ", ") + ending;
+  return out;
+}
+
+void add_tet_reader(const std::string& ending, const TetReader& reader) {
+  readers()[ending] = reader;
 }
 
 TetMesh load_tet_mesh(const std::string& file, double scale, int order) {
   const std::string where = "mesh file " + file, ending = file_ending(file);
-  if (ending == ".vtk") return check_tet_file(read_vtk(file), scale, order, where);
-  if (ending == ".node" || ending == ".ele") return check_tet_file(read_node_ele(file), scale, order, where);
-  if (ending == ".msh") return check_tet_file(read_msh(file), scale, order, where);
-  throw InputError(where, "ending '" + ending + "'", ".vtk, .node, .ele or .msh");
+  const auto reader = readers().find(ending);
+  if (reader == readers().end()) throw InputError(where, "ending '" + ending + "'", tet_endings());
+  return check_tet_file(reader->second(file), scale, order, where);
 }
 
 void save_mesh(const TetMesh& mesh, const std::string& file) {

@@ -1,9 +1,9 @@
 #include <array>
 #include <limits>
-#include <unordered_map>
 #include <vector>
 
 #include "meshing/file_cursor.hpp"
+#include "meshing/numbered_tets.hpp"
 #include "tissue_stiffness/meshing/mesh_io.hpp"
 
 namespace tissue_stiffness {
@@ -14,7 +14,7 @@ constexpr long long kMaxTag = std::numeric_limits<long long>::max() / 2;
 constexpr int kTet = 4, kQuadraticTet = 11;
 
 // Gmsh's second-order nodes lie on the edges 01, 12, 02, 03, 23, 13.
-constexpr std::array<int, 10> kFromGmsh = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
+constexpr std::array<std::size_t, 10> kFromGmsh = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
 
 // Returns the number of nodes of an element type that bounds a solid, and 0 for others. These types are points, lines,
 // triangles, quadrangles, and their second-order variants.
@@ -57,8 +57,9 @@ class MshReader {
       else
         skip(section);
     }
-    if (tags_.empty() || linear_.size() + quadratic_.size() == 0) in_.fail("no nodes or no tetrahedra", "both");
-    return assemble();
+    if (!tets_.complete()) in_.fail("no nodes or no tetrahedra", "both");
+    return tets_.assemble(
+        [this](long long tag) { in_.fail("node " + std::to_string(tag) + " in a tetrahedron", "a node of $Nodes"); });
   }
 
  private:
@@ -84,9 +85,7 @@ class MshReader {
 
   void read_point(long long tag) {
     const Eigen::Vector3d point = {in_.number("x"), in_.number("y"), in_.number("z")};
-    if (!place_.emplace(tag, tags_.size()).second) in_.fail("node " + std::to_string(tag) + " twice", "each node once");
-    tags_.push_back(tag);
-    points_.push_back(point);
+    if (!tets_.add_node(tag, point)) in_.fail("node " + std::to_string(tag) + " twice", "each node once");
   }
 
   void read_nodes2() {
@@ -121,8 +120,11 @@ class MshReader {
     if (type != kTet && type != kQuadraticTet) {
       in_.fail("element type " + std::to_string(type), "tetrahedra: 4 (4 nodes) or 11 (10 nodes)");
     }
-    std::vector<long long>& list = type == kTet ? linear_ : quadratic_;
-    for (int i = 0; i < (type == kTet ? 4 : 10); ++i) list.push_back(in_.integer("node number", 0, kMaxTag));
+    std::array<long long, 10> nodes{};
+    const std::size_t size = type == kTet ? 4 : 10;
+    for (std::size_t i = 0; i < size; ++i) nodes[i] = in_.integer("node number", 0, kMaxTag);
+    std::vector<long long>& list = type == kTet ? tets_.linear : tets_.quadratic;
+    for (std::size_t i = 0; i < size; ++i) list.push_back(nodes[kFromGmsh[i]]);
   }
 
   void read_elements2() {
@@ -151,44 +153,9 @@ class MshReader {
     close("$EndElements");
   }
 
-  // A file with tetrahedra of both orders is read as 4-node. Nodes that no tetrahedron has are left out, as Gmsh writes
-  // construction points. The others keep the file's order.
-  TetFile assemble() {
-    const bool quadratic = linear_.empty();
-    const std::size_t size = quadratic ? 10 : 4;
-    for (std::size_t i = 0; !quadratic && i < quadratic_.size(); i += 10) {
-      linear_.insert(linear_.end(), quadratic_.begin() + static_cast<std::ptrdiff_t>(i),
-                     quadratic_.begin() + static_cast<std::ptrdiff_t>(i + 4));
-    }
-    const std::vector<long long>& list = quadratic ? quadratic_ : linear_;
-    std::vector<int> number(tags_.size(), -1);
-    for (const long long tag : list) {
-      const auto found = place_.find(tag);
-      if (found == place_.end()) in_.fail("node " + std::to_string(tag) + " in a tetrahedron", "a node of $Nodes");
-      number[found->second] = 0;
-    }
-    int used = 0;
-    TetFile result{Eigen::Matrix3Xd(3, tags_.size()), Eigen::MatrixXi(size, list.size() / size)};
-    for (std::size_t i = 0; i < tags_.size(); ++i) {
-      if (number[i] < 0) continue;
-      result.nodes.col(used) = points_[i];
-      number[i] = used++;
-    }
-    result.nodes.conservativeResize(3, used);
-    for (std::size_t i = 0; i < list.size(); ++i) {
-      const auto row = static_cast<Eigen::Index>(i % size), column = static_cast<Eigen::Index>(i / size);
-      const auto from = i / size * size + static_cast<std::size_t>(kFromGmsh[i % size]);
-      result.tets(row, column) = number[place_.at(list[from])];
-    }
-    return result;
-  }
-
   FileCursor in_;
   bool version4_ = false;
-  std::vector<long long> tags_;
-  std::vector<Eigen::Vector3d> points_;
-  std::unordered_map<long long, std::size_t> place_;
-  std::vector<long long> linear_, quadratic_;
+  NumberedTets tets_;
 };
 
 }  // namespace

@@ -217,7 +217,7 @@ bool has_tetgen() {
 
 TetFile fill_surface(const TriangleSurface&, double, bool, const std::string& where, const std::function<void()>&) {
   throw InputError(where, "a surface, but this build is without TetGen",
-                   "tetrahedra (.vtk, .node/.ele, .msh), or a build with -DTISSUE_STIFFNESS_TETGEN=ON");
+                   "tetrahedra (" + tet_endings() + "), or a build with -DTISSUE_STIFFNESS_TETGEN=ON");
 }
 
 #endif

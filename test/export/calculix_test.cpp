@@ -11,6 +11,7 @@
 #include "example_model.hpp"
 #include "export/formats.hpp"
 #include "forward/static_response.hpp"
+#include "tissue_stiffness/meshing/mesh_io.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -122,6 +123,22 @@ TEST_F(Calculix, HasTheLawOfFiniteStrain) {
       StaticResponse(model->rest_stiffness(theta), model->mass(theta), model->fixed(theta), nullptr)(force);
   const Eigen::Matrix3Xd found = solve_by_calculix(export_model(*model, theta, 0.0));
   EXPECT_LT((found - Eigen::Map<const Eigen::Matrix3Xd>(u.data(), 3, u.rows() / 3)).norm(), 1e-2 * u.norm());
+}
+
+TEST(CalculixFile, IsReadBackAsTheSameMesh) {
+  for (const int order : {1, 2}) {
+    const auto model = bar_model(bar_effects(), make_box_mesh({0.10, 0.02, 0.02}, 4, 1, 1, order));
+    const ExportedModel bar = export_model(*model, model->parameters().known(), 12.0);
+    const std::string file = testing::TempDir() + "read_back.inp";
+    std::ofstream(file) << calculix_file(bar).text;
+    const TetMesh mesh = load_tet_mesh(file, 1.0, order);
+    std::filesystem::remove(file);
+    EXPECT_EQ(mesh.corner_count, bar.mesh.corner_count);
+    EXPECT_EQ(mesh.tets, bar.mesh.tets);
+    EXPECT_EQ(mesh.facets, bar.mesh.facets);
+    ASSERT_EQ(mesh.nodes.cols(), bar.mesh.nodes.cols());
+    EXPECT_LT((mesh.nodes - bar.mesh.nodes).cwiseAbs().maxCoeff(), 1e-13);  // the file has 12 digits
+  }
 }
 
 TEST(CalculixFile, SaysWhatItLeavesOut) {

@@ -34,7 +34,7 @@ TEST_P(TetFiles, HoldTheBox) {
 INSTANTIATE_TEST_SUITE_P(Formats, TetFiles,
                          testing::Values("box.vtk", "box_10_node.vtk", "box_binary.vtk", "box_binary_5_1.vtk",
                                          "box_from_0.node", "box_from_0.ele", "box_from_1.node", "box_2_2.msh",
-                                         "box_4_1.msh"));
+                                         "box_4_1.msh", "box.inp", "box_10_node.inp"));
 
 TEST(TetFileChecks, AFileThatInvertsAllIsReordered) {
   expect_sound(load("box_all_inverted.vtk"), 2e-6, 1e-18);
@@ -96,6 +96,70 @@ TEST(TetFileChecks, CountsThatTheFileCannotHoldCostNoMemory) {
     const WrittenFile file(ending, text);
     expect_contains(refusal([&] { load_tet_mesh(file.name, 1.0, 1); }), "0000000 entries");
   }
+}
+
+std::string inp_tetrahedron(const std::string& more, const std::string& element = "*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n") {
+  return "*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n" + element + more;
+}
+
+TEST(InpFiles, SkipWhatIsNoMesh) {
+  for (const std::string more : {"", "*MATERIAL, NAME=A\n*ELASTIC\n1e3, 0.4\n", "*NSET, NSET=A, GENERATE\n1, 4, 1\n",
+                                 "*ELEMENT, TYPE=S3R\n2, 1, 2, 3\n", "*ELEMENT OUTPUT\nS\n", "*NODE\n9, 5, 5, 5"}) {
+    const WrittenFile file(".inp", inp_tetrahedron(more));
+    EXPECT_EQ(load_tet_mesh(file.name, 1.0, 1).node_count(), 4) << more;
+  }
+}
+
+TEST(InpFiles, HaveFourNodesWhereTheyHaveTetrahedraOfBothOrders) {
+  std::string nodes = "*NODE\n5, 1, 1, 1\n", edges;
+  for (int k = 11; k <= 16; ++k) {
+    nodes += std::to_string(k) + ", 0.5, 0.5, 0.5\n";
+    edges += ", " + std::to_string(k);
+  }
+  const WrittenFile file(".inp", inp_tetrahedron(nodes + "*ELEMENT, TYPE=C3D10\n2, 2, 3, 4, 5" + edges + "\n"));
+  const TetMesh mesh = load_tet_mesh(file.name, 1.0, 1);
+  EXPECT_EQ(mesh.tet_count(), 2);
+  EXPECT_EQ(mesh.node_count(), 5);
+}
+
+TEST(InpFiles, NameLineValueAndWhatIsAllowed) {
+  const std::string nodes = inp_tetrahedron("", "");  // five lines
+  const std::vector<std::pair<std::string, std::string>> refused{
+      {inp_tetrahedron("*ELEMENT, TYPE=C3D8\n2, 1, 2, 3, 4, 1, 2, 3, 4\n"), ":8: found *ELEMENT with TYPE=C3D8"},
+      {inp_tetrahedron("*ELEMENT, TYPE=C3D40\n"), "TYPE=C3D40; allowed: tetrahedra: C3D4 or C3D10"},
+      {inp_tetrahedron("*ELEMENT, TYPE=SC6R\n"), "TYPE=SC6R"},
+      {inp_tetrahedron("*ELEMENT, ELSET=A\n"), "*ELEMENT with TYPE="},
+      {inp_tetrahedron("*INCLUDE, INPUT=more.inp\n"), ":8: found *INCLUDE"},
+      {inp_tetrahedron("*NGEN\n1, 4\n"), "*NGEN; allowed: *NODE and *ELEMENT that hold the whole mesh"},
+      {inp_tetrahedron("*node, input=nodes.txt\n"), "*NODE with INPUT; allowed: data in this file"},
+      {inp_tetrahedron("*NODE, SYSTEM=C\n"), "SYSTEM=C; allowed: rectangular"},
+      {inp_tetrahedron("*NODE\n2, 1, 0, 0\n"), ":9: found node 2 twice"},
+      {inp_tetrahedron("*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n"), ":9: found element 1 twice"},
+      {inp_tetrahedron("*NODE\n** a comment\n\n7, 1, zero, 0\n"), ":11: found 'zero'; allowed: a number (y)"},
+      {inp_tetrahedron("*NODE\n7, 1, , 0\n"), "found ''; allowed: a number (y)"},
+      {inp_tetrahedron("*NODE\n0, 1, 0, 0\n"), "found '0'; allowed: a whole number from 1 (node number)"},
+      {inp_tetrahedron("*NODE\n7, 1, 0\n"), "found 3 numbers; allowed: 4 numbers"},
+      {inp_tetrahedron("*NODE\n7, 1, 0, 0, 1\n"), "found 5 numbers; allowed: 4 numbers"},
+      {inp_tetrahedron("*PART, NAME=A\n*PART, NAME=B\n"), ":9: found a second *PART"},
+      {inp_tetrahedron("*INSTANCE, NAME=A, PART=B\n0, 0, 1\n"), "*INSTANCE with data"},
+      {inp_tetrahedron("", "*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 9\n"), "node 9 in a tetrahedron"},
+      {inp_tetrahedron("", "*ELEMENT, TYPE=C3D10\n1, 1, 2, 3, 4\n"), "found 5 numbers; allowed: 11 numbers"},
+      {nodes, "no nodes or no tetrahedra"},
+      {"8 5 0 0 0\n", ":1: found '8 5 0 0 0'; allowed: a keyword that begins with *"},
+      {"", "no nodes or no tetrahedra"}};
+  for (const auto& [text, part] : refused) {
+    const WrittenFile file(".inp", text);
+    expect_contains(refusal([&] { load_tet_mesh(file.name, 1.0, 2); }), part);
+    expect_contains(refusal([&] { load_tet_mesh(file.name, 1.0, 2); }), file.name + ":");
+  }
+}
+
+TEST(TetReaders, MayBeAdded) {
+  EXPECT_FALSE(is_tet_file("box.abc"));
+  expect_contains(refusal([] { load_tet_mesh("box.abc", 1.0, 1); }), ".ele, .inp, .msh, .node, .vtk");
+  add_tet_reader(".abc", [](const std::string&) { return read_vtk(mesh_file("box.vtk")); });
+  EXPECT_TRUE(is_tet_file("box.ABC"));
+  EXPECT_EQ(load_tet_mesh("box.abc", 1.0, 1).tets, load_tet_mesh(mesh_file("box.vtk"), 1.0, 1).tets);
 }
 
 TEST(TetFileChecks, ABodyIsNeitherTooSmallNorTooLarge) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <string>
 
 #include "tissue_stiffness/types/tet_mesh.hpp"
@@ -24,15 +25,30 @@ TetFile read_node_ele(const std::string& file);
 /// Reads Gmsh 2.2 or 4.1, ASCII, with element types 4 and 11. Lower dimensions are skipped, other solids are refused.
 TetFile read_msh(const std::string& file);
 
-/// Returns the mesh of a tetrahedral file (by its ending: .vtk, .node, .ele, .msh), with coordinates times `scale` [m per
-/// file unit]. Corner nodes come first, in the file's order. The mid-edge nodes follow; they are the file's own when it has
-/// them. When every tetrahedron is inverted, the file has the opposite node order and is reordered. Order 1 drops mid-edge
-/// nodes. Throws InputError, naming file and place, for NaN, coincident or unused vertices, single inverted or flat
-/// tetrahedra, and faces with more than two tetrahedra.
+/// Reads an input file of Abaqus or CalculiX: *NODE, and *ELEMENT of the types C3D4 and C3D10 (C3D10M and the like, too).
+/// Elements of lower dimension are skipped, other solids are refused. So are keywords that make or move nodes or
+/// elements, a second part or instance, and data in another file. All other keywords are skipped with their data: sets,
+/// materials, steps.
+TetFile read_inp(const std::string& file);
+
+/// Reads tetrahedra from a file. Throws InputError, naming the file and the place.
+using TetReader = std::function<TetFile(const std::string& file)>;
+
+/// Lets load_tet_mesh read files of a further ending, such as ".abc". It is to be called before other threads load meshes.
+void add_tet_reader(const std::string& ending, const TetReader& reader);
+
+/// Returns the mesh of a tetrahedral file (by its ending: .vtk, .node, .ele, .msh, .inp, or one that was added), with
+/// coordinates times `scale` [m per file unit]. Corner nodes come first, in the file's order. The mid-edge nodes follow;
+/// they are the file's own when it has them. When every tetrahedron is inverted, the file has the opposite node order and
+/// is reordered. Order 1 drops mid-edge nodes. Throws InputError, naming file and place, for NaN, coincident or unused
+/// vertices, single inverted or flat tetrahedra, and faces with more than two tetrahedra.
 TetMesh load_tet_mesh(const std::string& file, double scale, int order);
 
 /// Returns whether load_tet_mesh knows the file's ending.
 bool is_tet_file(const std::string& file);
+
+/// Returns these endings for messages: ".ele, .msh, ...".
+std::string tet_endings();
 
 /// Writes a legacy ASCII .vtk (types 10 or 24) that load_tet_mesh reads back exactly. Throws InputError when the file
 /// cannot be written or does not end in .vtk.
