@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -95,21 +96,30 @@ class Executables : public Workbench {
   }
 };
 
-TEST_F(Executables, HelpThemselves) {
-  for (const std::string tool : {"estimate", "diagnose", "check", "simulate", "export", "effects", "parameters"}) {
-    const Outcome help = call(tool + " --help");
-    EXPECT_EQ(help.code, 0) << help.text;
-    EXPECT_NE(help.text.find("Usage"), std::string::npos) << help.text;
-    EXPECT_NE(help.text.find("Example: " + tool), std::string::npos) << help.text;
+/// The names of all tools, each of which has a main file of its own.
+std::vector<std::string> tools() {
+  std::vector<std::string> out;
+  const std::string end = "_main.cpp";
+  for (const auto& file : std::filesystem::directory_iterator(std::string(TISSUE_STIFFNESS_SOURCE_DIR) + "/src/tools")) {
+    const std::string name = file.path().filename().string();
+    const std::size_t size = name.size() - std::min(end.size(), name.size());
+    if (name.substr(size) == end) out.push_back(name.substr(0, size));
   }
+  return out;
 }
 
-TEST_F(Executables, TellTheirVersions) {
-  for (const std::string tool : {"estimate", "effects"}) {  // with and without required arguments
-    const Outcome outcome = call(tool + " --version");
-    EXPECT_EQ(outcome.code, 0) << outcome.text;
-    EXPECT_EQ(outcome.text.rfind("tissue_stiffness ", 0), 0U) << outcome.text;
-    EXPECT_NE(outcome.text.find("\nEigen "), std::string::npos) << outcome.text;
+TEST_F(Executables, AllHelpAndTellTheirVersions) {
+  EXPECT_GE(tools().size(), 9U);
+  for (const std::string& tool : tools()) {
+    const Outcome help = call(tool + " --help");
+    EXPECT_EQ(help.code, 0) << tool << help.text;
+    EXPECT_NE(help.text.find("Usage: " + tool), std::string::npos) << help.text;
+    EXPECT_NE(help.text.find("Example: " + tool), std::string::npos) << help.text;
+    EXPECT_NE(help.text.find("--version"), std::string::npos) << help.text;
+    const Outcome version = call(tool + " --version");  // without its required arguments
+    EXPECT_EQ(version.code, 0) << tool << version.text;
+    EXPECT_EQ(version.text.rfind("tissue_stiffness ", 0), 0U) << tool << version.text;
+    EXPECT_NE(version.text.find("\nEigen "), std::string::npos) << tool << version.text;
   }
 }
 
