@@ -27,6 +27,7 @@ const std::map<std::string, std::set<std::string>> kAllowed = [] {
   add("settings", {"types"});
   add("segmentation", {"settings"});
   add("meshing", {"settings"});
+  add("vtu", {"meshing"});
   add("fem", {"settings"});
   add("effects", {"fem"});
   add("forward", {"effects", "meshing"});
@@ -38,7 +39,7 @@ const std::map<std::string, std::set<std::string>> kAllowed = [] {
   add("diagnosis", {"estimation"});
   add("report", {"settings"});
   add("check", {"estimation", "segmentation", "report"});
-  add("nodes", {"diagnosis", "segmentation", "report", "check"});
+  add("nodes", {"diagnosis", "segmentation", "report", "check", "vtu"});
   add("tools", {"nodes", "export"});
   add("nodelets", {"nodes"});
   add("rviz", {"nodes"});

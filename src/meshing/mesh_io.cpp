@@ -5,6 +5,7 @@
 #include <iomanip>
 #include <limits>
 #include <map>
+#include <mutex>
 #include <ostream>
 
 #include "meshing/file_ending.hpp"
@@ -15,10 +16,22 @@
 namespace tissue_stiffness {
 namespace {
 
-std::map<std::string, TetReader>& readers() {
-  static std::map<std::string, TetReader> by_ending = {
+struct Readers {
+  std::mutex mutex;
+  std::map<std::string, TetReader> by_ending = {
       {".ele", read_node_ele}, {".inp", read_inp}, {".msh", read_msh}, {".node", read_node_ele}, {".vtk", read_vtk}};
-  return by_ending;
+};
+
+Readers& readers() {
+  static Readers all;
+  return all;
+}
+
+// Returns nothing callable for an unknown ending.
+TetReader reader_of(const std::string& ending) {
+  const std::lock_guard<std::mutex> lock(readers().mutex);
+  const auto found = readers().by_ending.find(ending);
+  return found == readers().by_ending.end() ? TetReader() : found->second;
 }
 
 void write_vtk(const TetMesh& mesh, std::ostream& out) {
@@ -50,24 +63,26 @@ std::string file_ending(const std::string& file) {
 }
 
 bool is_tet_file(const std::string& file) {
-  return readers().count(file_ending(file)) > 0;
+  return reader_of(file_ending(file)) != nullptr;
 }
 
 std::string tet_endings() {
+  const std::lock_guard<std::mutex> lock(readers().mutex);
   std::string out;
-  for (const auto& [ending, reader] : readers()) out += (out.empty() ? "" : ", ") + ending;
+  for (const auto& [ending, reader] : readers().by_ending) out += (out.empty() ? "" : ", ") + ending;
   return out;
 }
 
 void add_tet_reader(const std::string& ending, const TetReader& reader) {
-  readers()[ending] = reader;
+  const std::lock_guard<std::mutex> lock(readers().mutex);
+  readers().by_ending[ending] = reader;
 }
 
 TetMesh load_tet_mesh(const std::string& file, double scale, int order) {
   const std::string where = "mesh file " + file, ending = file_ending(file);
-  const auto reader = readers().find(ending);
-  if (reader == readers().end()) throw InputError(where, "ending '" + ending + "'", tet_endings());
-  return check_tet_file(reader->second(file), scale, order, where);
+  const TetReader reader = reader_of(ending);
+  if (!reader) throw InputError(where, "ending '" + ending + "'", tet_endings());
+  return check_tet_file(reader(file), scale, order, where);
 }
 
 void save_mesh(const TetMesh& mesh, const std::string& file) {

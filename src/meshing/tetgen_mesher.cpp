@@ -4,14 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
 #include <sstream>
+#include <utility>
 #include <vector>
 
 #include "meshing/file_cursor.hpp"
 #include "meshing/planar_facets.hpp"
-#include "meshing/run_apart.hpp"
+#include "meshing/tets_apart.hpp"
 #include "tissue_stiffness/types/error.hpp"
 #include "types/body_size.hpp"
 
@@ -151,45 +150,6 @@ TetFile fill(const TriangleSurface& surface, double max_edge_length, bool keep_t
   return keep_body(out, size, surface, where);
 }
 
-template <typename Matrix>
-void append(std::string& bytes, const Matrix& matrix) {
-  const std::int64_t columns = matrix.cols();
-  bytes.append(reinterpret_cast<const char*>(&columns), sizeof(columns));
-  bytes.append(reinterpret_cast<const char*>(matrix.data()),
-               sizeof(typename Matrix::Scalar) * static_cast<std::size_t>(matrix.size()));
-}
-
-template <typename Matrix>
-std::size_t extract(const std::string& bytes, std::size_t at, Eigen::Index rows, Matrix& matrix) {
-  std::int64_t columns = 0;
-  std::memcpy(&columns, bytes.data() + at, sizeof(columns));
-  matrix.resize(rows, columns);
-  const std::size_t size = sizeof(typename Matrix::Scalar) * static_cast<std::size_t>(matrix.size());
-  std::memcpy(matrix.data(), bytes.data() + at + sizeof(columns), size);
-  return at + sizeof(columns) + size;
-}
-
-std::string to_bytes(const TetFile& mesh) {
-  std::string bytes;
-  append(bytes, mesh.nodes);
-  append(bytes, mesh.tets);
-  return bytes;
-}
-
-TetFile from_bytes(const std::string& bytes, std::size_t at) {
-  TetFile mesh;
-  extract(bytes, extract(bytes, at, 3, mesh.nodes), 4, mesh.tets);
-  return mesh;
-}
-
-std::string mesh_or_message(const TriangleSurface& surface, double edge, bool keep, const std::string& where) {
-  try {
-    return 'M' + to_bytes(fill(surface, edge, keep, where));
-  } catch (const InputError& error) {
-    return std::string("E") + error.what();
-  }
-}
-
 }  // namespace
 
 bool has_tetgen() {
@@ -199,14 +159,11 @@ bool has_tetgen() {
 // TetGen runs in another process, because the library of TetGen 1.5 frees its memory twice when it gives up.
 TetFile fill_surface(const TriangleSurface& surface, double max_edge_length, bool keep_triangles, const std::string& where,
                      const std::function<void()>& checkpoint) {
-  const auto result =
-      run_apart([&] { return mesh_or_message(surface, max_edge_length, keep_triangles, where); }, kMaxSeconds, checkpoint);
-  if (!result || result->empty()) {
-    throw InputError(where, "a surface on which TetGen gives up",
-                     "a closed surface without needle triangles or parts that nearly touch");
-  }
-  if (result->front() == 'E') throw InputError(result->substr(1));
-  return from_bytes(*result, 1);
+  auto mesh =
+      make_tets_apart([&] { return fill(surface, max_edge_length, keep_triangles, where); }, kMaxSeconds, checkpoint);
+  if (mesh) return *std::move(mesh);
+  throw InputError(where, "a surface on which TetGen gives up",
+                   "a closed surface without needle triangles or parts that nearly touch");
 }
 
 #else

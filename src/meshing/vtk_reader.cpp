@@ -2,34 +2,23 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "meshing/file_cursor.hpp"
+#include "meshing/vtk_grid.hpp"
 #include "tissue_stiffness/meshing/mesh_io.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
 constexpr long long kMaxCount = std::numeric_limits<int>::max() / 32;
-constexpr int kTet = 10, kQuadraticTet = 24;
-
-// Points, lines, triangles, quadrilaterals and their quadratic variants bound the solid and are not part of it.
-bool flat_cell(int type) {
-  return (type >= 1 && type <= 9) || type == 21 || type == 22 || type == 23;
-}
-
-struct Grid {
-  Eigen::Matrix3Xd points;
-  std::vector<long long> offsets;  // first node of each cell in `nodes`, and the end
-  std::vector<long long> nodes;
-  std::vector<int> types;
-};
 
 class VtkReader {
  public:
   explicit VtkReader(const std::string& file) : in_(file) {}
 
-  Grid read() {
+  VtkGrid read() {
     const std::string magic = in_.line();
     if (magic.rfind("# vtk DataFile", 0) != 0) in_.fail("another first line", "'# vtk DataFile Version ...' (legacy VTK)");
     in_.line();  // title
@@ -37,7 +26,7 @@ class VtkReader {
     if (format != "ASCII" && format != "BINARY") in_.fail("'" + format + "'", "ASCII or BINARY");
     binary_ = format == "BINARY";
     expect("DATASET", "UNSTRUCTURED_GRID");
-    Grid grid;
+    VtkGrid grid;
     while (!in_.at_end() && grid.types.empty()) read_section(grid);
     if (grid.types.empty()) in_.fail("the end of the file", "POINTS, CELLS and CELL_TYPES");
     if (grid.types.size() + 1 != grid.offsets.size()) in_.fail("another count of cell types", "one a cell");
@@ -52,7 +41,7 @@ class VtkReader {
     if (found_key != key || found != value) in_.fail("'" + found_key + " " + found + "'", key + " " + value);
   }
 
-  void read_section(Grid& grid) {
+  void read_section(VtkGrid& grid) {
     const std::string key = in_.word();
     if (key == "POINTS") {
       const long long count = in_.integer("point count", 0, kMaxCount);
@@ -74,7 +63,7 @@ class VtkReader {
     }
   }
 
-  void read_cells(Grid& grid) {
+  void read_cells(VtkGrid& grid) {
     const long long first = in_.integer("cell count", 0, kMaxCount);
     const long long second = in_.integer("size of the cell list", 0, kMaxCount);
     if (in_.peek() == "OFFSETS") {  // version 5.1: `first` offsets and `second` nodes
@@ -150,34 +139,9 @@ class VtkReader {
 
 TetFile read_vtk(const std::string& file) {
   VtkReader reader(file);
-  Grid grid = reader.read();
-  std::vector<std::size_t> solids;
-  bool quadratic = true;
-  for (std::size_t cell = 0; cell < grid.types.size(); ++cell) {
-    const int type = grid.types[cell];
-    const long long size = grid.offsets[cell + 1] - grid.offsets[cell];
-    if (flat_cell(type)) continue;
-    if ((type != kTet || size != 4) && (type != kQuadraticTet || size != 10)) {
-      reader.fail(
-          "cell " + std::to_string(cell) + " of type " + std::to_string(type) + " with " + std::to_string(size) + " nodes",
-          "tetrahedra: type 10 with 4 nodes or type 24 with 10");
-    }
-    solids.push_back(cell);
-    quadratic = quadratic && type == kQuadraticTet;
-  }
-  TetFile result{std::move(grid.points), Eigen::MatrixXi(quadratic ? 10 : 4, static_cast<Eigen::Index>(solids.size()))};
-  for (Eigen::Index tet = 0; tet < result.tets.cols(); ++tet) {
-    const auto first = static_cast<std::size_t>(grid.offsets[solids[static_cast<std::size_t>(tet)]]);
-    for (Eigen::Index i = 0; i < result.tets.rows(); ++i) {
-      const long long node = grid.nodes[first + static_cast<std::size_t>(i)];
-      if (node < 0 || node >= result.nodes.cols()) {
-        reader.fail("node " + std::to_string(node) + " in cell " + std::to_string(solids[static_cast<std::size_t>(tet)]),
-                    "0 to " + std::to_string(result.nodes.cols() - 1));
-      }
-      result.tets(i, tet) = static_cast<int>(node);
-    }
-  }
-  return result;
+  VtkGrid grid = reader.read();
+  return tets_of_grid(std::move(grid),
+                      [&](const std::string& found, const std::string& allowed) { reader.fail(found, allowed); });
 }
 
 }  // namespace tissue_stiffness

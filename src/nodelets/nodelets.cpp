@@ -7,6 +7,7 @@
 
 #include "nodes/estimator_node.hpp"
 #include "nodes/segmentation_node.hpp"
+#include "vtu/vtu_reader.hpp"
 
 namespace tissue_stiffness {
 
@@ -14,6 +15,7 @@ namespace tissue_stiffness {
 template <typename Node>
 class NodeletOf : public nodelet::Nodelet {
   void onInit() override {
+    accept_vtu_meshes();
     try {
       node_ = std::make_unique<Node>(getNodeHandle(), getPrivateNodeHandle());
     } catch (const std::exception& error) {

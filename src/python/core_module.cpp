@@ -1,6 +1,7 @@
 // The module `tissue_stiffness._core`: the public headers in Python, without ROS.
 #include "python/bindings.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "vtu/vtu_reader.hpp"
 
 namespace py = pybind11;
 
@@ -12,6 +13,7 @@ PYBIND11_MODULE(_core, module) {
   py::register_exception<NumericalError>(module, "NumericalError", PyExc_ArithmeticError).attr("__doc__") =
       "A computation could not be finished, as with a diverging step.";
   for (const char* error : {"InputError", "NumericalError"}) module.attr(error).attr("__module__") = "tissue_stiffness";
+  accept_vtu_meshes();
   bind_types(module);
   bind_model(module);
   bind_estimator(module);

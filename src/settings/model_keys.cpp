@@ -19,7 +19,7 @@ std::vector<KeySpec> mesh_keys() {
   return {
       required_key("mesh", Kind::map, "", "the body at rest: one of `file`, `revolve`, `extrude`, and the keys beside it"),
       plain_key("mesh.file", Kind::text, "",
-                "tetrahedra (.vtk, .msh, .inp, .node beside .ele) or a closed surface (.stl, .ply, .obj), from the "
+                "tetrahedra (.vtk, .vtu, .msh, .inp, .node beside .ele) or a closed surface (.stl, .ply, .obj), from the "
                 "model file's folder"),
       number_key("mesh.scale", "", kPositive, kInfinity, 1, "metres a unit of the file"),
       number_key("mesh.scale_tolerance", "", 0, 1, 0.005, "by which every length of the mesh may be off, 1 sigma"),

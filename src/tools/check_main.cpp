@@ -3,6 +3,7 @@
 #include "tools/check_setup.hpp"
 #include "tools/model_option.hpp"
 #include "tools/run_tool.hpp"
+#include "vtu/vtu_reader.hpp"
 
 int main(int argc, char** argv) {
   using namespace tissue_stiffness;
@@ -15,6 +16,7 @@ int main(int argc, char** argv) {
   app.add_flag("--quiet", quiet, "nothing where nothing is wrong");
   app.footer("Example: check model.yaml recording.bag");
   std::size_t found = 0;
+  accept_vtu_meshes();
   const int code = run_tool(app, argc, argv, [&] {
     const SetupFindings findings = check_setup(model.load(), recording);
     for (const SetupFinding& finding : findings) std::cout << finding.sentence << "\n";

@@ -26,6 +26,7 @@
 #include "tools/run_tool.hpp"
 #include "tools/stop_on_signals.hpp"
 #include "tools/versions.hpp"
+#include "vtu/vtu_reader.hpp"
 
 namespace {
 
@@ -97,6 +98,7 @@ int main(int argc, char** argv) {
   app.footer(std::string("Example: diagnose model.yaml recording.bag --output out --auto\n"
                          "Without ROS: diagnose model.yaml --data /tissue/vertices=points.csv --output out --auto\n") +
              exit_code_help);
+  accept_vtu_meshes();
   return run_tool(app, argc, argv, [&] {
     if (time_limit > 0.0) stop.end_after(time_limit);
     Diagnosis diagnosis;  // as long as nothing is known

@@ -12,6 +12,7 @@
 #include "tools/progress.hpp"
 #include "tools/run_tool.hpp"
 #include "tools/stop_on_signals.hpp"
+#include "vtu/vtu_reader.hpp"
 
 namespace {
 
@@ -67,6 +68,7 @@ int main(int argc, char** argv) {
                  "A film: estimate model.yaml --video film.mp4 --camera camera.yaml --output out\n"
                  "Several recordings: estimate a.yaml 1.bag 2.bag b.yaml 3.bag --predict 4.bag --output out\n") +
              exit_code_help);
+  accept_vtu_meshes();
   return run_tool(app, argc, argv, [&] {
     if (time_limit > 0.0) stop.end_after(time_limit);
     if (!many.file.empty()) {

@@ -12,6 +12,7 @@
 #include "tissue_stiffness/types/error.hpp"
 #include "tools/estimated_model.hpp"
 #include "tools/run_tool.hpp"
+#include "vtu/vtu_reader.hpp"
 
 namespace {
 
@@ -73,6 +74,7 @@ int main(int argc, char** argv) {
   app.add_flag("--quiet", quiet, "no word about what was written");
   app.footer(
       "Example: export out --to calculix -o liver.inp\nWhat the format cannot express is said on stderr and in the file.");
+  accept_vtu_meshes();
   return run_tool(app, argc, argv, [&] {
     const EstimatedModel estimated = load_estimated_model(results, given, recording);
     const Format& format = formats().at(to);

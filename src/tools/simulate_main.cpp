@@ -6,6 +6,7 @@
 #include "tools/progress.hpp"
 #include "tools/run_tool.hpp"
 #include "tools/simulate_scene.hpp"
+#include "vtu/vtu_reader.hpp"
 
 int main(int argc, char** argv) {
   using namespace tissue_stiffness;
@@ -20,6 +21,7 @@ int main(int argc, char** argv) {
   app.add_flag("--quiet", quiet, "no progress and no summary");
   app.add_flag("--json", json, "print the summary as JSON");
   app.footer("Example: simulate scene.yaml --output recording.bag --truth truth.yaml");
+  accept_vtu_meshes();
   return run_tool(app, argc, argv, [&] {
     option.check();
     const Scene scene = load_scene(option.file);

@@ -1,5 +1,6 @@
 // The file for ParaView, read back by VTK.
 #include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkFieldData.h>
@@ -10,8 +11,14 @@
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
+#include <atomic>
+#include <cstdio>
+#include <fstream>
+
 #include "example_model.hpp"
 #include "export/formats.hpp"
+#include "tissue_stiffness/meshing/mesh_io.hpp"
+#include "vtu/vtu_reader.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -33,6 +40,23 @@ std::vector<std::string> texts(vtkFieldData& data, const std::string& name) {
   std::vector<std::string> out;
   for (vtkIdType i = 0; array != nullptr && i < array->GetNumberOfValues(); ++i) out.push_back(array->GetValue(i));
   return out;
+}
+
+/// The mesh of a model's file, as a program reads it that accepts the format.
+TetMesh read_back(const ExportFile& exported, int order) {
+  accept_vtu_meshes();
+  const std::string file = testing::TempDir() + "read_back.vtu";
+  std::ofstream(file) << exported.text;
+  TetMesh mesh = load_tet_mesh(file, 1.0, order);
+  std::remove(file.c_str());
+  return mesh;
+}
+
+void expect_same(const TetMesh& found, const TetMesh& expected) {
+  EXPECT_EQ(found.nodes, expected.nodes);
+  EXPECT_EQ(found.tets, expected.tets);
+  EXPECT_EQ(found.facets, expected.facets);
+  EXPECT_EQ(found.corner_count, expected.corner_count);
 }
 
 class Vtu : public ::testing::TestWithParam<int> {
@@ -87,7 +111,28 @@ TEST_P(Vtu, GivesBackTheModel) {
   EXPECT_EQ(bar.remarks.size(), 1U);
 }
 
+TEST_P(Vtu, IsReadBackAsTheSameMesh) {
+  const auto model = bar_model(bar_effects(), mesh());
+  const ExportedModel bar = export_model(*model, model->parameters().known(), 12.0);
+  expect_same(read_back(vtu_file(bar), GetParam()), bar.mesh);
+}
+
 INSTANTIATE_TEST_SUITE_P(Orders, Vtu, ::testing::Values(1, 2));
+
+// VTK shares large work among threads, which the process that reads the file does not have.
+TEST(VtuMesh, IsReadBackWhereThreadsHaveRun) {
+  std::atomic<int> sum{0};
+  tbb::parallel_for(0, 1000, [&](int i) { sum += i; });
+  EXPECT_EQ(sum, 499500);
+  ExportedModel bar = export_bar(bar_effects());
+  bar.mesh = make_box_mesh({0.1, 0.1, 0.1}, 20, 20, 20, 1);
+  const auto tets = static_cast<Eigen::Index>(bar.mesh.tet_count());
+  bar.fixed.assign(static_cast<std::size_t>(bar.mesh.node_count()), 0);
+  bar.loads.clear();
+  bar.weight.setZero(3, bar.mesh.node_count());
+  bar.young_modulus = bar.poisson_ratio = bar.density = Eigen::VectorXd::Constant(tets, 0.25);
+  expect_same(read_back(vtu_file(bar), 1), bar.mesh);
+}
 
 TEST(VtuMotion, IsOnTheNodesThatAreMoved) {
   ExportedModel bar = export_bar(bar_effects());

@@ -16,6 +16,8 @@ from tf2_msgs.msg import TFMessage
 from tissue_stiffness.msg import Contour, TetMesh
 from tissue_stiffness.srv import BuildMesh, SaveMesh
 
+MESHES = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), 'data', 'meshing')
+
 
 def service(name, kind):
     rospy.wait_for_service(name, 30)
@@ -58,6 +60,16 @@ class MeshTest(unittest.TestCase):
         original = rospy.wait_for_message('mesh', TetMesh, 30)
         self.assertEqual(larger.tetrahedra, again.tetrahedra)
         self.assertAlmostEqual(max(p.x for p in mesh.nodes), 2 * max(p.x for p in original.nodes), places=9)
+
+    def test_meshes_of_other_programs_are_read(self):
+        build = service('build_mesh', BuildMesh)
+        for file in ('box.vtu', 'box.inp'):
+            shutil.copy(os.path.join(MESHES, file), FOLDER)
+            answer = build(file=file, scale=0.01)
+            os.remove(os.path.join(FOLDER, file))
+            self.assertTrue(answer.success, answer.message)
+            self.assertEqual(answer.tetrahedra, 12)
+        self.assertTrue(build().success)
 
     def test_wrong_requests_are_answered(self):
         build, save = service('build_mesh', BuildMesh), service('save_mesh', SaveMesh)

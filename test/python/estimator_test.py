@@ -1,6 +1,7 @@
 """The estimator in Python: it gives what the tool gives, and names what is wrong with its input."""
 import json
 import os
+import shutil
 import subprocess
 import sys
 import threading
@@ -8,7 +9,7 @@ import unittest
 
 import numpy as np
 import tissue_stiffness as ts
-from bench import GRAVITY, INERTIA, MODEL, PULL, PULLED, SEEN, Bench, arrays, elasticity, unknown
+from bench import GRAVITY, INERTIA, MODEL, PULL, PULLED, ROOT, SEEN, Bench, arrays, elasticity, unknown
 
 MODULUS = 'elasticity.young_modulus'
 MOTION = 1e-3 * np.linspace(0, 1, 20)
@@ -107,6 +108,12 @@ class EstimatorTest(Bench):
         self.refuses(lambda: inside.with_effects(course), 'course.file: found /etc/hostname')
         for model in (ts.Model(file, allow_outside=True), ts.Model.from_text(text, self.path('deep'), allow_outside=True)):
             self.assertEqual(ts.build_mesh(model.with_effects([GRAVITY[2:]])).corner_count, 99)
+
+    def test_meshes_of_other_programs_are_read(self):
+        for name in ('box.vtu', 'box.inp'):
+            shutil.copy(os.path.join(ROOT, 'test', 'data', 'meshing', name), self.path(name))
+            text = MODEL.replace('bar.vtk', name) + INERTIA + elasticity(unknown(4e5)) + SEEN
+            self.assertEqual(len(ts.build_mesh(ts.Model.from_text(text, self.path('.'))).tets), 12)
 
     def test_arrays_that_do_not_fit_are_named(self):
         estimator = ts.Estimator(self.write_model(INERTIA + PULL + elasticity(unknown(2.4e4))))

@@ -61,6 +61,20 @@ TEST_F(Export, WritesEveryFormatFromAFolderOrAFile) {
   EXPECT_NE(read("out/model.inp").find("** traction on tip: in sum 0, 0, 0.3 N"), std::string::npos);
 }
 
+TEST_F(Export, WritesMeshesThatTheToolsRead) {
+  estimate();
+  for (const auto& [format, file] : {std::pair<std::string, std::string>{"vtu", "model.vtu"}, {"calculix", "model.inp"}}) {
+    ASSERT_EQ(call("export " + path("out") + " --quiet --to " + format).text, "");
+    std::string model = read("model.yaml");
+    write("again.yaml", model.replace(model.find("bar.vtk"), 7, "out/" + file));
+    EXPECT_EQ(call("check " + path("again.yaml")).text, "nothing found\n") << file;
+  }
+  std::string model = read("model.yaml");
+  write("again.yaml", model.replace(model.find("bar.vtk"), 7, "out/model.vtu"));
+  call("estimate " + path("again.yaml") + " " + path("r.bag") + " --quiet --output " + path("again"));
+  EXPECT_EQ(read("again/estimates.csv"), read("out/estimates.csv"));
+}
+
 TEST_F(Export, TakesTheLoadsOfAnInstant) {
   estimate();
   const auto pulled = [&](const std::string& at) {

@@ -34,7 +34,7 @@ TetFile read_inp(const std::string& file);
 /// Reads tetrahedra from a file. Throws InputError, naming the file and the place.
 using TetReader = std::function<TetFile(const std::string& file)>;
 
-/// Lets load_tet_mesh read files of a further ending, such as ".abc". It is to be called before other threads load meshes.
+/// Lets load_tet_mesh read files of a further ending, in lower case with its dot, such as ".abc".
 void add_tet_reader(const std::string& ending, const TetReader& reader);
 
 /// Returns the mesh of a tetrahedral file (by its ending: .vtk, .node, .ele, .msh, .inp, or one that was added), with
