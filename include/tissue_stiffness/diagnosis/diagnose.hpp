@@ -15,6 +15,7 @@ namespace tissue_stiffness {
 struct FittedModel;
 class RecordingFit;
 
+/// What a diagnosis does, and who hears of it.
 struct DiagnosisOptions {
   std::vector<std::string> add;     ///< effects to add in turn, whatever the verdict
   std::vector<std::string> ignore;  ///< effects that are not searched for

@@ -27,23 +27,29 @@ struct MeshSettings {
   double depth = 0.0;                               ///< extrude: thickness along the viewing direction [m]
 };
 
+/// Between two corners [m].
 struct BoxShape {
   Eigen::Vector3d min, max;
 };
+/// Around a centre [m].
 struct SphereShape {
   Eigen::Vector3d center;
   double radius;
 };
+/// Around a centre, with half axes along x, y and z [m].
 struct EllipsoidShape {
   Eigen::Vector3d center, radii;
 };
+/// On one side of a plane through `point` [m]: (x - point) . normal <= 0.
 struct HalfSpaceShape {
   Eigen::Vector3d point, normal;
-};  ///< inside: (x - point) . normal <= 0
+};
+/// Vertices by their numbers in the mesh.
 struct VertexShape {
   std::vector<int> vertices;
 };
 
+/// A named part of the mesh at rest.
 struct RegionSettings {
   std::string name;
   std::variant<BoxShape, SphereShape, EllipsoidShape, HalfSpaceShape, VertexShape> shape;
@@ -62,6 +68,7 @@ struct PixelBox {
   int width = 0, height = 0;
 };
 
+/// How the outline of the tissue is found in images.
 struct SegmentationSettings {
   enum class Kind { silhouette, cavity, mask };
   enum class Body { bright, dark, colour };
@@ -90,6 +97,7 @@ struct DepthCameraSettings {
   int neighbours = 0;   ///< a point with fewer others around it is left out
 };
 
+/// One entry of the list `observations`: a sensor and its errors.
 struct ObservationSettings {
   using Kind = ObservationKind;
   enum class Projection { silhouette, slice };
@@ -112,11 +120,13 @@ struct ObservationSettings {
   double rate = 0.0;   ///< the same: most measurements a second [Hz]
 };
 
+/// Settings under `time`.
 struct TimeSettings {
   double start = 0.0;  ///< when the body was at rest and undeformed, after the recording's first stamp [s]
   double step = 0.0;   ///< integration step [s]; 0: chosen automatically
 };
 
+/// How the body moves when the recording begins.
 struct InitialSettings {
   enum class Kind { rest, velocity, from_frames };
   Kind kind = Kind::rest;

@@ -51,7 +51,7 @@ class Value {
   const Value& at(const std::string& key) const;
   const std::vector<Value>& items() const;  ///< throws InputError unless this is a list; marks as read
 
-  // Each conversion marks the value as read. It throws InputError(path, shown, allowed) when the value does not fit.
+  /// Each conversion marks the value as read. It throws InputError(path, shown, allowed) when the value does not fit.
   double as_number(double lower, double upper, const std::string& unit) const;
   int as_integer(int lower, int upper) const;
   bool as_boolean() const;

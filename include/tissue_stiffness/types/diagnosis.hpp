@@ -23,6 +23,7 @@ struct MissingEffect {
   double z = std::numeric_limits<double>::quiet_NaN();  ///< statistic of the residual's test, for the most probable one
   double held_out_rms_before = 0.0;                     ///< [m]
   double held_out_rms_after = std::numeric_limits<double>::quiet_NaN();  ///< [m]; NaN without a refit
+  /// An effect whose tangent is nearly the same, with the cosine between both.
   struct Confusable {
     std::string effect;
     double cosine = 0.0;
