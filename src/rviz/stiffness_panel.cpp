@@ -1,23 +1,21 @@
 #include "rviz/stiffness_panel.hpp"
 
 #include <QHBoxLayout>
-#include <QHeaderView>
 #include <QLabel>
 #include <QLineEdit>
 #include <QPushButton>
 #include <QTimer>
-#include <QTreeWidget>
 #include <QVBoxLayout>
 #include <functional>
 #include <pluginlib/class_list_macros.hpp>
 
 #include "rviz/curve_view.hpp"
+#include "rviz/effect_list.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
 constexpr int kRefreshMilliseconds = 50;
-constexpr int kEffectRole = Qt::UserRole, kAddedRole = Qt::UserRole + 1;
 
 QString text(const std::string& from) {
   return QString::fromStdString(from);
@@ -32,26 +30,6 @@ void show_badge(QLabel& label, const Badge& badge) {
 QLabel* name_it(QLabel* label, const char* name) {
   label->setObjectName(name);
   return label;
-}
-
-QTreeWidgetItem* item(const EffectRow& row) {
-  auto* out = new QTreeWidgetItem;
-  out->setText(0, (row.added ? QString("✓ ") : QString()) + text(row.title));
-  out->setText(1, row.added ? QString("in the model") : text(row.probability));
-  if (!row.added && !row.effect.empty()) out->setText(2, QString::number(100.0 * row.explained, 'f', 0) + " %");
-  out->setText(3, text(row.error));
-  out->setTextAlignment(1, Qt::AlignRight | Qt::AlignVCenter);
-  out->setTextAlignment(2, Qt::AlignRight | Qt::AlignVCenter);
-  out->setData(0, kEffectRole, text(row.effect));
-  out->setData(0, kAddedRole, row.added);
-  for (int column = 0; column < 4; ++column) out->setToolTip(column, text(row.details));
-  if (row.suspect || row.added) {
-    QFont bold = out->font(0);
-    bold.setBold(true);
-    out->setFont(0, bold);
-  }
-  if (row.added) out->setForeground(0, QColor(0x2a, 0x8f, 0x57));
-  return out;
 }
 
 }  // namespace
@@ -71,11 +49,8 @@ StiffnessPanel::StiffnessPanel(QWidget* parent) : rviz::Panel(parent), calls_(st
   layout->addLayout(missing);
   layout->addWidget(summary_ = name_it(new QLabel(this), "summary"));
   summary_->setWordWrap(true);
-  layout->addWidget(effects_ = new QTreeWidget(this), 4);
+  layout->addWidget(effects_ = new EffectList(this), 4);
   effects_->setObjectName("effects");
-  effects_->setHeaderLabels({"effect", "probability", "explains", "error on unseen frames"});
-  effects_->setRootIsDecorated(false);
-  effects_->header()->setSectionResizeMode(QHeaderView::ResizeToContents);
   build_buttons();
 
   auto* place = new QHBoxLayout;
@@ -225,14 +200,7 @@ void StiffnessPanel::show_effects() {
   effects_changed_ = false;
   show_badge(*verdict_badge_, state_.verdict());
   summary_->setText(text(state_.summary()));
-  const QTreeWidgetItem* before = effects_->currentItem();
-  const QString selected = before != nullptr ? before->data(0, kEffectRole).toString() : QString();
-  effects_->clear();
-  for (const EffectRow& row : state_.rows()) {
-    QTreeWidgetItem* line = item(row);
-    effects_->addTopLevelItem(line);
-    if (!selected.isEmpty() && text(row.effect) == selected) effects_->setCurrentItem(line);
-  }
+  effects_->show_rows(state_.rows());
   misfit_view_->show_curve(state_.misfit_curve(), "mm", state_.noise_floor());
   add_->setEnabled(!waiting_ && !chosen(false).empty());
   remove_->setEnabled(!waiting_ && !chosen(true).empty());
@@ -241,9 +209,8 @@ void StiffnessPanel::show_effects() {
 }
 
 std::string StiffnessPanel::chosen(bool added) const {
-  const QTreeWidgetItem* selected = effects_->currentItem();
-  const QString effect = selected != nullptr ? selected->data(0, kEffectRole).toString() : QString();
-  if (!effect.isEmpty() && selected->data(0, kAddedRole).toBool() == added) return effect.toStdString();
+  const std::string selected = effects_->selected(added);
+  if (!selected.empty()) return selected;
   return added ? state_.last_added() : state_.best_candidate();
 }
 

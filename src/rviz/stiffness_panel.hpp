@@ -15,11 +15,11 @@
 class QLabel;
 class QLineEdit;
 class QPushButton;
-class QTreeWidget;
 
 namespace tissue_stiffness {
 
 class CurveView;
+class EffectList;
 
 /// rviz panel of one estimator. It shows E with its interval, the misfit, the state and what the model misses. Its buttons
 /// start a diagnosis, add and remove effects, and reset the estimator. Messages are processed in the GUI's thread, and
@@ -68,7 +68,7 @@ class StiffnessPanel : public rviz::Panel {
          *state_reason_ = nullptr;
   QLabel *verdict_badge_ = nullptr, *summary_ = nullptr, *status_ = nullptr;
   CurveView *modulus_view_ = nullptr, *misfit_view_ = nullptr;
-  QTreeWidget* effects_ = nullptr;
+  EffectList* effects_ = nullptr;
   QPushButton *diagnose_ = nullptr, *add_ = nullptr, *remove_ = nullptr, *reset_ = nullptr;
   QLineEdit* namespace_ = nullptr;
   std::unique_ptr<ServiceCalls> calls_;
