@@ -1,132 +1,148 @@
 #include "rviz/curve_view.hpp"
 
+#include <qwt_legend.h>
+#include <qwt_plot_canvas.h>
+#include <qwt_plot_curve.h>
+#include <qwt_plot_grid.h>
+#include <qwt_plot_intervalcurve.h>
+#include <qwt_plot_marker.h>
+#include <qwt_plot_textlabel.h>
+#include <qwt_scale_draw.h>
+#include <qwt_symbol.h>
+#include <qwt_text.h>
+
 #include <QFontMetrics>
-#include <QPainter>
-#include <QPainterPath>
 #include <algorithm>
 #include <cmath>
 
 namespace tissue_stiffness {
+namespace {
 
-/// Mapping from data to positions in the widget.
-struct CurveView::Axes {
-  QRectF plot;
-  LiveCurve::Range times, values;
+constexpr double kRoom = 0.06;  // of the values' span, above and below them
+constexpr int kNewestPixels = 8, kLegendPixels = 16;
 
-  double x(double time) const { return plot.left() + (time - times.low) / (times.high - times.low) * plot.width(); }
-  double y(double value) const { return plot.bottom() - (value - values.low) / (values.high - values.low) * plot.height(); }
-  QPointF at(double time, double value) const { return {x(time), std::clamp(y(value), plot.top(), plot.bottom())}; }
-};
+QFont small_font(const QFont& font) {
+  QFont out = font;
+  out.setPointSizeF(std::max(7.0, 0.85 * out.pointSizeF()));
+  return out;
+}
 
-CurveView::CurveView(QString title, QColor colour, QWidget* parent)
-    : QWidget(parent), title_(std::move(title)), colour_(std::move(colour)) {
+QwtText label(const QString& text, const QFont& font, const QColor& colour) {
+  QwtText out(text);
+  out.setFont(font);
+  out.setColor(colour);
+  return out;
+}
+
+QColor with_alpha(QColor colour, double alpha) {
+  colour.setAlphaF(alpha);
+  return colour;
+}
+
+void name_in_legend(QwtPlotItem& item, bool named) {
+  item.setItemAttribute(QwtPlotItem::Legend, named);
+  item.plot()->updateLegend(&item);  // which Qwt 6.1 leaves out where an item leaves the legend
+}
+
+QwtPlotCurve* attach_line(QwtPlot* plot, const QPen& pen) {
+  auto* out = new QwtPlotCurve;
+  out->setPen(pen);
+  out->setRenderHint(QwtPlotItem::RenderAntialiased);
+  out->setLegendAttribute(QwtPlotCurve::LegendShowLine);
+  out->setLegendIconSize({kLegendPixels, kNewestPixels});
+  out->attach(plot);
+  return out;
+}
+
+QwtPlotIntervalCurve* attach_band(QwtPlot* plot, const QString& name, const QColor& colour) {
+  auto* out = new QwtPlotIntervalCurve(name);
+  out->setStyle(QwtPlotIntervalCurve::Tube);
+  out->setPen(QPen(Qt::NoPen));
+  out->setBrush(with_alpha(colour, 0.3));
+  out->setLegendIconSize({kLegendPixels, kNewestPixels});
+  out->attach(plot);
+  name_in_legend(*out, !name.isEmpty());
+  return out;
+}
+
+}  // namespace
+
+CurveView::CurveView(const QColor& colour, const QString& interval, const QString& floor, QWidget* parent)
+    : QwtPlot(parent) {
+  const QColor text = palette().color(QPalette::Text);
+  setFont(small_font(font()));
   setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Expanding);
+  setCanvasBackground(palette().brush(QPalette::Base));
+  static_cast<QwtPlotCanvas*>(canvas())->setFrameStyle(QFrame::NoFrame);
+  insertLegend(new QwtLegend, QwtPlot::TopLegend);
+  for (const int axis : {QwtPlot::xBottom, QwtPlot::yLeft}) {
+    setAxisFont(axis, font());
+    setAxisMaxMinor(axis, 0);
+  }
+  axisScaleDraw(QwtPlot::yLeft)->setMinimumExtent(QFontMetrics(font()).horizontalAdvance("0000.00"));
+  setAxisTitle(QwtPlot::xBottom, label("time of the run [s]", font(), palette().color(QPalette::WindowText)));
+  setAxisMaxMajor(QwtPlot::yLeft, 5);
+  auto* grid = new QwtPlotGrid;
+  grid->setPen(with_alpha(text, 0.15), 1.0);
+  grid->attach(this);
+  band_ = attach_band(this, interval, colour);
+  floor_ = attach_line(this, QPen(text, 1.5, Qt::DashLine));
+  floor_->setTitle(floor);
+  line_ = attach_line(this, QPen(colour, 2.0));
+  newest_ = attach_line(this, QPen(Qt::NoPen));
+  newest_->setSymbol(new QwtSymbol(QwtSymbol::Ellipse, colour, QPen(colour), QSize(kNewestPixels, kNewestPixels)));
+  name_in_legend(*newest_, false);
+  waiting_ = new QwtPlotTextLabel;
+  waiting_->setText(label("waiting for frames", font(), palette().color(QPalette::Disabled, QPalette::Text)));
+  waiting_->attach(this);
 }
 
-void CurveView::show_curve(const LiveCurve& curve, const QString& unit, double floor) {
-  curve_ = curve;
-  unit_ = unit;
-  floor_ = floor;
-  update();
+void CurveView::show_curve(const LiveCurve& curve, const QString& name, const QString& axis, double floor) {
+  const double start = curve.times().low;
+  QVector<QPointF> values;
+  QVector<QwtIntervalSample> intervals;
+  for (const LiveCurve::Point& point : curve.points()) {
+    const double time = point.time - start;
+    values.append({time, point.value});
+    intervals.append({time, std::isfinite(point.lower) ? point.lower : point.value,
+                      std::isfinite(point.upper) ? point.upper : point.value});
+  }
+  line_->setTitle(name);
+  line_->setSamples(values);
+  newest_->setSamples(values.mid(values.size() - 1));
+  band_->setSamples(intervals);
+  waiting_->setVisible(values.isEmpty());
+  const bool has_floor = std::isfinite(floor) && !values.isEmpty();
+  name_in_legend(*floor_, has_floor);
+  floor_->setSamples(has_floor ? QVector<QPointF>{{0.0, floor}, {curve.times().high - start, floor}} : QVector<QPointF>());
+  setAxisTitle(QwtPlot::yLeft, label(axis, font(), palette().color(QPalette::WindowText)));
+  mark_events(curve);
+  scale_axes(curve, floor);
+  replot();
 }
 
-void CurveView::paintEvent(QPaintEvent*) {
-  QPainter painter(this);
-  painter.setRenderHint(QPainter::Antialiasing);
-  QFont small = font();
-  small.setPointSizeF(std::max(7.0, 0.85 * small.pointSizeF()));
-  painter.setFont(small);
-  const QFontMetrics metrics(small);
-  const double line = metrics.height();
-  const double left = metrics.horizontalAdvance("0000.0");
-  Axes axes{QRectF(left, line + 6, width() - left - 10, height() - 2 * line - 12), curve_.times(), curve_.values()};
-  const bool near_floor = floor_ < axes.values.low && axes.values.low > 0.0;
-  if (near_floor) axes.values.low = 0.0;
-  const double room = 0.06 * (axes.values.high - axes.values.low);
-  axes.values.high += room;
-  if (!near_floor) axes.values.low -= room;
-  painter.setPen(palette().color(QPalette::WindowText));
-  painter.drawText(QRectF(4, 0, width() - 8, line), Qt::AlignLeft, unit_.isEmpty() ? title_ : title_ + " [" + unit_ + "]");
-  painter.fillRect(axes.plot, palette().color(QPalette::Base));
-  if (curve_.points().empty()) {
-    painter.setPen(palette().color(QPalette::Disabled, QPalette::WindowText));
-    painter.drawText(axes.plot, Qt::AlignCenter, "waiting for frames");
-    return;
-  }
-  draw_axes(painter, axes);
-  painter.setClipRect(axes.plot.adjusted(0, -2, 6, 2));
-  draw_curve(painter, axes);
-  draw_events(painter, axes);
+void CurveView::scale_axes(const LiveCurve& curve, double floor) {
+  LiveCurve::Range values = curve.values();
+  const bool near_floor = floor < values.low && values.low > 0.0;
+  if (near_floor) values.low = 0.0;
+  const double room = kRoom * (values.high - values.low);
+  setAxisScale(QwtPlot::yLeft, near_floor ? values.low : values.low - room, values.high + room);
+  setAxisScale(QwtPlot::xBottom, 0.0, curve.times().high - curve.times().low);
 }
 
-void CurveView::draw_axes(QPainter& painter, const Axes& axes) const {
-  const double line = painter.fontMetrics().height();
-  const QColor text = palette().color(QPalette::WindowText);
-  QColor grid = text;
-  grid.setAlphaF(0.15);
-  for (const double value : axis_ticks(axes.values, std::max(2, static_cast<int>(axes.plot.height() / (1.6 * line))))) {
-    painter.setPen(grid);
-    painter.drawLine(QPointF(axes.plot.left(), axes.y(value)), QPointF(axes.plot.right(), axes.y(value)));
-    painter.setPen(text);
-    painter.drawText(QRectF(0, axes.y(value) - 0.5 * line, axes.plot.left() - 4, line), Qt::AlignRight | Qt::AlignVCenter,
-                     QString::number(std::abs(value) < 1e-12 ? 0.0 : value, 'g', 4));
-  }
-  const LiveCurve::Range since_start{0.0, axes.times.high - axes.times.low};
-  for (const double time : axis_ticks(since_start, std::max(2, static_cast<int>(axes.plot.width() / 60.0)))) {
-    const double x = axes.x(axes.times.low + time);
-    painter.setPen(grid);
-    painter.drawLine(QPointF(x, axes.plot.top()), QPointF(x, axes.plot.bottom()));
-    painter.setPen(text);
-    painter.drawText(QRectF(std::min(x - 30, width() - 62.0), axes.plot.bottom() + 2, 60, line), Qt::AlignCenter,
-                     QString::number(time, 'g', 4) + " s");
-  }
-}
-
-void CurveView::draw_curve(QPainter& painter, const Axes& axes) const {
-  const std::vector<LiveCurve::Point>& points = curve_.points();
-  QPainterPath path;
-  QPolygonF band;
-  for (const LiveCurve::Point& point : points) {
-    const QPointF at = axes.at(point.time, point.value);
-    if (band.isEmpty()) {
-      path.moveTo(at);
-    } else {
-      path.lineTo(at);
-    }
-    band << axes.at(point.time, std::isfinite(point.upper) ? point.upper : point.value);
-  }
-  for (auto point = points.rbegin(); point != points.rend(); ++point) {
-    band << axes.at(point->time, std::isfinite(point->lower) ? point->lower : point->value);
-  }
-  QColor light = colour_;
-  light.setAlphaF(0.25);
-  painter.setPen(Qt::NoPen);
-  painter.setBrush(light);
-  painter.drawPolygon(band);
-  if (std::isfinite(floor_) && floor_ < axes.values.high) {
-    painter.setPen(QPen(palette().color(QPalette::WindowText), 1, Qt::DashLine));
-    painter.drawLine(QPointF(axes.plot.left(), axes.y(floor_)), QPointF(axes.plot.right(), axes.y(floor_)));
-  }
-  painter.setBrush(Qt::NoBrush);
-  painter.setPen(QPen(colour_, 2));
-  painter.drawPath(path);
-  painter.setPen(Qt::NoPen);
-  painter.setBrush(colour_);
-  painter.drawEllipse(axes.at(points.back().time, points.back().value), 4, 4);
-}
-
-void CurveView::draw_events(QPainter& painter, const Axes& axes) const {
-  const double line = painter.fontMetrics().height();
-  const QColor text = palette().color(QPalette::WindowText);
-  for (const LiveCurve::Event& event : curve_.events()) {
-    const double x = axes.x(event.time);
-    painter.setPen(QPen(text, 1, Qt::DotLine));
-    painter.drawLine(QPointF(x, axes.plot.top()), QPointF(x, axes.plot.bottom()));
-    painter.setPen(text);
-    const QString label = QString::fromStdString(event.text);
-    const double room = painter.fontMetrics().horizontalAdvance(label) + 6.0;
-    const bool to_the_left = x + room > axes.plot.right();
-    painter.drawText(QRectF(to_the_left ? x - room : x + 4, axes.plot.top(), room, line), Qt::AlignLeft, label);
+void CurveView::mark_events(const LiveCurve& curve) {
+  detachItems(QwtPlotItem::Rtti_PlotMarker);
+  const LiveCurve::Range times = curve.times();
+  const QColor text = palette().color(QPalette::Text);
+  for (const LiveCurve::Event& event : curve.events()) {
+    auto* mark = new QwtPlotMarker;
+    mark->setLineStyle(QwtPlotMarker::VLine);
+    mark->setLinePen(text, 1.0, Qt::DotLine);
+    mark->setXValue(event.time - times.low);
+    mark->setLabel(label(QString::fromStdString(event.text), font(), text));
+    const bool in_right_half = event.time > 0.5 * (times.low + times.high);
+    mark->setLabelAlignment(Qt::AlignTop | (in_right_half ? Qt::AlignLeft : Qt::AlignRight));
+    mark->attach(this);
   }
 }
 

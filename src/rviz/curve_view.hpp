@@ -1,40 +1,41 @@
 #pragma once
 
+#include <qwt_plot.h>
+
 #include <QColor>
 #include <QString>
-#include <QWidget>
 #include <limits>
 
 #include "rviz/live_curve.hpp"
 
-class QPainter;
+class QwtPlotCurve;
+class QwtPlotIntervalCurve;
+class QwtPlotTextLabel;
 
 namespace tissue_stiffness {
 
-/// Draws a live curve with its interval, round axis values and marked events, in the colours of the window's palette.
-class CurveView : public QWidget {
+/// Plots a live curve with its interval, its newest point, a level and marked events over the time of the run. A legend
+/// names what is shown. Text and background have the colours of the window's palette.
+class CurveView : public QwtPlot {
  public:
-  /// `title`: text above the curve; the unit is added.
-  CurveView(QString title, QColor colour, QWidget* parent);
+  /// `interval`, `floor`: names of the interval and of the level in the legend; empty: the curve has none.
+  CurveView(const QColor& colour, const QString& interval, const QString& floor, QWidget* parent);
 
+  /// `name`: of the curve, in the legend. `axis`: title of the vertical axis, with the unit of the values.
   /// `floor`: a level that is drawn as a dashed line; NaN for none.
-  void show_curve(const LiveCurve& curve, const QString& unit, double floor = std::numeric_limits<double>::quiet_NaN());
-  QSize sizeHint() const override { return {320, 130}; }
-  QSize minimumSizeHint() const override { return {160, 90}; }
-
- protected:
-  void paintEvent(QPaintEvent* event) override;
+  void show_curve(const LiveCurve& curve, const QString& name, const QString& axis,
+                  double floor = std::numeric_limits<double>::quiet_NaN());
+  QSize sizeHint() const override { return {320, 170}; }
+  QSize minimumSizeHint() const override { return {160, 120}; }
 
  private:
-  struct Axes;
-  void draw_axes(QPainter& painter, const Axes& axes) const;
-  void draw_curve(QPainter& painter, const Axes& axes) const;
-  void draw_events(QPainter& painter, const Axes& axes) const;
+  void scale_axes(const LiveCurve& curve, double floor);
+  void mark_events(const LiveCurve& curve);
 
-  QString title_, unit_;
-  QColor colour_;
-  LiveCurve curve_;
-  double floor_ = std::numeric_limits<double>::quiet_NaN();
+  // The plot owns what is attached to it.
+  QwtPlotIntervalCurve* band_;
+  QwtPlotCurve *floor_, *line_, *newest_;
+  QwtPlotTextLabel* waiting_;
 };
 
 }  // namespace tissue_stiffness

@@ -66,19 +66,4 @@ LiveCurve::Range LiveCurve::values() const {
   return out;
 }
 
-std::vector<double> axis_ticks(const LiveCurve::Range& range, int most) {
-  const double span = range.high - range.low;
-  if (!(span > 0.0) || !std::isfinite(span) || most < 1) return {};
-  const double power = std::pow(10.0, std::floor(std::log10(span / most)));
-  for (const double factor : {1.0, 2.0, 5.0, 10.0, 20.0, 50.0}) {
-    const double step = factor * power;
-    const double first = std::ceil(range.low / step - 1e-9), last = std::floor(range.high / step + 1e-9);
-    if (last - first + 1.0 > most) continue;
-    std::vector<double> out;
-    for (double i = first; i <= last; i += 1.0) out.push_back(i * step);
-    return out;
-  }
-  return {};
-}
-
 }  // namespace tissue_stiffness

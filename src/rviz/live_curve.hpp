@@ -50,7 +50,4 @@ class LiveCurve {
   std::vector<Event> events_;
 };
 
-/// Returns values inside the range at steps of 1, 2 or 5 times a power of ten, at most `most` of them.
-std::vector<double> axis_ticks(const LiveCurve::Range& range, int most);
-
 }  // namespace tissue_stiffness

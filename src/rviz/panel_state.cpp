@@ -130,6 +130,12 @@ std::string PanelState::quantity() const {
   return estimate_.names[shown_];
 }
 
+std::string PanelState::modulus_axis() const {
+  if (!estimated_) return "E";
+  const std::string& name = estimate_.names[shown_];
+  return (name == kModulus ? "E" : name.substr(name.find('.') + 1)) + (unit_.empty() ? "" : " [" + unit_ + "]");
+}
+
 Badge PanelState::state() const {
   static const std::map<std::string, Badge> badges{{"no_data", {"no data", 0x7a8088}},
                                                    {"converging", {"converging", 0x2f74c0}},

@@ -66,6 +66,8 @@ class PanelState {
 
   const LiveCurve& modulus_curve() const { return modulus_; }  ///< [unit of the headline]
   const std::string& modulus_unit() const { return unit_; }
+  /// Returns the title of the curve's axis, "E [kPa]", or "beta [ms]" for another parameter.
+  std::string modulus_axis() const;
   const LiveCurve& misfit_curve() const { return misfit_curve_; }  ///< [mm]
   /// Returns the rms that noise alone would leave [mm]; NaN before a diagnosis.
   double noise_floor() const;

@@ -17,6 +17,9 @@ namespace {
 
 constexpr int kRefreshMilliseconds = 50;
 
+// Two of the colours of Okabe and Ito, which colour-blind people tell apart.
+const QColor kBlue(0x00, 0x72, 0xb2), kVermilion(0xd5, 0x5e, 0x00);
+
 QString text(const std::string& from) {
   return QString::fromStdString(from);
 }
@@ -40,8 +43,8 @@ StiffnessPanel::StiffnessPanel(QWidget* parent) : rviz::Panel(parent), calls_(st
   layout->setContentsMargins(8, 8, 8, 8);
   build_header();
   build_legend();
-  layout->addWidget(modulus_view_ = new CurveView("E with its 95 % band", QColor(0x2f, 0x74, 0xc0), this), 3);
-  layout->addWidget(misfit_view_ = new CurveView("misfit", QColor(0xc7, 0x77, 0x00), this), 3);
+  layout->addWidget(modulus_view_ = new CurveView(kBlue, "95 % interval", "", this), 4);
+  layout->addWidget(misfit_view_ = new CurveView(kVermilion, "", "noise alone", this), 4);
 
   auto* missing = new QHBoxLayout;
   missing->addWidget(new QLabel("<b>What the model misses</b>", this), 1);
@@ -192,8 +195,12 @@ void StiffnessPanel::show_estimate() {
   misfit_->setText(text(state_.misfit()));
   show_badge(*state_badge_, state_.state());
   state_reason_->setText(text(state_.state_reason()));
-  modulus_view_->show_curve(state_.modulus_curve(), text(state_.modulus_unit()));
-  misfit_view_->show_curve(state_.misfit_curve(), "mm", state_.noise_floor());
+  modulus_view_->show_curve(state_.modulus_curve(), text(state_.quantity()), text(state_.modulus_axis()));
+  show_misfit();
+}
+
+void StiffnessPanel::show_misfit() {
+  misfit_view_->show_curve(state_.misfit_curve(), "misfit (rms)", "misfit [mm]", state_.noise_floor());
 }
 
 void StiffnessPanel::show_effects() {
@@ -201,7 +208,7 @@ void StiffnessPanel::show_effects() {
   show_badge(*verdict_badge_, state_.verdict());
   summary_->setText(text(state_.summary()));
   effects_->show_rows(state_.rows());
-  misfit_view_->show_curve(state_.misfit_curve(), "mm", state_.noise_floor());
+  show_misfit();
   add_->setEnabled(!waiting_ && !chosen(false).empty());
   remove_->setEnabled(!waiting_ && !chosen(true).empty());
   diagnose_->setEnabled(!waiting_);

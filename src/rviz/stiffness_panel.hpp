@@ -42,6 +42,7 @@ class StiffnessPanel : public rviz::Panel {
   void ask_what_was_added();
   void take_messages();
   void show_estimate();
+  void show_misfit();
   void show_effects();
   /// Returns the effect of the selected row if it is an added one (or not, for `added` = false). Otherwise returns the
   /// button's default.

@@ -79,25 +79,5 @@ TEST(LiveCurve, RangesAreNeverEmpty) {
   EXPECT_LT(curve.times().low, curve.times().high);
 }
 
-TEST(Ticks, AreRoundInsideAndFew) {
-  const std::vector<double> found = axis_ticks({0.3, 9.7}, 5);
-  ASSERT_EQ(found.size(), 4U);
-  EXPECT_NEAR(found.front(), 2.0, 1e-12);
-  EXPECT_NEAR(found.back(), 8.0, 1e-12);
-  for (const double span : {1e-6, 0.37, 1.0, 55.0, 1e9}) {
-    const LiveCurve::Range range{1.234 * span, 2.5 * span};
-    for (int most = 1; most < 9; ++most) {
-      const std::vector<double> some = axis_ticks(range, most);
-      EXPECT_LE(some.size(), static_cast<std::size_t>(most));
-      for (const double tick : some) {
-        EXPECT_GE(tick, range.low * (1.0 - 1e-6));
-        EXPECT_LE(tick, range.high * (1.0 + 1e-6));
-      }
-    }
-    EXPECT_GE(axis_ticks(range, 4).size(), 2U);
-  }
-  EXPECT_TRUE(axis_ticks({1.0, 1.0}, 5).empty());
-}
-
 }  // namespace
 }  // namespace tissue_stiffness

@@ -64,6 +64,7 @@ TEST(PanelState, ShowsYoungsModulusWithItsIntervalWhereverItIsInTheList) {
   EXPECT_EQ(state.headline(), "12.02 kPa");
   EXPECT_EQ(state.interval(), "95 %: 11.86 to 12.18 kPa");
   EXPECT_EQ(state.quantity(), "Young's modulus");
+  EXPECT_EQ(state.modulus_axis(), "E [kPa]");
   EXPECT_EQ(state.state().text, "converged");
   ASSERT_EQ(state.modulus_curve().points().size(), 1U);
   EXPECT_NEAR(state.modulus_curve().points()[0].upper, 12.176, 1e-9);
@@ -75,6 +76,7 @@ TEST(PanelState, ShowsTheFirstParameterWhenNoModulusIsEstimated) {
   message.names[1] = "pressure.amplitude";
   state.take(message);
   EXPECT_EQ(state.quantity(), "viscous_damping.beta");
+  EXPECT_EQ(state.modulus_axis(), "beta [ms]");
   EXPECT_EQ(state.headline(), "10.0 ms");
 }
 
