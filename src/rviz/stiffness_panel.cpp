@@ -1,5 +1,7 @@
 #include "rviz/stiffness_panel.hpp"
 
+#include <rviz/visualization_manager.h>
+
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QLineEdit>
@@ -16,6 +18,7 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr int kRefreshMilliseconds = 50;
+constexpr char kShowWholeBody[] = "Show Whole Body";  // key of the saved config
 
 // Two of the colours of Okabe and Ito, which colour-blind people tell apart.
 const QColor kBlue(0x00, 0x72, 0xb2), kVermilion(0xd5, 0x5e, 0x00);
@@ -77,6 +80,7 @@ StiffnessPanel::StiffnessPanel(QWidget* parent) : rviz::Panel(parent), calls_(st
 StiffnessPanel::~StiffnessPanel() {
   calls_.reset();  // before what its answers speak to
   subscribers_.clear();
+  body_.shutdown();
 }
 
 void StiffnessPanel::build_header() {
@@ -142,6 +146,7 @@ void StiffnessPanel::build_buttons() {
 
 void StiffnessPanel::connect_to(const QString& node_namespace) {
   subscribers_.clear();
+  body_.shutdown();
   state_.clear();
   waiting_ = false;
   ++connection_;  // answers of the one before are not ours any more
@@ -169,8 +174,17 @@ void StiffnessPanel::connect_to(const QString& node_namespace) {
         state_.take(*message);
         effects_changed_ = true;
       })};
+  await_body();
   status_->clear();
   ask_what_was_added();
+}
+
+void StiffnessPanel::await_body() {
+  first_view_.wait_for_body();
+  if (!first_view_.waiting()) return;
+  using visualization_msgs::Marker;
+  body_ = node_->subscribe<Marker>("tracked_surface", 1,
+                                   [this](const Marker::ConstPtr& surface) { first_view_.show(*surface); });
 }
 
 void StiffnessPanel::ask_what_was_added() {
@@ -182,6 +196,7 @@ void StiffnessPanel::ask_what_was_added() {
 
 void StiffnessPanel::take_messages() {
   queue_.callAvailable(ros::WallDuration(0));
+  if (!first_view_.waiting()) body_.shutdown();  // a surface is large
   if (state_.model_changed() && !waiting_) ask_what_was_added();
   if (estimate_changed_) show_estimate();
   if (effects_changed_) show_effects();
@@ -269,16 +284,18 @@ ServiceCalls::Done StiffnessPanel::when_answered() {
 
 void StiffnessPanel::load(const rviz::Config& config) {
   rviz::Panel::load(config);
+  bool show_whole_body = false;
+  if (config.mapGetBool(kShowWholeBody, &show_whole_body) && show_whole_body) first_view_.start(*vis_manager_);
   QString node_namespace;
-  if (config.mapGetString("Namespace", &node_namespace)) {
-    namespace_->setText(node_namespace);
-    connect_to(node_namespace);
-  }
+  config.mapGetString("Namespace", &node_namespace);
+  namespace_->setText(node_namespace);
+  connect_to(node_namespace);
 }
 
 void StiffnessPanel::save(rviz::Config config) const {
   rviz::Panel::save(config);
   config.mapSetValue("Namespace", namespace_->text());
+  config.mapSetValue(kShowWholeBody, first_view_.untouched());
 }
 
 }  // namespace tissue_stiffness

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "rviz/first_view.hpp"
 #include "rviz/panel_state.hpp"
 #include "rviz/service_calls.hpp"
 
@@ -23,7 +24,8 @@ class EffectList;
 
 /// rviz panel of one estimator. It shows E with its interval, the misfit, the state and what the model misses. Its buttons
 /// start a diagnosis, add and remove effects, and reset the estimator. Messages are processed in the GUI's thread, and
-/// services are called in another one. The estimator's namespace is saved with the config.
+/// services are called in another one. Where the config says so, rviz's view is turned to the first surface that comes. The
+/// config keeps this as long as the user has not moved the view, and the estimator's namespace.
 class StiffnessPanel : public rviz::Panel {
   Q_OBJECT
  public:
@@ -39,6 +41,8 @@ class StiffnessPanel : public rviz::Panel {
   void build_legend();
   void build_buttons();
   void connect_to(const QString& node_namespace);
+  /// Turns the view to the next surface, if the view is still the config's.
+  void await_body();
   void ask_what_was_added();
   void take_messages();
   void show_estimate();
@@ -61,6 +65,8 @@ class StiffnessPanel : public rviz::Panel {
   ros::CallbackQueue queue_;
   std::unique_ptr<ros::NodeHandle> node_;
   std::vector<ros::Subscriber> subscribers_;
+  ros::Subscriber body_;
+  FirstView first_view_;
   PanelState state_;
   bool estimate_changed_ = true, effects_changed_ = true, waiting_ = false;
   unsigned connection_ = 0;

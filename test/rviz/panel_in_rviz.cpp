@@ -1,4 +1,8 @@
 // rviz's own window with the shipped config: presses the panel's buttons and sees the error fall.
+#include <OgreCamera.h>
+#include <OgreMatrix4.h>
+#include <OgreVector4.h>
+#include <geometry_msgs/Point.h>
 #include <gtest/gtest.h>
 #include <ros/ros.h>
 #include <rviz/config.h>
@@ -6,9 +10,13 @@
 #include <rviz/display_group.h>
 #include <rviz/panel.h>
 #include <rviz/properties/status_property.h>
+#include <rviz/view_controller.h>
+#include <rviz/view_manager.h>
 #include <rviz/visualization_frame.h>
 #include <rviz/visualization_manager.h>
 #include <rviz/yaml_config_reader.h>
+#include <tissue_stiffness/TetMesh.h>
+#include <visualization_msgs/Marker.h>
 
 #include <QApplication>
 #include <QDockWidget>
@@ -22,12 +30,17 @@
 #include <QTreeWidget>
 #include <QtTest/QTest>
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <limits>
 #include <memory>
+#include <string>
+#include <vector>
 
 namespace {
 
-constexpr int kPatience = 300000;  // ms: on a busy machine; a free one needs a thirtieth
+constexpr float kDistanceOfConfig = 0.25F;  // m, in rviz/*.rviz
+constexpr int kPatience = 300000;           // ms: on a busy machine; a free one needs a thirtieth
 
 class PanelInRviz : public ::testing::Test {
  protected:
@@ -82,9 +95,70 @@ class PanelInRviz : public ::testing::Test {
     })) << "the replay did not end";
   }
 
+  static rviz::ViewController* view() { return frame_->getManager()->getViewManager()->getCurrent(); }
+  static float distance() { return view()->subProp("Distance")->getValue().toFloat(); }
+  static bool subscribes_to(const std::string& topic) {
+    std::vector<std::string> topics;
+    ros::this_node::getSubscribedTopics(topics);
+    return std::find(topics.begin(), topics.end(), topic) != topics.end();
+  }
+  /// How far from the middle of rviz's picture (0) to its edge (1) the farthest of these points is seen.
+  static double farthest_in_picture(const std::vector<geometry_msgs::Point>& points) {
+    const Ogre::Camera& camera = *view()->getCamera();
+    float out = 0.0F;
+    for (const geometry_msgs::Point& point : points) {
+      const Ogre::Vector4 place(static_cast<float>(point.x), static_cast<float>(point.y), static_cast<float>(point.z),
+                                1.0F);
+      const Ogre::Vector4 seen = camera.getProjectionMatrix() * (camera.getViewMatrix() * place);
+      if (seen.w <= 0.0F) return std::numeric_limits<double>::infinity();
+      out = std::max({out, std::abs(seen.x / seen.w), std::abs(seen.y / seen.w)});
+    }
+    return out;
+  }
+  /// Enters a namespace into the panel, as a user does.
+  static void enter_namespace(const QString& name) {
+    auto* place = part<QLineEdit>("namespace");
+    place->setText(name);
+    QTest::keyClick(place, Qt::Key_Return);
+  }
+  /// What a config that is saved now holds of our panel.
+  static rviz::Config saved_panel() {
+    QTemporaryDir folder;
+    const QString file = folder.filePath("saved.rviz");
+    EXPECT_TRUE(frame_->saveDisplayConfig(file));
+    rviz::Config saved;
+    rviz::YamlConfigReader().readFile(saved, file);
+    const rviz::Config panels = saved.mapGetChild("Panels");
+    for (int i = 0; i < panels.listLength(); ++i) {
+      QString type;
+      panels.listChildAt(i).mapGetString("Class", &type);
+      if (type == "tissue_stiffness/Stiffness") return panels.listChildAt(i);
+    }
+    return {};
+  }
+  static bool saves_whole_body() {
+    bool out = false;
+    EXPECT_TRUE(saved_panel().mapGetBool("Show Whole Body", &out));
+    return out;
+  }
+
   static std::unique_ptr<rviz::VisualizationFrame> frame_;
   static rviz::Panel* panel_;
 };
+
+/// A surface far from the origin and larger than the demo's body, in the model's frame.
+visualization_msgs::Marker large_body() {
+  visualization_msgs::Marker out;
+  out.header.frame_id = "model";
+  for (int i = 0; i < 9; ++i) {
+    geometry_msgs::Point point;
+    point.x = 5.0 + (i % 2);
+    point.y = -3.0 + (i / 2 % 2);
+    point.z = 0.5 * (i / 4 % 2);
+    out.points.push_back(point);
+  }
+  return out;
+}
 
 std::unique_ptr<rviz::VisualizationFrame> PanelInRviz::frame_;
 rviz::Panel* PanelInRviz::panel_ = nullptr;
@@ -108,6 +182,14 @@ void expect_no_errors(rviz::VisualizationFrame& frame) {
     if (!display->isEnabled() || status == nullptr) continue;
     EXPECT_NE(status->getLevel(), rviz::StatusProperty::Error) << display->getNameStd();
   }
+}
+
+TEST_F(PanelInRviz, T1_TheBodyIsInView) {
+  const auto mesh = ros::topic::waitForMessage<tissue_stiffness::TetMesh>("/mesh", ros::Duration(60));
+  ASSERT_TRUE(mesh);
+  ASSERT_TRUE(wait_for([] { return distance() != kDistanceOfConfig; })) << "the view did not turn to the surface";
+  EXPECT_LT(farthest_in_picture(mesh->nodes), 1.0);
+  EXPECT_GT(farthest_in_picture(mesh->nodes), 0.3) << "the body is small in the picture";
 }
 
 TEST_F(PanelInRviz, T2_NoDisplayOfTheConfigIsInError) {
@@ -168,33 +250,39 @@ TEST_F(PanelInRviz, T6_ResetAnswers) {
 }
 
 TEST_F(PanelInRviz, T7_TheNamespaceIsUsedAndSaved) {
-  auto* place = part<QLineEdit>("namespace");
-  place->setText("/nowhere");
-  QTest::keyClick(place, Qt::Key_Return);
+  enter_namespace("/nowhere");
   EXPECT_EQ(label("headline"), "-") << "what another estimator said is still shown";
   press("diagnose");
   ASSERT_TRUE(wait_for([] { return part<QPushButton>("diagnose")->isEnabled(); }));
   EXPECT_NE(label("status").find("no service /nowhere/diagnose"), std::string::npos) << label("status");
-  QTemporaryDir folder;
-  const QString file = folder.filePath("saved.rviz");
-  ASSERT_TRUE(frame_->saveDisplayConfig(file));
-  rviz::Config saved;
-  rviz::YamlConfigReader().readFile(saved, file);
-  bool found = false;
-  const rviz::Config panels = saved.mapGetChild("Panels");
-  for (int i = 0; i < panels.listLength(); ++i) {
-    QString type, node_namespace;
-    panels.listChildAt(i).mapGetString("Class", &type);
-    if (type != "tissue_stiffness/Stiffness") continue;
-    found = panels.listChildAt(i).mapGetString("Namespace", &node_namespace) && node_namespace == "/nowhere";
-  }
-  EXPECT_TRUE(found);
-  place->setText("");
-  QTest::keyClick(place, Qt::Key_Return);
+  QString node_namespace;
+  EXPECT_TRUE(saved_panel().mapGetString("Namespace", &node_namespace));
+  EXPECT_EQ(node_namespace, "/nowhere");
+  enter_namespace("");
   EXPECT_TRUE(wait_for([] { return label("headline") != "-"; })) << "the latched estimate did not come";
 }
 
-TEST_F(PanelInRviz, T8_TheConfigWithImagesHasThePanelAndBothOutlines) {
+TEST_F(PanelInRviz, T8_TheViewGoesToAnyBodyUntilTheUserMovesIt) {
+  EXPECT_TRUE(saves_whole_body());
+  ros::NodeHandle node("/elsewhere");
+  ros::Publisher bodies = node.advertise<visualization_msgs::Marker>("tracked_surface", 1, true);
+  const visualization_msgs::Marker body = large_body();
+  bodies.publish(body);
+  EXPECT_GT(farthest_in_picture(body.points), 1.0) << "the view of the demo's body shows this one, too";
+  enter_namespace("/elsewhere");
+  ASSERT_TRUE(wait_for([&] { return farthest_in_picture(body.points) < 1.0; })) << "the body is out of view";
+  EXPECT_GT(farthest_in_picture(body.points), 0.3) << "the body is small in the picture";
+  EXPECT_TRUE(saves_whole_body());
+  EXPECT_TRUE(wait_for([] { return !subscribes_to("/elsewhere/tracked_surface"); })) << "a body is still waited for";
+
+  view()->subProp("Yaw")->setValue(2.0);
+  EXPECT_FALSE(saves_whole_body()) << "the view is the user's now";
+  enter_namespace("/other");
+  EXPECT_FALSE(subscribes_to("/other/tracked_surface")) << "a surface would move the user's view";
+  enter_namespace("");
+}
+
+TEST_F(PanelInRviz, T9_TheConfigWithImagesHasThePanelAndBothOutlines) {
   frame_->loadDisplayConfig(QString(TISSUE_STIFFNESS_SOURCE_DIR) + "/rviz/tissue_stiffness.rviz");
   panel_ = frame_->findChild<rviz::Panel*>("tissue_stiffness_panel");
   ASSERT_NE(panel_, nullptr);
@@ -206,7 +294,7 @@ TEST_F(PanelInRviz, T8_TheConfigWithImagesHasThePanelAndBothOutlines) {
   })) << "the image is not shown";
 }
 
-TEST_F(PanelInRviz, T9_ClosesDuringADiagnosis) {
+TEST_F(PanelInRviz, T10_ClosesDuringADiagnosis) {
   press("diagnose");
   QTest::qWait(100);
   QElapsedTimer closing;
