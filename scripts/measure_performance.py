@@ -2,9 +2,10 @@
 import argparse
 import json
 import os
-import re
 import subprocess
 import tempfile
+
+from measured_pages import machine, table, write
 
 PEER = ((10, 3, 12), (16, 6, 4))  # cells along, cells across, frames
 STEPS = 4  # implicit steps a frame of the full model, the peer's too
@@ -19,7 +20,6 @@ TARGETS = (
     ('neo_hookean', 5577, 'start_s', 2.0, 's to the first estimate'),
     ('neo_hookean', 20727, 'start_s', 8.0, 's to the first estimate'),
 )
-MARK = re.compile(r'(<!-- measured: (\w+) -->\n).*?(<!-- end -->)', re.S)
 
 
 def run_benchmark(program, choice):
@@ -46,11 +46,6 @@ def run_peer(program, root):
         peers[nodes] = peer
         print('peer', nodes, peer, flush=True)
     return peers
-
-
-def table(head, rows):
-    lines = ['| ' + ' | '.join(head) + ' |', '|' + '---|' * len(head)]
-    return '\n'.join(lines + ['| ' + ' | '.join(row) + ' |' for row in rows]) + '\n'
 
 
 def digits(value):
@@ -104,22 +99,6 @@ def target_table(runs):
         rows.append([law.replace('_', '-'), f'{nodes:,}', f'{bound:.3g} {unit}', digits(value),
                      'yes' if value < bound else 'NO'])
     return table(['law', 'nodes', 'wanted, below', 'measured', 'reached'], rows)
-
-
-def machine():
-    with open('/proc/cpuinfo') as file:
-        name = re.search(r'model name\s*:\s*(.*)', file.read()).group(1)
-    load = os.getloadavg()[0]
-    busy = f' Other work kept it busy, with a load of {load:.1f} at the start.' if load > 1.0 else ''
-    return f'The machine has {os.cpu_count()} cores of {name}.{busy}\n'
-
-
-def write(path, tables):
-    with open(path) as file:
-        text = file.read()
-    text = MARK.sub(lambda m: m.group(1) + tables[m.group(2)] + m.group(3) if m.group(2) in tables else m.group(0), text)
-    with open(path, 'w') as file:
-        file.write(text)
 
 
 def main():
