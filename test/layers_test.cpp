@@ -58,8 +58,8 @@ bool is_ros(const std::string& header) {
 std::string fault(const std::string& layer, const std::string& header) {
   static const std::set<std::string> with_ros{"nodes", "nodelets", "tools", "rviz"};
   if (is_ros(header) && with_ros.count(layer) == 0) return "ROS outside nodes, tools and rviz";
-  static const std::regex qt("^(Qt|Q[A-Z])\\w*(/.*)?$");
-  if (std::regex_match(header, qt) && layer != "rviz") return "Qt outside rviz";
+  static const std::regex qt("^((Qt|Q[A-Z])\\w*(/.*)?|qwt_\\w+\\.h)$");
+  if (std::regex_match(header, qt) && layer != "rviz") return "Qt or Qwt outside rviz";
   std::smatch match;
   static const std::regex own("^(tissue_stiffness/)?([a-z_]+)/.*");
   if (!std::regex_match(header, match, own) || match[2] == layer) return "";
@@ -126,7 +126,9 @@ TEST(Layers, FaultsAreFound) {
   EXPECT_NE(fault("forward", "sensor_msgs/Image.h"), "");
   EXPECT_NE(fault("report", "rviz/panel.h"), "");
   EXPECT_NE(fault("nodes", "QWidget"), "");
+  EXPECT_NE(fault("report", "qwt_plot.h"), "");
   EXPECT_EQ(fault("rviz", "QWidget"), "");
+  EXPECT_EQ(fault("rviz", "qwt_plot.h"), "");
   EXPECT_NE(fault("report", "tissue_stiffness/StiffnessEstimate.h"), "");
   EXPECT_NE(fault("types", "tissue_stiffness/settings/value.hpp"), "");
   EXPECT_NE(fault("filter", "forward/model.hpp"), "");
