@@ -14,7 +14,7 @@ std::string cell(double value, int digits) {
 std::string verdict(double z, bool passes) {
   if (!std::isfinite(z)) return "<td>not tested</td>";
   return std::string("<td><span class=\"badge ") + (passes ? "good\">passes" : "warn\">fails") + "</span> " +
-         escape_html(short_number(z, 2)) + " sd</td>";
+         escape_html(test_statistic(z)) + " sd</td>";
 }
 
 std::string row(const RecordingRecord& r) {
@@ -29,11 +29,12 @@ std::string recordings_table(const std::vector<RecordingRecord>& recordings) {
   if (recordings.empty()) return "";
   std::string rows;
   for (const RecordingRecord& r : recordings) rows += row(r);
-  return section("recordings", "Recordings of one body",
-                 "<div class=\"scroll\"><table><tr><th>recording</th><th></th><th class=\"n\">frames</th><th "
-                 "class=\"n\">error [mm]</th><th class=\"n\">of the noise</th><th class=\"n\">% of the motion</th>"
-                 "<th>misfit is noise</th><th>agrees with the others</th></tr>" +
-                     rows + "</table></div>");
+  return section(
+      "recordings", "Recordings of one body",
+      "<div class=\"scroll\"><table class=\"stacked\"><tr><th>recording</th><th></th><th class=\"n\">frames</th><th "
+      "class=\"n\">error [mm]</th><th class=\"n\">of the noise</th><th class=\"n\">% of the motion</th>"
+      "<th>misfit is noise</th><th>agrees with the others</th></tr>" +
+          rows + "</table></div>");
 }
 
 }  // namespace tissue_stiffness

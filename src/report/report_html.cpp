@@ -41,11 +41,10 @@ std::string badge(const std::string& colour, const std::string& text) {
 
 std::string answer_line(const ParameterEstimate& p) {
   const ShownUnit unit = shown_unit(p.mean, p.unit);
-  const auto show = [&](double value) { return escape_html(rounded(unit.scale * value, unit.scale * p.std)); };
+  const ShownEstimate shown = shown_estimate(p, unit.scale);
   const std::string suffix = unit.name.empty() ? "" : " " + escape_html(unit.name);
-  return "<p class=\"answer\"><span class=\"name\">" + escape_html(parameter_title(p.name)) + "</span><b>" + show(p.mean) +
-         suffix + "</b> <span class=\"interval\">95 %: " + show(p.lower95) + " to " + show(p.upper95) + suffix +
-         "</span></p>";
+  return "<p class=\"answer\"><span class=\"name\">" + escape_html(parameter_title(p.name)) + "</span><b>" + shown.mean +
+         suffix + "</b> <span class=\"interval\">95 %: " + shown.lower + " to " + shown.upper + suffix + "</span></p>";
 }
 
 std::string identifiability_badge(const IdentifiabilityRecord& record) {
@@ -84,17 +83,11 @@ std::string fact(const std::string& name, const std::string& value, const std::s
   return "<div><dt>" + name + "</dt><dd>" + escape_html(value) + "<small>" + escape_html(remark) + "</small></dd></div>";
 }
 
-std::string with_unit(double value, const std::string& unit) {
-  const ShownUnit shown = shown_unit(value, unit);
-  return std::isfinite(value) ? short_number(shown.scale * value, 3) + " " + shown.name : "-";
-}
-
 std::string facts(const Results& r) {
-  const std::string noise = std::isfinite(r.noise_rms) ? "noise " + with_unit(r.noise_rms, "m") : "";
+  const std::string noise = std::isfinite(r.noise_rms) ? "noise " + millimetres(r.noise_rms) : "";
   return section("facts", "",
-                 "<dl class=\"facts\">" + fact("Error of the model", with_unit(r.rms_error, "m"), noise) +
-                     fact("Error / motion",
-                          std::isfinite(r.relative_error) ? short_number(100.0 * r.relative_error, 3) + " %" : "-", "") +
+                 "<dl class=\"facts\">" + fact("Error of the model", millimetres(r.rms_error), noise) +
+                     fact("Error / motion", percentage(r.relative_error, 3), "") +
                      fact("Squared innovation", short_number(r.nis_mean_per_dof, 3), "per row; 1 if noise explains it") +
                      fact("Frames used", std::to_string(r.used()), std::to_string(r.skipped()) + " skipped") +
                      fact("Time a frame", with_unit(r.frame_seconds_quantile(0.5), "s"),
@@ -104,12 +97,11 @@ std::string facts(const Results& r) {
 
 std::string parameter_row(const ParameterEstimate& p, const Results& results) {
   const ShownUnit unit = shown_unit(p.mean, p.unit);
-  const double std = unit.scale * p.std;
+  const ShownEstimate shown = shown_estimate(p, unit.scale);
   const auto cell = [](const std::string& text) { return "<td class=\"n\">" + escape_html(text) + "</td>"; };
-  std::string row = "<tr><td>" + escape_html(p.name) + "</td>" + cell(rounded(unit.scale * p.mean, std)) +
-                    cell(short_number(std, 2)) + cell(rounded(unit.scale * p.lower95, std)) +
-                    cell(rounded(unit.scale * p.upper95, std)) + "<td>" + escape_html(unit.name) +
-                    "</td><td class=\"why\">";
+  std::string row = "<tr><td>" + escape_html(p.name) + "</td>" + cell(shown.mean) +
+                    cell(short_number(unit.scale * p.std, 2)) + cell(shown.lower) + cell(shown.upper) + "<td>" +
+                    escape_html(unit.name) + "</td><td class=\"why\">";
   const auto found = results.identifiable.find(p.name);
   if (found == results.identifiable.end()) return row + "</td></tr>";
   return row + identifiability_badge(found->second) + " <span class=\"soft\">" + escape_html(found->second.reason) +
@@ -122,7 +114,7 @@ std::string parameter_table(const Results& results) {
   for (const ParameterEstimate& p : results.parameters) rows += parameter_row(p, results);
   return section(
       "parameters", "Parameters",
-      "<div class=\"scroll\"><table><tr><th>parameter</th><th class=\"n\">mean</th>"
+      "<div class=\"scroll\"><table class=\"stacked\"><tr><th>parameter</th><th class=\"n\">mean</th>"
       "<th class=\"n\">std</th><th class=\"n\">95 % from</th><th class=\"n\">to</th><th>unit</th><th>do the data "
       "determine "
       "it?</th></tr>" +
@@ -165,7 +157,7 @@ std::string timing_table(const Results& results) {
   for (const auto& stage : results.stage_seconds) total += stage.second;
   std::string rows;
   for (const auto& [name, seconds] : results.stage_seconds) {
-    const std::string share = total > 0.0 ? short_number(100.0 * seconds / total, 2) + " %" : "-";
+    const std::string share = escape_html(percentage(seconds / total, 2));
     rows += "<tr><td>" + escape_html(name) + "</td><td class=\"n\">" + with_unit(seconds, "s") + "</td><td class=\"n\">" +
             share + "</td></tr>";
   }

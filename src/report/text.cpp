@@ -5,6 +5,7 @@
 #include <iomanip>
 #include <locale>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
 #include <vector>
 
@@ -18,9 +19,38 @@ std::string fixed(double value, int decimals) {
   return stream.str();
 }
 
+double number(const std::string& text) {
+  std::istringstream stream(text);
+  stream.imbue(std::locale::classic());
+  double value = 0.0;
+  stream >> value;
+  return value;
+}
+
 /// Returns the position of the leading digit: 0 for 1 to 9.99.
 int magnitude(double value) {
   return static_cast<int>(std::floor(std::log10(std::abs(value))));
+}
+
+/// Returns the position of the leading digit once the value is rounded: 0 for 0.9996 with three digits.
+int magnitude(double value, int digits) {
+  std::ostringstream stream;
+  stream.imbue(std::locale::classic());
+  stream << std::scientific << std::setprecision(digits - 1) << value;
+  return std::stoi(stream.str().substr(stream.str().find('e') + 1));
+}
+
+/// The symbol that a unit begins with, and its power: {"m", 3} of "m^3/N". It is empty when it takes no prefix.
+struct LeadingSymbol {
+  std::string symbol;
+  int power = 1;
+};
+
+LeadingSymbol leading_symbol(const std::string& unit) {
+  static const std::regex pattern(R"((Pa|N|m|s|rad)(?:\^(\d))?(?=$|[/ ]))");
+  std::smatch found;
+  if (!std::regex_search(unit, found, pattern, std::regex_constants::match_continuous)) return {};
+  return {found.str(1), found[2].matched ? std::stoi(found.str(2)) : 1};
 }
 
 }  // namespace
@@ -51,6 +81,11 @@ std::string escape_html(const std::string& text) {
   return escaped;
 }
 
+std::string capitalised(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
 std::string exact_number(double value) {
   return std::isfinite(value) ? nlohmann::json(value).dump() : "";
 }
@@ -58,7 +93,7 @@ std::string exact_number(double value) {
 std::string short_number(double value, int digits) {
   if (!std::isfinite(value)) return "-";
   if (value == 0.0) return "0";
-  const int order = magnitude(value);
+  const int order = magnitude(value, digits);
   if (order >= -4 && order < 6) return fixed(value, std::max(0, digits - 1 - order));
   std::ostringstream stream;
   stream.imbue(std::locale::classic());
@@ -76,19 +111,51 @@ std::string millimetres(double metres) {
   return std::isfinite(metres) ? short_number(1e3 * metres, 3) + " mm" : "-";
 }
 
-ShownUnit shown_unit(double value, const std::string& unit) {
-  static const std::vector<std::string> scaled = {"Pa", "N", "m", "s"};
-  static const std::vector<std::pair<double, std::string>> prefixes = {{1e9, "G"}, {1e6, "M"},  {1e3, "k"},
-                                                                       {1.0, ""},  {1e-3, "m"}, {1e-6, "µ"}};
-  const bool scales = std::find(scaled.begin(), scaled.end(), unit) != scaled.end();
-  if (!scales || !std::isfinite(value) || value == 0.0) return {1.0, unit == "-" ? "" : unit};
-  const bool length_or_time = unit == "m" || unit == "s";  // 0.3 mm rather than 300 µm; nobody writes km or ks
-  const double from = length_or_time ? 0.1 : 1.0;
-  for (const auto& [size, prefix] : prefixes) {
-    if (length_or_time && size > 1.0) continue;
-    if (std::abs(value) >= from * size) return {1.0 / size, prefix + unit};
+std::string percentage(double share, int digits) {
+  if (!std::isfinite(share)) return "-";
+  if (share < 1e-3) return "< 0.1 %";
+  if (share > 0.999 && share < 1.0) return "> 99.9 %";
+  return short_number(100.0 * share, digits) + " %";
+}
+
+std::string test_statistic(double z) {
+  return z > 100.0 ? "> 100" : short_number(z, 2);
+}
+
+std::string positions_in_millimetres(const std::string& text) {
+  static const std::regex position(R"(\((-?[\d.]+), (-?[\d.]+), (-?[\d.]+)\) m\b)");
+  std::string out, rest = text;
+  for (std::smatch found; std::regex_search(rest, found, position); rest = found.suffix()) {
+    out += found.prefix().str() + "(";
+    for (std::size_t axis = 1; axis <= 3; ++axis)
+      out += (axis == 1 ? "" : ", ") + fixed_number(1e3 * number(found.str(axis)), 0);
+    out += ") mm";
   }
-  return {1e6, "µ" + unit};
+  return out + rest;
+}
+
+ShownUnit shown_unit(double value, const std::string& unit) {
+  static const std::vector<std::pair<double, std::string>> prefixes = {{1e9, "G"},  {1e6, "M"},  {1e3, "k"}, {1.0, ""},
+                                                                       {1e-3, "m"}, {1e-6, "µ"}, {1e-9, "n"}};
+  if (unit == "kg" && std::abs(value) < 1.0 && value != 0.0) {
+    return std::abs(value) < 1e-3 ? ShownUnit{1e6, "mg"} : ShownUnit{1e3, "g"};
+  }
+  const LeadingSymbol leading = leading_symbol(unit);
+  if (leading.symbol.empty() || !std::isfinite(value) || value == 0.0) return {1.0, unit == "-" ? "" : unit};
+  const bool grows = leading.symbol == "Pa" || leading.symbol == "N";  // nobody writes km, ks or krad
+  const double from = grows || leading.power > 1 ? 1.0 : 0.1;          // 0.3 mm rather than 300 µm
+  for (const auto& [prefix_size, prefix] : prefixes) {
+    const double size = std::pow(prefix_size, leading.power);
+    if (!grows && size > 1.0) continue;
+    if (std::abs(value) >= from * size || prefix == "n") return {1.0 / size, prefix + unit};
+  }
+  return {1.0, unit};
+}
+
+std::string with_unit(double value, const std::string& unit, int digits) {
+  if (!std::isfinite(value)) return "-";
+  const ShownUnit shown = shown_unit(value, unit);
+  return short_number(shown.scale * value, digits) + (shown.name.empty() ? "" : " " + shown.name);
 }
 
 std::string rounded(double value, double uncertainty) {
@@ -98,6 +165,20 @@ std::string rounded(double value, double uncertainty) {
   if (decimals >= 0) return fixed(value, decimals);
   const double step = std::pow(10.0, -decimals);
   return fixed(std::round(value / step) * step, 0);
+}
+
+ShownEstimate shown_estimate(const ParameterEstimate& p, double scale) {
+  const double half_width = 0.5 * scale * (p.upper95 - p.lower95);
+  const auto show = [&](double value) { return rounded(scale * value, half_width); };
+  return {show(p.mean), show(p.lower95), show(p.upper95)};
+}
+
+std::string shown_moduli(const std::map<std::string, double>& parameters) {
+  std::string text;
+  for (const auto& [name, value] : parameters) {
+    if (is_young_modulus(name)) text += (text.empty() ? "" : ", ") + with_unit(value, "Pa", 4);
+  }
+  return text;
 }
 
 }  // namespace tissue_stiffness

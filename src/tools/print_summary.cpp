@@ -31,11 +31,10 @@ void print_parameters(const Results& results, const Paint& paint, std::ostream& 
       << "\n";
   for (const ParameterEstimate& p : results.parameters) {
     const ShownUnit unit = shown_unit(p.mean, p.unit);
-    const double spread = unit.scale * p.std;
-    const std::string interval = rounded(unit.scale * p.lower95, spread) + " .. " + rounded(unit.scale * p.upper95, spread);
+    const ShownEstimate shown = shown_estimate(p, unit.scale);
+    const std::string interval = shown.lower + " .. " + shown.upper;
     const auto verdict = results.identifiable.find(p.name);
-    print_line(out, "%-32s %12s  %-28s %-5s %s", p.name.c_str(), rounded(unit.scale * p.mean, spread).c_str(),
-               interval.c_str(), unit.name.c_str(),
+    print_line(out, "%-32s %12s  %-28s %-5s %s", p.name.c_str(), shown.mean.c_str(), interval.c_str(), unit.name.c_str(),
                verdict == results.identifiable.end() ? "-" : verdict->second.verdict.c_str());
   }
 }

@@ -142,6 +142,18 @@ TEST(ReportHtml, IsOneSafePage) {
   EXPECT_EQ(page.find("<the>"), std::string::npos);
 }
 
+TEST(ReportHtml, ShowsAnInputInOneUnit) {
+  Results results = example(20);
+  results.inputs = {{"/camera", "pose offset", "m", 3e-4, 1.54e-5, 2.8e-4, 2e-4},
+                    {"/tool", "bias", "N", 0.0, 0.0, 0.0, 0.02}};
+  const std::string page = report_html(results, {});
+  for (const std::string cells : {"pose offset</td><td class=\"n\">0.300 mm</td><td class=\"n\">0.0154 mm</td><td "
+                                  "class=\"n\">0.280 mm</td><td class=\"n\">&lt; 0.1 %</td>",
+                                  "<td class=\"n\">0 N</td><td class=\"n\">2.0 %</td>", "The interval counts 2 errors"}) {
+    EXPECT_NE(page.find(cells), std::string::npos) << cells;
+  }
+}
+
 TEST(ReportHtml, CarriesTheNumbersOfResultsJson) {
   const Results results = example(60);
   const json data = data_of(report_html(results, example_showing()));

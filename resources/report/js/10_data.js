@@ -47,9 +47,20 @@ function quantile(values, p) {
 
 function shortNumber(x, digits = 3) {
   if (!finite(x)) return "–";
-  if (x === 0) return "0";
-  const size = Math.abs(x);
-  return size >= 1e5 || size < 1e-3 ? x.toExponential(digits - 1) : String(Number(x.toPrecision(digits)));
+  return String(Number(x.toPrecision(digits)));
+}
+
+// Lengths are in mm on the whole page; forces and pressures get the prefix that suits the largest of them.
+function shownUnit(most, unit) {
+  if (unit === "m") return { scale: 1e3, name: "mm" };
+  if (unit !== "N" && unit !== "Pa" && unit !== "N/kg") return { scale: 1, name: unit };
+  const [prefix, size] = [["k", 1e3], ["", 1], ["m", 1e-3]].find(([, s]) => most >= s) || ["µ", 1e-6];
+  return { scale: 1 / size, name: prefix + unit };
+}
+
+function withUnit(value, unit, digits) {
+  const { scale, name } = shownUnit(Math.abs(value), unit);
+  return shortNumber(scale * value, digits) + " " + name;
 }
 
 // Index of the last entry at or before t in an ascending list, and how far t is on the way to the next.

@@ -30,7 +30,8 @@ function startMotion() {
   components.value = best.component;
   const chart = addChart(host, () => {
     const track = player.replay.tracks[Number(tracks.value)], c = track.components[Number(components.value)];
-    const scale = track.unit === "m" ? 1e3 : 1, unit = track.unit === "m" ? "mm" : track.unit;
+    const most = Math.max(...[...c.measured, ...c.predicted].filter(Number.isFinite).map(Math.abs));
+    const { scale, name: unit } = shownUnit(most, track.unit);
     const values = (list) => Array.from(list, (v) => (Number.isFinite(v) ? scale * v : null));
     return {
       title: track.name + ", " + c.name + " [" + unit + "]",

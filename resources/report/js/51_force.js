@@ -4,7 +4,7 @@ function strongest(loads, unit) {
   for (const load of loads.filter((l) => l.unit === unit)) {
     for (let i = 0; i < load.value.length; i += 3) {
       const value = load.value.subarray(i, i + 3), size = Math.hypot(...value);
-      if (size > most) { most = size; best = { load, along: Array.from(value, (x) => x / size) }; }
+      if (size > most) { most = size; best = { load, most, along: Array.from(value, (x) => x / size) }; }
     }
   }
   return best;
@@ -21,19 +21,21 @@ function forceCurves(track, component) {
   const list = (make) => Array.from(player.replay.time, (t, k) => make(k));
   if (drive && reaction) {
     const motion = columns(drive.load.value), x = list((k) => 1e3 * dot(motion, drive.along, k));
-    const force = (kind) => list((k) => dot(reaction.components.map((c) => c[kind]), drive.along, k));
-    return { title: "Force against displacement: " + drive.load.name + ", along " + words(drive.along), x: "displacement [mm]", y: "force [N]",
+    const most = Math.max(...reaction.components.flatMap((c) => [...c.measured]).filter(Number.isFinite).map(Math.abs)), unit = shownUnit(most, "N");
+    const force = (kind) => list((k) => unit.scale * dot(reaction.components.map((c) => c[kind]), drive.along, k));
+    return { title: "Force against displacement: " + drive.load.name + ", along " + words(drive.along), x: "displacement [mm]", y: "force [" + unit.name + "]",
       curves: ["measured", "predicted"].map((kind) => ({ name: kind, x, y: force(kind) })) };
   }
   if (!push || track.unit !== "m" || !track.components[component]) return null;
-  const load = columns(push.load.value), y = list((k) => dot(load, push.along, k)), whole = track.components.length === 3;
+  const unit = shownUnit(push.most, "N");
+  const load = columns(push.load.value), y = list((k) => unit.scale * dot(load, push.along, k)), whole = track.components.length === 3;
   const moved = (kind) => {
     const parts = whole ? track.components.map((c) => c[kind]) : [track.components[component][kind]];
     const along = whole ? push.along : [1], first = Math.max(0, list((k) => dot(parts, along, k)).findIndex(Number.isFinite));
     return list((k) => 1e3 * (dot(parts, along, k) - dot(parts, along, first)));
   };
   return { title: "Force against displacement: " + push.load.name + ", " + track.name + (whole ? ", along " + words(push.along) : ""),
-    x: "displacement [mm]", y: "force [N]", curves: ["measured", "predicted"].map((kind) => ({ name: kind, x: moved(kind), y })) };
+    x: "displacement [mm]", y: "force [" + unit.name + "]", curves: ["measured", "predicted"].map((kind) => ({ name: kind, x: moved(kind), y })) };
 }
 
 // A curve that may turn back, which uPlot's own lines may not.

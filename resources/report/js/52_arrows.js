@@ -48,7 +48,7 @@ class MissingForce {
     this.vertex = Array.from({ length: this.count }, (x, i) => nearestVertex(rest, this.places.subarray(3 * i, 3 * i + 3)));
     this.arrows = new ArrowMesh(scene, this.count);
     this.mesh = this.arrows.mesh;
-    $("arrow-scale").textContent = "(longest: " + shortNumber(this.most, 2) + " N/kg)";
+    $("arrow-scale").textContent = "(longest: " + withUnit(this.most, "N/kg", 2) + ")";
   }
 
   show(time, surface) {

@@ -41,7 +41,7 @@ class Surroundings {
       const along = Array.from(value, (x) => x / (strength || 1)), length = 0.3 * this.size * (strength / this.most[i]);
       const from = load.unit === "N" ? Array.from(at, (x, a) => x - length * along[a]) : Array.from(at);
       this.arrows.set(i, from, along, length, 0.022 * this.size * Math.min(1, strength / (0.1 * this.most[i])));
-      this.labels[i].textContent = load.name + ": " + (load.unit === "N" ? shortNumber(strength, 3) + " N" : shortNumber(1e3 * strength, 3) + " mm");
+      this.labels[i].textContent = load.name + ": " + withUnit(strength, load.unit, 3);
       return from;
     });
     this.arrows.finish();
