@@ -255,10 +255,11 @@ std::string staircase(const Diagnosis& d) {
             "</td><td class=\"n\">" + (step.effects.empty() ? "" : short_number(step.log_bayes_factor, 3)) + "</td></tr>";
   }
   return section("staircase", "The error, step by step",
-                 "<div id=\"steps\"></div><div class=\"scroll\"><table><thead><tr><th>model</th><th class=\"n\">held-out "
-                 "error</th><th class=\"n\">fitted frames</th><th class=\"n\">noise</th><th class=\"n\">Young's "
-                 "modulus of the fit</th><th class=\"n\" title=\"log evidence that the last effect gains\">log Bayes "
-                 "factor</th></tr></thead>" +
+                 chart_place("steps") +
+                     "<div class=\"scroll\"><table><thead><tr><th>model</th><th class=\"n\">held-out "
+                     "error</th><th class=\"n\">fitted frames</th><th class=\"n\">noise</th><th class=\"n\">Young's "
+                     "modulus of the fit</th><th class=\"n\" title=\"log evidence that the last effect gains\">log Bayes "
+                     "factor</th></tr></thead>" +
                      rows + "</table></div>" + fit_remark(d));
 }
 

@@ -67,7 +67,8 @@ std::string player_bar() {
 
 /// Returns the place of the surface in three dimensions, with its controls.
 std::string surface_place(bool arrows) {
-  return "<div id=\"surface\"></div>" + player_bar() + "<div id=\"colour-bar\"></div><div class=\"controls\">" +
+  return "<div data-plot=\"surface\"><div id=\"surface\"></div>" + player_bar() +
+         "<div id=\"colour-bar\"></div><div class=\"controls\">" +
          choice("colour", "Misfit in", {{"error", "mm"}, {"sigmas", "sigma"}}) +
          choice("span", "of", {{"frame", "this frame"}, {"all", "all frames"}}) +
          "<label class=\"slider\" title=\"Displacement, magnified\">motion ×<output id=\"magnify-value\">1</output>"
@@ -80,8 +81,7 @@ std::string surface_place(bool arrows) {
          "<label class=\"tick\"><input type=\"checkbox\" id=\"surroundings\" checked> axes, loads and supports</label>"
          "<label class=\"tick\"><input type=\"checkbox\" id=\"turn\"> turn</label>"
          "<button type=\"button\" id=\"view\">Reset view</button>"
-         "<button type=\"button\" id=\"surface-png\">PNG</button></div>"
-         "<p class=\"soft\" id=\"picked\"></p>";
+         "<span id=\"surface-saves\"></span></div></div><p class=\"soft\" id=\"picked\"></p>";
 }
 
 }  // namespace
@@ -141,8 +141,8 @@ std::string player(const Showing& showing, bool arrows) {
       std::string(cameras.size() > 1
                       ? "<div class=\"controls\"><label>Images of <select id=\"camera\"></select></label></div>"
                       : "") +
-      "<canvas id=\"picture\"></canvas><p class=\"key\"><i class=\"measured\"></i>measured "
-      "<i class=\"predicted\"></i>predicted</p>";
+      "<div data-plot=\"picture\"><canvas id=\"picture\"></canvas><p class=\"key\"><i class=\"measured\"></i>measured "
+      "<i class=\"predicted\"></i>predicted <span id=\"picture-saves\"></span></p></div>";
   const std::string motion =
       "<div class=\"controls\"><label>Show <select id=\"track\"></select></label> <label>along <select id=\"component\">"
       "</select></label></div><div class=\"grid\">" +

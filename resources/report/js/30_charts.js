@@ -34,14 +34,15 @@ function clockLine(u) {
   move(player.time);
 }
 
-// A chart: `make` gives {title, note, data, series, ...uPlot options} each time that it is drawn.
+// A chart: `make` gives {title, file (its name, else the title), note, data, series, ...uPlot options} each time that it is drawn.
 function addChart(host, make) {
   const chart = { host, make, plot: null };
+  host.dataset.plot = "chart";
   chart.draw = () => {
     if (chart.plot) chart.plot.destroy();
     host.replaceChildren();
-    const { title, note, controls, data, clock, height, table, ...options } = chart.make();
-    if (title) host.append(element("h3", {}, title, saveButtons(chart, title)));
+    const { title, file, note, controls, data, clock, height, table, ...options } = chart.make();
+    if (title) host.append(element("h3", {}, title, saveButtons(file || title, () => chart.table, () => savePicture(file || title, chart.plot.ctx.canvas, title))));
     if (note) host.append(element("p", { className: "soft note" }, note));
     if (controls) host.append(controls);
     const size = { width: Math.max(200, host.clientWidth), height: height || (host.clientWidth < 480 ? 210 : 260) };
@@ -108,11 +109,12 @@ function savePicture(name, canvas, title) {
   sheet.toBlob((blob) => save(fileName(name) + ".png", blob));
 }
 
-function saveButtons(chart, title) {
+// Buttons that save a plot: `table` gives its numbers as columns, `picture` saves what it shows.
+function saveButtons(title, table, picture) {
   const button = (kind, act) => element("button", { type: "button", name: "save-" + kind, className: "save", title: "Save this plot as " + kind.toUpperCase(), onclick: act }, kind.toUpperCase());
   return element("span", { className: "saves" },
-    button("csv", () => save(fileName(title) + ".csv", new Blob([csvOf(chart.table)], { type: "text/csv" }))),
-    button("png", () => savePicture(title, chart.plot.ctx.canvas, title)));
+    button("csv", () => save(fileName(title) + ".csv", new Blob([csvOf(table())], { type: "text/csv" }))),
+    button("png", picture));
 }
 
 const timeSeries = { label: "time [s]", value: (u, v) => (finite(v) ? v.toFixed(clockDigits()) : "–") };

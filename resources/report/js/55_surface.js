@@ -288,6 +288,18 @@ class SurfaceView {
       element("span", {}, shortNumber(most, 2) + unit), element("em", {}, "nothing measured"));
   }
 
+  // What is shown, one row a vertex.
+  table() {
+    const s = player.replay.surface, k = nearest(s.time, player.time), all = document.querySelector("input[name=span]:checked").value === "all";
+    const part = (values, a) => Array.from({ length: this.count }, (x, v) => 1e3 * values[3 * v + a]);
+    const moved = s.displacement.subarray(3 * this.count * k, 3 * this.count * (k + 1));
+    const misfit = (kind) => Array.from(all ? s[kind + "All"] : s[kind].subarray(this.count * k, this.count * (k + 1)));
+    const axes = ["x", "y", "z"];
+    return [...axes.map((name, a) => ({ name: name + " at rest [mm]", values: part(s.rest, a) })),
+      ...axes.map((name, a) => ({ name: "displacement " + name + " at " + s.time[k] + " s [mm]", values: part(moved, a) })),
+      { name: "misfit [mm]", values: misfit("error") }, { name: "misfit [sigma]", values: misfit("sigmas") }];
+  }
+
   // Measured positions, which mean nothing beside a magnified body.
   placeDots(time, magnify) {
     this.dots.visible = Boolean($("measured") && $("measured").checked) && magnify === 1;
@@ -335,7 +347,7 @@ function startSurface() {
   });
   $("glass").addEventListener("change", again);
   $("surroundings").addEventListener("change", again);
-  $("surface-png").addEventListener("click", () => savePicture("surface", renderer.domElement, ""));
+  $("surface-saves").append(saveButtons("surface", () => view.table(), () => savePicture("surface", renderer.domElement, "")));
   if ($("arrows")) $("arrows").addEventListener("change", again);
   $("turn").addEventListener("change", () => view.turn($("turn").checked));
   $("view").addEventListener("click", () => view.resetView());

@@ -1,6 +1,14 @@
 // Camera images with the measured and the predicted outline, or with features and their predicted displacements.
 const FEATURE = 7;  // radius in the canvas's pixels
 
+// The outlines or features of a picture: measured points, and ends of predicted lines.
+function outlineTable(outline) {
+  const { measured, predicted } = outline || { measured: [], predicted: [] };
+  const column = (name, values, k, step) => ({ name: name + " [pixel]", values: Array.from(values).filter((x, i) => i % step === k).map((x) => 0.1 * x) });
+  return [column("measured u", measured, 0, 2), column("measured v", measured, 1, 2),
+    ...["u from", "v from", "u to", "v to"].map((name, k) => column("predicted " + name, predicted, k, 4))];
+}
+
 function startPicture() {
   const canvas = $("picture");
   if (!canvas) return;
@@ -27,11 +35,15 @@ function startPicture() {
     context.lineWidth = width;
     context.stroke();
   };
-  const draw = (time) => {
-    const pictures = cameras.get(source);
-    const picture = pictures[nearest(pictures.map((p) => p.time), time)], image = picture.image;
-    if (!image.complete || !image.naturalWidth) return;
+  const shown = (time) => {
+    const pictures = cameras.get(source), picture = pictures[nearest(pictures.map((p) => p.time), time)];
     const outline = player.replay.outlines.find((o) => o.source === source && Math.abs(o.time - picture.time) < 1e-6);
+    return { image: picture.image, outline };
+  };
+  $("picture-saves").append(saveButtons("camera image", () => outlineTable(shown(player.time).outline), () => savePicture("camera image", canvas, "")));
+  const draw = (time) => {
+    const { image, outline } = shown(time);
+    if (!image.complete || !image.naturalWidth) return;
     canvas.width = 2 * image.naturalWidth;
     canvas.height = 2 * image.naturalHeight;
     context.drawImage(image, 0, 0, canvas.width, canvas.height);

@@ -120,23 +120,34 @@ async function pickPoint(page) {
   assert.ok((await page.textContent("#picked")).includes(await page.evaluate((i) => player.replay.tracks[surfaceView.tracked[i]].name, goal.i)));
 }
 
-// Every plot gives its numbers and its picture.
+// Every canvas is that of a plot with two buttons, which save its numbers and its picture.
 export async function savePlots(page) {
-  for (const kind of ["csv", "png"]) {
-    for (const button of await page.locator(`button[name=save-${kind}]`).all()) {
-      if (!(await button.isVisible())) continue;
-      const [download] = await Promise.all([page.waitForEvent("download"), button.click()]);
-      const file = readFileSync(await download.path());
+  await page.evaluate(() => document.querySelectorAll("main details:not([open])").forEach((e) => { e.open = true; e.dataset.opened = "yes"; }));
+  const plots = page.locator("[data-plot]");
+  assert.equal(await page.locator("main canvas").count(), await page.locator("[data-plot] canvas").count(), "each canvas has its plot");
+  assert.ok(await plots.count());
+  for (const plot of await plots.all()) {
+    const name = await plot.evaluate((e) => e.dataset.chart || e.dataset.plot);
+    assert.equal(await plot.locator("canvas").count(), 1, name);
+    for (const kind of ["csv", "png"]) {
+      const [download] = await Promise.all([page.waitForEvent("download"), plot.locator(`button[name=save-${kind}]`).click()]);
       assert.ok(download.suggestedFilename().endsWith("." + kind));
-      if (kind === "png") { assert.equal(file.subarray(1, 4).toString(), "PNG"); continue; }
-      const rows = file.toString().trim().split("\r\n"), width = rows[0].match(/"[^"]*"/g).length;
-      assert.ok(rows.length > 2 && width > 1, "numbers with headings: " + rows[0]);
-      for (const row of rows.slice(1)) assert.equal(row.split(",").length, width, row);
+      checkFile(readFileSync(await download.path()), kind, name);
     }
   }
-  if (!(await page.locator("#surface-png").count())) return;
-  const [download] = await Promise.all([page.waitForEvent("download"), page.click("#surface-png")]);
-  assert.ok(readFileSync(await download.path()).length > 5000, "the surface's picture");
+  await page.evaluate(() => document.querySelectorAll("[data-opened]").forEach((e) => { e.open = false; }));
+}
+
+function checkFile(file, kind, name) {
+  if (kind === "png") {
+    assert.equal(file.toString("latin1", 1, 4), "PNG");
+    assert.ok(file.length > (name === "surface" ? 5000 : 1000), name + ": a picture with something in it");
+    return;
+  }
+  const rows = file.toString().trim().split("\r\n"), width = rows[0].match(/"[^"]*"/g).length;
+  assert.ok(rows.length > 2 && width > 1, name + ": numbers with headings: " + rows[0]);
+  for (const row of rows.slice(1)) assert.equal(row.split(",").length, width, row);
+  assert.match(rows.slice(1).join(), /\d/, name + ": numbers");
 }
 
 // The scrubber stands below the surface and covers neither it nor a chart.
@@ -172,7 +183,7 @@ async function useRest(page) {
 }
 
 const used = new Set(["play", "scrub", "speed", "colour", "span", "model", "measured", "magnify", "glass", "arrows", "turn", "view",
-  "track", "component", "theme", "camera", "surroundings", "surface-png", "save-csv", "save-png"]);
+  "track", "component", "theme", "camera", "surroundings", "save-csv", "save-png"]);
 
 // Both outlines are on the picture, and it plays.
 async function checkPicture(page) {
