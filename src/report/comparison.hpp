@@ -28,7 +28,7 @@ ComparedRun read_run(const std::string& folder);
 
 /// Returns one page that shows runs beside each other: parameters with their intervals, errors, states, both over time, and
 /// how the model files differ from the first one. Each run is named by its folder, without the folders that all runs lie
-/// in. It needs no network, and its text is complete without scripts.
+/// in. It needs no network, and its text is complete without scripts. Throws InputError for a model that is no YAML.
 std::string comparison_html(const std::vector<ComparedRun>& compared, const std::string& command_line,
                             const std::vector<std::pair<std::string, std::string>>& versions);
 

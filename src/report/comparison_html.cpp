@@ -5,6 +5,7 @@
 
 #include "report/comparison.hpp"
 #include "report/course.hpp"
+#include "report/difference_table.hpp"
 #include "report/page.hpp"
 #include "report/text.hpp"
 
@@ -122,14 +123,14 @@ std::string parameters(const std::vector<ComparedRun>& runs) {
 }
 
 std::string models(const std::vector<ComparedRun>& runs) {
-  std::string content = file_details("Model of " + runs.front().name, runs.front().model_text, "", false);
+  const ComparedRun& first = runs.front();
+  std::string content, files = file_details("Model of " + first.name, first.model_text, false);
   for (std::size_t i = 1; i < runs.size(); ++i) {
-    const bool same = runs[i].model_text == runs.front().model_text;
-    content += same ? "<p>" + escape_html(runs[i].name) + " has the same model file.</p>"
-                    : file_details("Model of " + runs[i].name + ", with the lines marked that the first one lacks",
-                                   runs[i].model_text, runs.front().model_text, true);
+    content +=
+        difference_table({"model of " + first.name, first.model_text}, {"model of " + runs[i].name, runs[i].model_text});
+    files += file_details("Model of " + runs[i].name, runs[i].model_text, false);
   }
-  return section("model", "Models", content);
+  return section("model", "How the models differ", content + files);
 }
 
 /// Returns numbers times a scale, thinned to every `step`-th; null where there is none.

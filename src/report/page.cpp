@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <map>
 #include <set>
-#include <sstream>
 
 #include "report/assets.hpp"
 #include "report/text.hpp"
@@ -152,28 +151,22 @@ std::string player(const Showing& showing, bool arrows) {
       model_choice(showing.replays) + surface_place(arrows) + (showing.pictures.empty() ? "" : picture) + motion);
 }
 
-std::string file_details(const std::string& summary, const std::string& text, const std::string& before, bool open) {
+std::string file_details(const std::string& summary, const std::string& text, bool open) {
   if (text.empty()) return "";
-  std::set<std::string> known;
-  std::istringstream old(before), lines(text);
-  std::string line, marked;
-  while (std::getline(old, line)) known.insert(line);
-  while (std::getline(lines, line)) {
-    const bool added = !before.empty() && known.count(line) == 0;
-    marked += added ? "<ins>" + escape_html(line) + "</ins>\n" : escape_html(line) + "\n";
-  }
-  return "<details" + std::string(open ? " open" : "") + "><summary>" + escape_html(summary) + "</summary><pre>" + marked +
-         "</pre></details>";
+  return "<details" + std::string(open ? " open" : "") + "><summary>" + escape_html(summary) + "</summary><pre>" +
+         escape_html(text) + "</pre></details>";
 }
 
-std::string colophon(const std::string& command_line, const std::vector<std::pair<std::string, std::string>>& versions) {
+std::string colophon(const std::string& command_line, const std::vector<std::pair<std::string, std::string>>& versions,
+                     const std::string& remark) {
   std::string list;
   for (const auto& [name, version] : versions) list += (list.empty() ? "" : " · ") + name + " " + version;
-  return section(
-      "made", "How to make this again",
-      "<pre>" + escape_html(command_line) + "</pre><p class=\"soft\">" + escape_html(list) +
-          "</p><p class=\"soft\">The page needs no network. It carries two libraries under the MIT licence:</p>" +
-          licence("uPlot", report_assets.uplot_licence) + licence("three.js", report_assets.three_licence));
+  return section("made", "How to make this again",
+                 "<pre>" + escape_html(command_line) + "</pre>" +
+                     (remark.empty() ? "" : "<p>" + escape_html(remark) + "</p>") + "<p class=\"soft\">" +
+                     escape_html(list) +
+                     "</p><p class=\"soft\">The page contains two libraries under the MIT licence:</p>" +
+                     licence("uPlot", report_assets.uplot_licence) + licence("three.js", report_assets.three_licence));
 }
 
 }  // namespace tissue_stiffness

@@ -38,11 +38,13 @@ std::string chart_place(const std::string& id);
 /// Returns the card that animates model and measurement; nothing without a replay. `arrows`: show the missing force.
 std::string player(const Showing& showing, bool arrows = false);
 
-/// Returns a text file that can be unfolded. If `before` is not empty, lines that it lacks are marked.
-std::string file_details(const std::string& summary, const std::string& text, const std::string& before, bool open);
+/// Returns a text file that can be unfolded; nothing when it is empty.
+std::string file_details(const std::string& summary, const std::string& text, bool open);
 
-/// Says how to make the page again: command line, versions, and the libraries that the page contains, with their licences.
-std::string colophon(const std::string& command_line, const std::vector<std::pair<std::string, std::string>>& versions);
+/// Says how to make the page again: command line, `remark`, versions, and the libraries that the page contains, with their
+/// licences.
+std::string colophon(const std::string& command_line, const std::vector<std::pair<std::string, std::string>>& versions,
+                     const std::string& remark = "");
 
 /// Returns {first_stamp, replays, pictures}. Positions are rounded to 1/64000 of their range, misfits to 1/254 of the root
 /// of theirs.

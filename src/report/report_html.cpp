@@ -206,7 +206,7 @@ std::string report_html(const Results& results, const Showing& showing) {
   page.body = answer(results) + facts(results) + recordings_table(results.recordings) + courses(results) + player(showing) +
               misfit(results) + parameter_table(results) + input_section(results) +
               (results.map ? map_table(*results.map) : "") + skipped_table(results) + choices(results) +
-              section("model", "", file_details("Model file", results.model_text, "", true)) + timing_table(results) +
+              section("model", "", file_details("Model file", results.model_text, true)) + timing_table(results) +
               colophon(results.command_line, results.versions);
   page.data = "{\"results\":" + results_json(results) + ",\"course\":" + course_json(results, showing.first_stamp) +
               ",\"showing\":" + showing_json(showing) + "}";

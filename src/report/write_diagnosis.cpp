@@ -60,7 +60,7 @@ std::string rejection(const Diagnosis& d) {
   return named > d.none_of_these ? " That is not certain enough for a name." : " None of them explains the data.";
 }
 
-std::string verdict_sentence(const Diagnosis& d) {
+std::string verdict_sentence(const Diagnosis& d, bool with_probabilities) {
   if (d.verdict == Verdict::unfinished) return "There is no verdict yet: the search for what is missing was interrupted.";
   if (d.verdict == Verdict::adequate) return "The model is adequate: what it leaves is noise.";
   if (d.verdict == Verdict::numerics) {
@@ -75,7 +75,7 @@ std::string verdict_sentence(const Diagnosis& d) {
           (together ? ". They" : ". It") + " would remove " + short_number(100.0 * d.best.explained, 3) +
           " % of the squared error (held-out error " + millimetres(d.steps.front().held_out_rms) + " to " +
           millimetres(d.best.held_out_rms) + ").";
-  text += probabilities(d);
+  if (with_probabilities) text += probabilities(d);
   if (d.verdict == Verdict::unexplained) text += rejection(d);
   std::vector<std::string> others;
   std::copy_if(d.set.begin(), d.set.end(), std::back_inserter(others),
@@ -93,10 +93,10 @@ std::string verdict_sentence(const Diagnosis& d) {
 
 }  // namespace
 
-std::string diagnosis_sentence(const Diagnosis& d) {
+std::string diagnosis_sentence(const Diagnosis& d, bool with_probabilities) {
   const std::string failure = d.failure.empty() ? "" : " But " + d.failure + ".";
   const std::string left_out = d.left_out.empty() ? "" : " Left out: " + d.left_out + ".";
-  return verdict_sentence(d) + traces(d) + failure + left_out;
+  return verdict_sentence(d, with_probabilities) + traces(d) + failure + left_out;
 }
 
 void write_diagnosis(const Diagnosis& d, const DiagnosisTexts& texts, const Showing& showing,

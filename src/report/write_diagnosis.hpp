@@ -33,7 +33,8 @@ std::string diagnosis_html(const Diagnosis& diagnosis, const DiagnosisTexts& tex
 void write_diagnosis(const Diagnosis& diagnosis, const DiagnosisTexts& texts, const Showing& showing,
                      const std::string& directory);
 
-/// Returns a summary for the reader: what is missing, what it would explain, and what fits as well.
-std::string diagnosis_sentence(const Diagnosis& diagnosis);
+/// Returns a summary for the reader: what is missing, what it would explain, and what fits as well. A page that lists the
+/// probabilities of the effects does without those in the sentence.
+std::string diagnosis_sentence(const Diagnosis& diagnosis, bool with_probabilities = true);
 
 }  // namespace tissue_stiffness

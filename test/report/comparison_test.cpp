@@ -29,7 +29,8 @@ class Comparison : public ::testing::Test {
     for (FrameRecord& frame : after.frames) {
       if (frame.used) frame.parameters.push_back(after.parameters.back());
     }
-    after.model_text += "- viscoelasticity: {tau: <0.2>}\n";
+    after.model_text =
+        "mesh: {file: elsewhere/mesh.vtk}\neffects:\n- inertia: {density: 1000}\n- viscoelasticity: {tau: <0.2>}\n";
     after.state = EstimateState::model_invalid;
     write_results(after, {}, folder_ + "/after");
   }
@@ -78,11 +79,15 @@ TEST_F(Comparison, ShowsRunsBesideEachOther) {
   for (const std::string fragment :
        {"id=\"runs\"", "<td>before</td>", "converged", "<td>after</td>", "model invalid",
         "Young&#39;s modulus (elasticity)", "412.3 kPa", "408.2 to 416.5", "300.0 kPa", "tau (viscoelasticity)",
-        "not in this model", "compare-misfit", "<ins>- viscoelasticity: {tau: &lt;0.2&gt;}</ins>", "compare a b"}) {
+        "not in this model", "compare-misfit",
+        "<code>inertia.density</code></td><td><del>1060</del></td><td><ins>1000</ins></td>",
+        "<code>viscoelasticity</code></td><td class=\"soft\">not there</td><td><ins>{tau: &lt;0.2&gt;}</ins>",
+        "compare a b"}) {
     const std::size_t found = page.find(fragment, at);
     EXPECT_NE(found, std::string::npos) << fragment;
     if (found != std::string::npos) at = found;
   }
+  EXPECT_EQ(page.find("<code>mesh.file"), std::string::npos) << "a folder is no difference";
   const std::string start = "id=\"data\">";
   const std::size_t from = page.find(start) + start.size();
   const auto data = nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from)).at("compare");
@@ -98,6 +103,17 @@ TEST(WithoutCommonFolders, KeepsWhatTellsPathsApart) {
   EXPECT_EQ(without_common_folders({"a/one", "ab/one"}), (Paths{"a/one", "ab/one"}));
   EXPECT_EQ(without_common_folders({"a/b", "a"}), (Paths{"a/b", "a"}));
   EXPECT_EQ(without_common_folders({"a/b", "a/b"}), (Paths{"b", "b"}));
+}
+
+TEST_F(Comparison, RefusesAModelThatIsNoYaml) {
+  replace("/after/results.json", "effects:", "effects: [");
+  const std::vector<ComparedRun> runs = {read_run(folder_ + "/before"), read_run(folder_ + "/after")};
+  try {
+    comparison_html(runs, "", {});
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()).find("model of after:"), 0U) << error.what();
+  }
 }
 
 TEST_F(Comparison, NamesWhatIsMissing) {

@@ -37,4 +37,10 @@ if (replays.length) {
   player.listen((time) => { for (const c of charts) if (c.plot.moveClock) c.plot.moveClock(time); });
   startPlayer();
 }
+// On a phone each row of such a table is a card, and every cell says what it is.
+for (const table of document.querySelectorAll("table.stacked")) {
+  const heads = Array.from(table.rows[0].cells, (th) => th.textContent);
+  for (const row of Array.from(table.rows).slice(1)) Array.from(row.cells).forEach((cell, i) => { cell.dataset.label = heads[i]; });
+  table.classList.add("labelled");
+}
 document.documentElement.dataset.ready = "yes";
