@@ -50,6 +50,17 @@ std::string cell(const std::string& text, const std::string& kind = "") {
   return "<td" + (kind.empty() ? "" : " class=\"" + kind + "\"") + ">" + escape_html(text) + "</td>";
 }
 
+/// A name may be long: it wraps, and columns stay in view.
+std::string name_cell(const std::string& name) {
+  return "<td class=\"run\"><span title=\"" + escape_html(name) + "\">" + escape_html(name) + "</span></td>";
+}
+
+std::string file_cell(const std::string& file) {
+  const std::string path = escape_html(short_path(file));
+  const std::size_t slash = path.rfind('/') + 1;  // 0 without one
+  return "<td class=\"file\">" + path.substr(0, slash) + "<wbr>" + path.substr(slash) + "</td>";
+}
+
 std::string badge(const std::string& state) {
   const std::string colour = state == "converged"                             ? "good"
                              : state == "model_invalid" || state == "no_data" ? "bad"
@@ -62,58 +73,36 @@ std::string badge(const std::string& state) {
 std::string overview(const std::vector<ComparedRun>& runs) {
   std::string rows;
   for (const ComparedRun& run : runs) {
-    rows += "<tr>" + cell(run.name) + cell(short_path(run.model)) + cell(short_path(run.recording)) + "<td>" +
-            badge(run.state) + " <span class=\"soft\">" + escape_html(run.state_reason) + "</span></td>" +
+    rows += "<tr>" + name_cell(run.name) + file_cell(run.model) + file_cell(run.recording) + "<td>" + badge(run.state) +
+            " <span class=\"soft\">" + escape_html(run.state_reason) + "</span></td>" +
             cell(millimetres(run.rms_error), "n") + cell(millimetres(run.noise_rms), "n") +
             cell(short_number(run.rms_error / run.noise_rms, 3), "n") + cell(std::to_string(run.frames), "n") + "</tr>";
   }
   return section("runs", "Runs",
-                 "<div class=\"scroll\"><table><thead><tr><th>run</th><th>model</th><th>recording</th><th>state</th><th "
+                 "<div class=\"scroll\"><table "
+                 "class=\"stacked\"><thead><tr><th>run</th><th>model</th><th>recording</th><th>state</th><th "
                  "class=\"n\">error</th><th class=\"n\">noise</th><th class=\"n\">error / noise</th><th "
                  "class=\"n\">frames</th></tr></thead><tbody>" +
                      rows + "</tbody></table></div>");
 }
 
-/// Ends of the axis that holds all intervals.
-struct Span {
-  double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
-  void add(double value) {
-    if (!std::isfinite(value)) return;
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
-  double percent(double value) const { return high > low ? 100.0 * (value - low) / (high - low) : 50.0; }
-};
-
-/// Draws an interval as a bar with its mean as a dot.
-std::string interval_bar(const ParameterEstimate& p, const Span& span) {
-  if (!std::isfinite(p.lower95) || !std::isfinite(p.upper95)) return "<td></td>";
-  const double from = span.percent(p.lower95), to = span.percent(p.upper95);
-  return "<td class=\"whisker\"><div><i style=\"left:" + short_number(from, 4) + "%;width:" + short_number(to - from, 4) +
-         "%\"></i><b style=\"left:" + short_number(span.percent(p.mean), 4) + "%\"></b></div></td>";
-}
-
 std::string parameter_rows(const std::vector<ComparedRun>& runs, const std::string& name) {
   const ShownUnit unit = common_unit(runs, name);
-  Span span;
-  for (const ComparedRun& run : runs) {
-    if (const ParameterEstimate* p = parameter(run, name)) span.add(p->lower95), span.add(p->upper95);
-  }
+  const std::string suffix = unit.name.empty() ? "" : " " + unit.name;
   std::string rows;
   for (const ComparedRun& run : runs) {
     const ParameterEstimate* p = parameter(run, name);
-    if (p == nullptr) {
-      rows += "<tr>" + cell(run.name) + cell("not in this model") + cell("") + "<td></td></tr>";
-      continue;
-    }
-    const auto show = [&](double value) { return rounded(unit.scale * value, unit.scale * p->std); };
-    rows += "<tr>" + cell(run.name) + cell(show(p->mean) + " " + unit.name) +
-            cell(show(p->lower95) + " to " + show(p->upper95)) + interval_bar(*p, span) + "</tr>";
+    const ShownEstimate shown = p == nullptr ? ShownEstimate{} : shown_estimate(*p, unit.scale);
+    rows += "<tr>" + name_cell(run.name) +
+            (p == nullptr ? cell("not in this model", "n") + cell("")
+                          : cell(shown.mean + suffix, "n") + cell(shown.lower + " to " + shown.upper + suffix, "n")) +
+            "</tr>";
   }
   return "<h3>" + escape_html(parameter_title(name)) +
-         "</h3><div class=\"scroll\"><table><thead><tr><th>run</th><th>estimate</th><th>95 %</th><th "
-         "class=\"whisker\"></th></tr></thead><tbody>" +
-         rows + "</tbody></table></div>" + chart_place("compare:" + escape_html(name));
+         "</h3><div class=\"grid\"><div class=\"scroll\"><table class=\"stacked\"><thead><tr><th>run</th><th "
+         "class=\"n\">estimate</th><th class=\"n\">95 %</th></tr></thead><tbody>" +
+         rows + "</tbody></table></div>" + chart_place("intervals:" + escape_html(name)) + "</div>" +
+         chart_place("compare:" + escape_html(name));
 }
 
 std::string parameters(const std::vector<ComparedRun>& runs) {
@@ -141,13 +130,19 @@ json list(const std::vector<double>& values, double scale, std::size_t step) {
   return out;
 }
 
+/// Returns the final estimate in the displayed unit, as [mean, lower, upper].
+json final_json(const ParameterEstimate& p, double scale) {
+  return list({p.mean, p.lower95, p.upper95}, scale, 1);
+}
+
 json run_json(const std::vector<ComparedRun>& runs, const ComparedRun& run) {
   const std::size_t step = 1 + run.time.size() / kMostPoints;
   json all = json::object();
   for (std::size_t i = 0; i < run.parameters.size(); ++i) {
     const std::string& name = run.parameters[i].name;
     const ShownUnit unit = common_unit(runs, name);
-    all[name] = {{"mean", list(run.mean[i], unit.scale, step)},
+    all[name] = {{"final", final_json(run.parameters[i], unit.scale)},
+                 {"mean", list(run.mean[i], unit.scale, step)},
                  {"lower", list(run.lower[i], unit.scale, step)},
                  {"upper", list(run.upper[i], unit.scale, step)}};
   }

@@ -77,9 +77,9 @@ TEST_F(Comparison, ShowsRunsBesideEachOther) {
       comparison_html({read_run(folder_ + "/before"), read_run(folder_ + "/after")}, "compare a b", {});
   std::size_t at = 0;
   for (const std::string fragment :
-       {"id=\"runs\"", "<td>before</td>", "converged", "<td>after</td>", "model invalid",
+       {"id=\"runs\"", ">before</span></td>", "converged", ">after</span></td>", "model invalid",
         "Young&#39;s modulus (elasticity)", "412.3 kPa", "408.2 to 416.5", "300.0 kPa", "tau (viscoelasticity)",
-        "not in this model", "compare-misfit",
+        "not in this model", "data-chart=\"intervals:viscoelasticity.tau\"", "compare-misfit",
         "<code>inertia.density</code></td><td><del>1060</del></td><td><ins>1000</ins></td>",
         "<code>viscoelasticity</code></td><td class=\"soft\">not there</td><td><ins>{tau: &lt;0.2&gt;}</ins>",
         "compare a b"}) {
@@ -94,6 +94,9 @@ TEST_F(Comparison, ShowsRunsBesideEachOther) {
   ASSERT_EQ(data.at("runs").size(), 2U);
   EXPECT_EQ(data.at("runs")[0].at("time").size(), 38U);
   EXPECT_NEAR(data.at("runs")[1].at("parameters").at("elasticity.young_modulus").at("mean").back(), 412.0, 0.1);
+  const auto last = data.at("runs")[1].at("parameters").at("elasticity.young_modulus").at("final");
+  EXPECT_NEAR(last[0], 300.0, 1e-9);
+  EXPECT_NEAR(last[2], 300.0 + 1.96, 1e-9);
   EXPECT_EQ(data.at("titles").at("viscoelasticity.tau"), "tau (viscoelasticity) [s]");
 }
 
