@@ -1,29 +1,26 @@
 #include "nodes/diagnostics.hpp"
 
-#include <diagnostic_msgs/DiagnosticArray.h>
 #include <ros/ros.h>
 
+#include <algorithm>
 #include <cstdio>
-#include <utility>
 
 namespace tissue_stiffness {
 namespace {
 
-diagnostic_msgs::KeyValue entry(const std::string& key, const std::string& value) {
-  diagnostic_msgs::KeyValue out;
-  out.key = key;
-  out.value = value;
-  return out;
-}
+// The updater reads a period again and again, and throws for one that it cannot add to the time. The node reads and checks
+// its own, so the updater looks where there is none.
+constexpr const char* kNoParameters = "~diagnostic_updater";
+constexpr std::uint32_t kQueue = 10;  // messages; the updater's one would be shared by all nodelets of a process
 
 }  // namespace
 
-Diagnostics::Diagnostics(ros::NodeHandle node, const std::string& name) {
-  status_.name = ros::this_node::getName() + ": " + name;
-  status_.hardware_id = "none";
-  status_.message = "starting";
-  publisher_ = node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 10);
-  timer_ = node.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { publish(); });
+Diagnostics::Diagnostics(ros::NodeHandle node, const std::string& name, double period)
+    : topic_(node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", kQueue)),
+      updater_(node, ros::NodeHandle(kNoParameters), "/" + ros::this_node::getName()) {  // it drops the first character
+  updater_.setHardwareID("none");
+  updater_.add(name, [this](Status& status) { fill(status); });
+  timer_ = node.createWallTimer(ros::WallDuration(period), [this](const ros::WallTimerEvent&) { publish(); });
 }
 
 void Diagnostics::count(const std::string& key) {
@@ -52,8 +49,8 @@ void Diagnostics::time(const std::string& stage, double seconds) {
 
 void Diagnostics::state(std::uint8_t level, const std::string& message) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  status_.level = level;
-  status_.message = message;
+  level_ = level;
+  message_ = message;
 }
 
 void Diagnostics::expect(const std::string& topic, double longest) {
@@ -68,16 +65,14 @@ void Diagnostics::heard(const std::string& topic) {
   input.heard = true;
 }
 
-void Diagnostics::add_inputs(diagnostic_msgs::DiagnosticStatus& status) const {
+void Diagnostics::add_inputs(Status& status) const {
   for (const auto& [topic, input] : inputs_) {
     const double age = (ros::WallTime::now() - input.last).toSec();
+    status.addf("age of " + topic + " [s]", input.heard ? "%.1f" : "nothing for %.1f", age);
+    if (!(age > input.longest) || status.level > Status::WARN) continue;
     char text[64];
-    std::snprintf(text, sizeof text, input.heard ? "%.1f" : "nothing for %.1f", age);
-    status.values.push_back(entry("age of " + topic + " [s]", text));
-    if (!(age > input.longest) || status.level > diagnostic_msgs::DiagnosticStatus::WARN) continue;
     std::snprintf(text, sizeof text, " for %.0f s", age);
-    status.level = diagnostic_msgs::DiagnosticStatus::WARN;
-    status.message += "; no message on " + topic + text;
+    status.summary(Status::WARN, status.message + "; no message on " + topic + text);
   }
 }
 
@@ -87,21 +82,24 @@ void Diagnostics::bad_message(const std::string& what) {
   set("last bad message", what);
 }
 
+// update() would wait for simulated time. A clock at the end of what ros::Time can hold makes the updater throw.
 void Diagnostics::publish() {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  diagnostic_msgs::DiagnosticStatus status = status_;
-  add_inputs(status);
-  for (const auto& [key, count] : counts_) status.values.push_back(entry(key, std::to_string(count)));
-  for (const auto& [key, text] : texts_) status.values.push_back(entry(key, text));
-  for (const auto& [name, stage] : stages_) {
-    char text[64];
-    std::snprintf(text, sizeof text, "%.3f mean, %.3f longest", 1e3 * stage.sum / stage.runs, 1e3 * stage.longest);
-    status.values.push_back(entry(name + " [ms]", text));
+  try {
+    updater_.force_update();
+  } catch (const std::exception& error) {
+    ROS_WARN_STREAM_THROTTLE(1.0, "nothing on /diagnostics: " << error.what());
   }
-  diagnostic_msgs::DiagnosticArray array;
-  array.header.stamp = ros::Time::now();
-  array.status.push_back(std::move(status));
-  publisher_.publish(array);
+}
+
+void Diagnostics::fill(Status& status) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  status.summary(level_, message_);
+  add_inputs(status);
+  for (const auto& [key, count] : counts_) status.add(key, count);
+  for (const auto& [key, text] : texts_) status.add(key, text);
+  for (const auto& [name, stage] : stages_) {
+    status.addf(name + " [ms]", "%.3f mean, %.3f longest", 1e3 * stage.sum / stage.runs, 1e3 * stage.longest);
+  }
 }
 
 }  // namespace tissue_stiffness

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <diagnostic_msgs/DiagnosticStatus.h>
+#include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/node_handle.h>
 
 #include <map>
@@ -9,10 +9,12 @@
 
 namespace tissue_stiffness {
 
-/// Publishes a node's state on /diagnostics once a second: counts, texts and the times of stages. It is thread safe.
+/// Publishes a node's state on /diagnostics by a diagnostic_updater: counts, texts and the times of stages. It is thread
+/// safe.
 class Diagnostics {
  public:
-  Diagnostics(ros::NodeHandle node, const std::string& name);
+  /// `period`: between two messages [s, wall time], because simulated time may stand still or jump back.
+  Diagnostics(ros::NodeHandle node, const std::string& name, double period);
 
   void count(const std::string& key);
   void set(const std::string& key, const std::string& text);
@@ -41,17 +43,21 @@ class Diagnostics {
     ros::WallTime last;
     bool heard = false;
   };
+  using Status = diagnostic_updater::DiagnosticStatusWrapper;
   void publish();
-  void add_inputs(diagnostic_msgs::DiagnosticStatus& status) const;
+  void fill(Status& status);
+  void add_inputs(Status& status) const;
 
   std::mutex mutex_;
-  diagnostic_msgs::DiagnosticStatus status_;
+  std::uint8_t level_ = Status::OK;
+  std::string message_ = "starting";
   std::map<std::string, int> counts_;
   std::map<std::string, std::string> texts_;
   std::map<std::string, Stage> stages_;
   std::map<std::string, Input> inputs_;
-  ros::Publisher publisher_;
-  ros::WallTimer timer_;
+  ros::Publisher topic_;
+  diagnostic_updater::Updater updater_;
+  ros::WallTimer timer_;  ///< last member, because it uses the ones above
 };
 
 }  // namespace tissue_stiffness

@@ -42,7 +42,7 @@ EstimatorNode::EstimatorNode(ros::NodeHandle node, const ros::NodeHandle& privat
 EstimatorNode::EstimatorNode(ros::NodeHandle node, const NodeSettings& settings)
     : settings_(read_model(settings.model, settings.directory)),
       queue_size_(static_cast<std::uint32_t>(read_number(settings.own, key("queue_size")))),
-      diagnostics_(node, "estimator"),
+      diagnostics_(node, "estimator", read_number(settings.own, key("diagnostic_period"))),
       poses_(read_text(settings.own, key("model_frame")), read_number(settings.own, key("transform_timeout"))),
       queue_(std::chrono::duration<double>(read_number(settings.own, key("load_timeout"))), queue_size_),
       inputs_(node, settings_, poses_, queue_, diagnostics_),

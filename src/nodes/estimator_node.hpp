@@ -36,8 +36,8 @@ namespace tissue_stiffness {
 ///
 /// Private parameters: `model` (a file) or the model's keys; `model_frame` ("model"), `load_timeout` (0.1 s),
 /// `transform_timeout` (0.1 s), `queue_size` (100 frames), `diagnosis_period` (10 s; 0: on request only),
-/// `diagnosis_window` (20 s). A frame waits for `load_timeout` for the loads and other sensors up to its stamp. A
-/// check uses the frames of `diagnosis_window`.
+/// `diagnosis_window` (20 s), `diagnostic_period` (1 s). A frame waits for `load_timeout` for the loads and other sensors
+/// up to its stamp. A check uses the frames of `diagnosis_window`.
 class EstimatorNode {
  public:
   EstimatorNode(ros::NodeHandle node, const ros::NodeHandle& private_node);

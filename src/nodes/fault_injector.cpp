@@ -66,7 +66,7 @@ FaultInjector::FaultInjector(const ros::NodeHandle& node, const ros::NodeHandle&
 FaultInjector::FaultInjector(ros::NodeHandle node, const NodeSettings& settings)
     : node_(std::move(node)),
       settings_(read_faults(settings.own)),
-      diagnostics_(node_, "faults"),
+      diagnostics_(node_, "faults", read_number(settings.own, find_key(keys(), "diagnostic_period"))),
       faults_(node_.advertise<InjectedFault>("faults", kQueue)) {
   settings.model.require_all_read();  // there is none
   const std::vector<Value>& topics = settings.own.at("topics").items();

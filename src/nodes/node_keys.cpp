@@ -15,6 +15,10 @@ KeySpec patience(double seconds) {
   return number_key("transform_timeout", "s", 0, 60, seconds, "how long to wait for a sensor's pose on tf, in wall time");
 }
 
+KeySpec diagnostic_period() {
+  return number_key("diagnostic_period", "s", 0.1, 60, 1, "wall time between messages on /diagnostics");
+}
+
 KeySpec rate(const std::string& path, const std::string& meaning) {
   return number_key(path, "", 0, 1, 0.01, "probability that a message " + meaning);
 }
@@ -34,12 +38,13 @@ const std::vector<std::pair<std::string, std::vector<KeySpec>>>& all_keys() {
                    "between stamps, like the times below; each fault draws its own length"),
         number_key("longest_shift", "s", 0, 60, 5, "of a stamp"), number_key("longest_mute", "s", 0, 3600, 3, "of a topic"),
         number_key("quiet", "s", 0, 1e6, 0, "how long none happens; 0: they always do"),
-        number_key("active", "s", 0, 1e6, 0, "how long they then happen, in turns with `quiet`")}},
+        number_key("active", "s", 0, 1e6, 0, "how long they then happen, in turns with `quiet`"), diagnostic_period()}},
       {"segmentation_node",
        {plain_key("segmentation", KeySpec::Kind::map, "",
                   "`{kind, ...}` as in a model file's contour, for a node without a model"),
         number_key("contour_number", "", 1, 100, 1, "which of the model's contours"),
-        number_key("queue_size", "images", 1, 1e4, 100, "that may wait before the oldest is dropped")}},
+        number_key("queue_size", "images", 1, 1e4, 100, "that may wait before the oldest is dropped"),
+        diagnostic_period()}},
       {"mesh_node",
        {frame(), patience(1.0),
         text_key("mesh_folder", "",
@@ -51,7 +56,7 @@ const std::vector<std::pair<std::string, std::vector<KeySpec>>>& all_keys() {
         number_key("queue_size", "frames", 1, 1e5, 100, "that may wait before the oldest is dropped"),
         number_key("diagnosis_period", "s", 0, 1e6, 10,
                    "wall time between checks of what the model misses; 0: on request only"),
-        number_key("diagnosis_window", "s", 1, 1e5, 20, "how much of the run a check sees")}}};
+        number_key("diagnosis_window", "s", 1, 1e5, 20, "how much of the run a check sees"), diagnostic_period()}}};
   return keys;
 }
 

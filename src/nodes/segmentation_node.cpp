@@ -30,6 +30,10 @@ const ObservationSettings* find_contour(const ModelSettings& model, int number) 
   throw InputError(model.name + ": contour_number", std::to_string(number), "1 to " + std::to_string(contours));
 }
 
+const KeySpec& key(const std::string& name) {
+  return find_key(node_keys("segmentation_node"), name);
+}
+
 std::string size_of(std::uint32_t width, std::uint32_t height) {
   return std::to_string(width) + " x " + std::to_string(height);
 }
@@ -37,11 +41,14 @@ std::string size_of(std::uint32_t width, std::uint32_t height) {
 }  // namespace
 
 SegmentationNode::SegmentationNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
-    : node_(node), transport_(node_), diagnostics_(node_, "segmentation") {
-  const std::vector<KeySpec>& keys = node_keys("segmentation_node");
-  const NodeSettings settings = read_node_settings(private_node, names_of(keys));
-  queue_size_ = static_cast<std::uint32_t>(read_number(settings.own, find_key(keys, "queue_size")));
-  const int number = static_cast<int>(read_number(settings.own, find_key(keys, "contour_number")));
+    : SegmentationNode(node, read_node_settings(private_node, names_of(node_keys("segmentation_node")))) {}
+
+SegmentationNode::SegmentationNode(const ros::NodeHandle& node, const NodeSettings& settings)
+    : node_(node),
+      transport_(node_),
+      diagnostics_(node_, "segmentation", read_number(settings.own, key("diagnostic_period"))),
+      queue_size_(static_cast<std::uint32_t>(read_number(settings.own, key("queue_size")))) {
+  const int number = static_cast<int>(read_number(settings.own, key("contour_number")));
   image_topic_ = node_.resolveName("image");
   camera_info_topic_ = node_.resolveName("camera_info");
   if (settings.own.has("segmentation")) {

@@ -24,13 +24,14 @@ namespace tissue_stiffness {
 ///
 /// Private parameters: `segmentation: {kind, ...}`, or `model` (a file or the model's keys), whose contour number
 /// `contour_number` (1) is used. With a model the image topic is the model's, unless `image` is remapped. `queue_size`
-/// (100).
+/// (100), `diagnostic_period` (1 s).
 class SegmentationNode {
  public:
   SegmentationNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
   int exit_code() const { return 0; }
 
  private:
+  SegmentationNode(const ros::NodeHandle& node, const NodeSettings& settings);
   void follow_features(const ModelSettings& model);
   void connect();
   void on_image(const sensor_msgs::ImageConstPtr& message);
@@ -49,11 +50,11 @@ class SegmentationNode {
   ros::NodeHandle node_;
   image_transport::ImageTransport transport_;
   Diagnostics diagnostics_;
+  std::uint32_t queue_size_;
   SegmentationSettings segmentation_;
   std::unique_ptr<Segmenter> segmenter_;  ///< null: the model has no contour
   std::vector<std::unique_ptr<TrackPublisher>> tracks_;
   std::string image_topic_, camera_info_topic_;
-  std::uint32_t queue_size_ = 100;
   ros::Time last_;
   sensor_msgs::CameraInfoConstPtr camera_info_;
   std::deque<Seen> waiting_;
