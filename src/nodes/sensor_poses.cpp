@@ -1,9 +1,6 @@
 #include "nodes/sensor_poses.hpp"
 
-#include <ros/ros.h>
-
 #include <chrono>
-#include <thread>
 
 #include "nodes/sensor_conversions.hpp"
 #include "tissue_stiffness/types/error.hpp"
@@ -20,6 +17,7 @@ InputError no_pose(const std::string& topic, const std::string& found, const std
 SensorPoses::SensorPoses(std::string model_frame, double patience)
     : model_frame_(std::move(model_frame)),
       waits_(std::chrono::duration_cast<BoundedWaits::Clock::duration>(std::chrono::duration<double>(patience))),
+      arrival_(buffer_),
       listener_(buffer_) {}
 
 Eigen::Isometry3d SensorPoses::model_from(const std_msgs::Header& header, const std::string& topic) {
@@ -28,15 +26,11 @@ Eigen::Isometry3d SensorPoses::model_from(const std_msgs::Header& header, const 
   if (frame.empty()) {
     throw InputError(topic + ": header.frame_id", "''", model_frame_ + ", or a frame with a pose on /tf or /tf_static");
   }
-  using Clock = BoundedWaits::Clock;
-  const Clock::time_point begun = Clock::now(), until = waits_.until(frame, begun);
+  const auto begun = BoundedWaits::Clock::now();
   std::string reason;
-  while (!buffer_.canTransform(model_frame_, frame, header.stamp, ros::Duration(0), &reason)) {
-    if (Clock::now() >= until || !ros::ok()) {
-      waits_.in_vain(frame, begun, Clock::now());
-      throw no_pose(topic, frame + " without a pose in " + model_frame_, reason);
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  if (!arrival_.wait(model_frame_, frame, header.stamp, waits_.until(frame, begun), reason)) {
+    waits_.in_vain(frame, begun, BoundedWaits::Clock::now());
+    throw no_pose(topic, frame + " without a pose in " + model_frame_, reason);
   }
   try {
     return to_isometry(buffer_.lookupTransform(model_frame_, frame, header.stamp).transform, "/tf: " + frame);

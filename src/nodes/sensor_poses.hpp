@@ -8,6 +8,7 @@
 #include <string>
 
 #include "nodes/bounded_waits.hpp"
+#include "nodes/transform_wait.hpp"
 
 namespace tissue_stiffness {
 
@@ -27,7 +28,8 @@ class SensorPoses {
   std::string model_frame_;
   BoundedWaits waits_;  ///< by frame
   tf2_ros::Buffer buffer_;
-  tf2_ros::TransformListener listener_;
+  TransformWait arrival_;
+  tf2_ros::TransformListener listener_;  ///< last member, because its thread uses the ones above
 };
 
 }  // namespace tissue_stiffness
