@@ -136,6 +136,9 @@ void Estimator::set_first_stamp(double time) {
 void Estimator::work_in_background() {
   implementation_->pace.background = true;
 }
+void Estimator::set_state_limits(const StateLimits& limits) {
+  implementation_->body.set_state_limits(limits);
+}
 void Estimator::add_load(const LoadSample& sample) {
   implementation_->body.add_load(sample);
 }

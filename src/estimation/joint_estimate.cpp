@@ -269,7 +269,7 @@ class JointStudy {
       if (!r.predicted && !r.agreement.passes())
         return say(EstimateState::doubtful, r.name + " asks for other parameters than the rest");
     }
-    if (std::string why = unlearnt(shared_.free(), covariance_); !why.empty())
+    if (std::string why = unlearnt(shared_.free(), covariance_, StateLimits().converged_within); !why.empty())
       return say(EstimateState::converging, std::move(why));
     say(EstimateState::converged, "the misfit of every recording is noise");
   }

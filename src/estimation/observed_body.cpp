@@ -26,6 +26,7 @@ ObservedBody::ObservedBody(const ModelSettings& settings, const TetMesh& mesh, c
     throw InputError(settings.name + ": effects", "only known numbers", "at least one {prior, factor} or {mean, std}");
   }
   if (operators_.empty()) throw InputError(settings.name + ": observations", "an empty list", "at least one entry");
+  limits_.stale_after = settings.stale_after;
   BasisOptions basis;
   if (mesh.node_count() > kManyNodes) basis.size = kFewVectors;
   basis.keep_root = relatives.own != nullptr;
@@ -54,11 +55,10 @@ void ObservedBody::add_load(const LoadSample& sample) {
 }
 
 std::string ObservedBody::stale_load(double time) const {
-  const double longest = model_->settings().stale_after;
   for (const LoadInput& input : model_->loads().inputs()) {
     const std::optional<double> last = model_->loads().courses().at(input.topic)->last();
     const double since = time - last.value_or(start());
-    if (since <= longest) continue;
+    if (since <= limits_.stale_after) continue;
     std::ostringstream text;
     text << "no load has come on " << input.topic << (last ? " for " : " in ") << std::setprecision(3) << since << " s";
     return text.str();

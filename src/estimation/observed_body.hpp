@@ -12,6 +12,7 @@
 #include "forward/forward_model.hpp"
 #include "forward/model.hpp"
 #include "observation/observation_operator.hpp"
+#include "tissue_stiffness/estimation/state_limits.hpp"
 #include "tissue_stiffness/types/estimate.hpp"
 #include "tissue_stiffness/types/load_sample.hpp"
 
@@ -38,6 +39,8 @@ class ObservedBody {
   double start() const { return first_stamp_.value_or(0.0) + model_->settings().time.start; }
   /// Throws InputError for a load that is not finite, has the wrong size or has no time.
   void add_load(const LoadSample& sample);
+  const StateLimits& state_limits() const { return limits_; }
+  void set_state_limits(const StateLimits& limits) { limits_ = limits; }
   /// Names the load that has not come for longer than `stale_after` before `time` [s]; empty: none.
   std::string stale_load(double time) const;
   /// Forgets loads, stamps and a velocity that was read from frames.
@@ -62,6 +65,7 @@ class ObservedBody {
   std::vector<std::unique_ptr<ObservationOperator>> operators_;
   std::shared_ptr<ForwardModel> forward_;
   std::vector<char> seen_nodes_;  ///< one flag a node: observed so far
+  StateLimits limits_;
   std::optional<double> first_stamp_;
   double first_load_ = std::numeric_limits<double>::infinity();  ///< time of the earliest load [s]
 };

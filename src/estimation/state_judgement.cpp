@@ -9,7 +9,6 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr double kLearnt = 0.5;        // of the prior's standard deviation: what a settled estimate may have left
-constexpr double kWidest = 0.2;        // relative standard deviation of an estimate that is called converged
 constexpr double kInvalidScale = 4.0;  // mean square of all frames' misfit over the noise's
 
 std::string percent(double share) {
@@ -56,7 +55,7 @@ std::string misfit_text(const MisfitTest& test) {
   return text;
 }
 
-std::string unlearnt(const std::vector<FreeParameter>& free, const Eigen::MatrixXd& covariance,
+std::string unlearnt(const std::vector<FreeParameter>& free, const Eigen::MatrixXd& covariance, double widest,
                      const std::vector<std::string>& known_before) {
   const Eigen::VectorXd std = covariance.diagonal().cwiseSqrt();
   for (const Eigen::Index i : judged(free)) {
@@ -64,7 +63,7 @@ std::string unlearnt(const std::vector<FreeParameter>& free, const Eigen::Matrix
     const bool positive = one.prior.kind == Quantity::Kind::log_normal;
     const bool known = std::find(known_before.begin(), known_before.end(), one.name) != known_before.end();
     if (!known && std[i] > kLearnt * one.prior_std()) return one.name + " is hardly better known than its prior";
-    if (positive && std[i] > kWidest) return one.name + " is known to " + percent(std[i]) + " only";
+    if (positive && std[i] > widest) return one.name + " is known to " + percent(std[i]) + " only";
   }
   return "";
 }
@@ -83,8 +82,9 @@ StateJudgement judge_state(const StateEvidence& e) {
   if (!inputs->implausible.empty()) return {EstimateState::doubtful, inputs->implausible};
   StateJudgement of_misfit = inputs->fitted ? by_shape(e) : by_size(e);
   if (of_misfit.state != EstimateState::converged) return of_misfit;
-  if (std::string why = unlearnt(e.model.parameters().free(), e.covariance, e.model.settings().known_before); !why.empty())
-    return {unknown, std::move(why)};
+  std::string why =
+      unlearnt(e.model.parameters().free(), e.covariance, e.converged_within, e.model.settings().known_before);
+  if (!why.empty()) return {unknown, std::move(why)};
   return of_misfit;
 }
 

@@ -25,6 +25,7 @@ struct StateEvidence {
   bool restudying;                    ///< the inputs' errors are studied anew
   bool settled;                       ///< the estimate stays in its own interval
   bool mesh_pending;                  ///< the mesh's error will be known later
+  double converged_within;            ///< relative standard deviation up to which the estimate may be converged
   const SystematicError& systematic;  ///< by the last studies
   const Eigen::MatrixXd& covariance;  ///< as published, filter coordinates
 };
@@ -39,9 +40,10 @@ StateJudgement judge_state(const StateEvidence& evidence);
 
 /// Says how far a misfit is from passing its test.
 std::string misfit_text(const MisfitTest& test);
-/// Returns why an estimate is not precise enough to be used; empty: it is. `covariance` is that of filter coordinates.
-/// A parameter that was `known_before` need not be better known than its prior.
-std::string unlearnt(const std::vector<FreeParameter>& free, const Eigen::MatrixXd& covariance,
+/// Returns why an estimate is not precise enough to be used; empty: it is. `covariance` is that of filter coordinates, and
+/// `widest` the relative standard deviation that it may have. A parameter that was `known_before` need not be better known
+/// than its prior.
+std::string unlearnt(const std::vector<FreeParameter>& free, const Eigen::MatrixXd& covariance, double widest,
                      const std::vector<std::string>& known_before = {});
 
 }  // namespace tissue_stiffness

@@ -187,7 +187,7 @@ class UnscentedScheme : public Scheme {
     return judge_state({model_, misfit, now.misfit.scale, systematic_.misfit_has_risen(now.misfit),
                         reprocessing_.change_suspected(), validity_.invalid(), body_.stale_load(misfit.time),
                         filter_run_->start().motion != nullptr, restudying_ || systematic_.left_study(now),
-                        settling_.settled(), mesh_pending, systematic_, covariance});
+                        settling_.settled(), mesh_pending, body_.state_limits().converged_within, systematic_, covariance});
   }
 
   // Studies what the mesh and errors of the inputs do to the estimate, whenever the recording has grown; in the background

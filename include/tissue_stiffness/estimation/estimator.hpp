@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tissue_stiffness/estimation/state_limits.hpp"
 #include "tissue_stiffness/settings/model_settings.hpp"
 #include "tissue_stiffness/types/estimate.hpp"
 #include "tissue_stiffness/types/free_frame.hpp"
@@ -57,6 +58,9 @@ class Estimator {
   /// Moves long work (the reprocessing of all frames so far, the study of the mesh's error) into the background, so that no
   /// frame waits for it. Which frame first sees a result then depends on timing.
   void work_in_background();
+
+  /// Sets the limits by which the states of later frames are judged. Without this call `stale_after` is the model's.
+  void set_state_limits(const StateLimits& limits);
 
   /// Feeds a load. Samples may come in any order up to the frame that needs them. Between samples loads are linear in time;
   /// outside they are held.
