@@ -50,7 +50,8 @@ const std::map<std::string, std::set<std::string>> kAllowed = [] {
 bool is_ros(const std::string& header) {
   static const std::regex ros(
       "^(ros|rosbag|tf2?|tf2_\\w+|\\w+_msgs|std_srvs|cv_bridge|image_transport|pcl_conversions|topic_tools|XmlRpc\\w*|"
-      "message_filters|diagnostic_updater|pluginlib|nodelet|rviz)(/|\\.h).*|^tissue_stiffness/[A-Z]\\w*\\.h$");
+      "message_filters|diagnostic_updater|dynamic_reconfigure|pluginlib|nodelet|rviz)(/|\\.h).*|^tissue_stiffness/"
+      "[A-Z]\\w*\\.h$");
   return std::regex_match(header, ros);
 }
 

@@ -53,9 +53,14 @@ void Diagnostics::state(std::uint8_t level, const std::string& message) {
   message_ = message;
 }
 
-void Diagnostics::expect(const std::string& topic, double longest) {
+void Diagnostics::expect(const std::string& topic) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  inputs_[topic] = {longest, ros::WallTime::now(), false};
+  inputs_[topic] = {ros::WallTime::now(), false};
+}
+
+void Diagnostics::set_longest_silence(double seconds) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  longest_silence_ = seconds;
 }
 
 void Diagnostics::heard(const std::string& topic) {
@@ -69,7 +74,7 @@ void Diagnostics::add_inputs(Status& status) const {
   for (const auto& [topic, input] : inputs_) {
     const double age = (ros::WallTime::now() - input.last).toSec();
     status.addf("age of " + topic + " [s]", input.heard ? "%.1f" : "nothing for %.1f", age);
-    if (!(age > input.longest) || status.level > Status::WARN) continue;
+    if (!(age > longest_silence_) || status.level > Status::WARN) continue;
     char text[64];
     std::snprintf(text, sizeof text, " for %.0f s", age);
     status.summary(Status::WARN, status.message + "; no message on " + topic + text);

@@ -3,6 +3,7 @@
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/node_handle.h>
 
+#include <limits>
 #include <map>
 #include <mutex>
 #include <string>
@@ -24,9 +25,11 @@ class Diagnostics {
   void time(const std::string& stage, double seconds);
   void state(std::uint8_t level, const std::string& message);
 
-  /// Watches an input by its topic. Its age is published. If nothing has come for more than `longest` [s, wall time], a
-  /// level of OK becomes WARN, and the message names the topic.
-  void expect(const std::string& topic, double longest);
+  /// Watches an input by its topic. Its age is published. If nothing has come for more than the longest silence, a level of
+  /// OK becomes WARN, and the message names the topic.
+  void expect(const std::string& topic);
+  /// Sets how long an input may be silent [s, wall time].
+  void set_longest_silence(double seconds);
   /// Notes that a message has come on a topic, usable or not.
   void heard(const std::string& topic);
 
@@ -39,7 +42,6 @@ class Diagnostics {
     int runs = 0;
   };
   struct Input {
-    double longest;
     ros::WallTime last;
     bool heard = false;
   };
@@ -55,6 +57,7 @@ class Diagnostics {
   std::map<std::string, std::string> texts_;
   std::map<std::string, Stage> stages_;
   std::map<std::string, Input> inputs_;
+  double longest_silence_ = std::numeric_limits<double>::infinity();
   ros::Publisher topic_;
   diagnostic_updater::Updater updater_;
   ros::WallTimer timer_;  ///< last member, because it uses the ones above

@@ -58,7 +58,7 @@ void EstimatorInputs::set_mesh(const TetMesh& mesh) {
 template <typename Message, typename Add>
 void EstimatorInputs::subscribe(const std::string& topic, std::uint32_t queue_size, Add add) {
   queue_.expect(topic);
-  diagnostics_.expect(topic, settings_.stale_after);
+  diagnostics_.expect(topic);
   const boost::function<void(const boost::shared_ptr<const Message>&)> callback =
       [this, topic, add](const boost::shared_ptr<const Message>& message) {
         diagnostics_.heard(topic);

@@ -37,9 +37,9 @@ const KeySpec& key(const std::string& name) {
 }  // namespace
 
 EstimatorNode::EstimatorNode(ros::NodeHandle node, const ros::NodeHandle& private_node)
-    : EstimatorNode(std::move(node), read_settings(private_node)) {}
+    : EstimatorNode(std::move(node), private_node, read_settings(private_node)) {}
 
-EstimatorNode::EstimatorNode(ros::NodeHandle node, const NodeSettings& settings)
+EstimatorNode::EstimatorNode(ros::NodeHandle node, const ros::NodeHandle& private_node, const NodeSettings& settings)
     : settings_(read_model(settings.model, settings.directory)),
       queue_size_(static_cast<std::uint32_t>(read_number(settings.own, key("queue_size")))),
       diagnostics_(node, "estimator", read_number(settings.own, key("diagnostic_period"))),
@@ -49,19 +49,22 @@ EstimatorNode::EstimatorNode(ros::NodeHandle node, const NodeSettings& settings)
       outputs_(node, poses_.model_frame()),
       map_(node, poses_.model_frame()),
       watch_(node, settings_, diagnostics_),
-      running_(settings_) {
-  const ModelCheck::Options check{read_number(settings.own, key("diagnosis_period")),
-                                  read_number(settings.own, key("diagnosis_window"))};
-  services_ = std::make_unique<ModelServices>(node, settings_.directory, poses_.model_frame(), check,
+      running_(settings_),
+      options_(read_live_options(settings.own, settings_.stale_after)) {
+  services_ = std::make_unique<ModelServices>(node, settings_.directory, poses_.model_frame(), options_.check,
                                               [this](const ModelSettings& changed) { change_model(changed); });
   if (settings_.mesh.source != MeshSettings::Source::file) inputs_.listen(queue_size_);
   reset_service_ = node.advertiseService("reset", &EstimatorNode::on_reset, this);
   mesh_subscriber_ = node.subscribe("mesh", 1, &EstimatorNode::on_mesh, this);
   diagnostics_.state(DiagnosticStatus::WARN, "waiting for mesh");
+  reconfiguration_ = std::make_unique<Reconfiguration>(
+      private_node, options_, [this](const LiveOptions& options) { change_options(options); },
+      [this](const std::string& why) { diagnostics_.bad_message(why); });
   worker_ = std::thread([this] { run(); });
 }
 
 EstimatorNode::~EstimatorNode() {
+  reconfiguration_.reset();
   {
     const std::lock_guard<std::mutex> lock(changes_mutex_);
     stopped_ = true;
@@ -112,6 +115,7 @@ void EstimatorNode::work() {
   const std::optional<TetMesh> first = wait_for_mesh();
   if (!first) return;
   watch_.mesh_came(*first);
+  take_options();
   build(running_, *first, Beginning::stated);
   inputs_.listen(queue_size_);
   while (const auto work = queue_.take()) {
@@ -139,7 +143,22 @@ std::optional<TetMesh> EstimatorNode::wait_for_mesh() {
   return stopped_ ? std::nullopt : std::exchange(mesh_, std::nullopt);
 }
 
+void EstimatorNode::change_options(const LiveOptions& options) {
+  services_->check().set_options(options.check);
+  diagnostics_.set_longest_silence(options.limits.stale_after);
+  const std::lock_guard<std::mutex> lock(changes_mutex_);
+  options_ = options;
+}
+
+void EstimatorNode::take_options() {
+  const std::lock_guard<std::mutex> lock(changes_mutex_);
+  limits_ = options_.limits;
+  outputs_.set_colour_limit(options_.colour_limit);
+  if (estimator_) estimator_->set_state_limits(limits_);
+}
+
 bool EstimatorNode::take_changes() {
+  take_options();
   std::optional<TetMesh> mesh;
   std::optional<ModelSettings> model;
   {
@@ -189,6 +208,7 @@ void EstimatorNode::build(const ModelSettings& settings, const TetMesh& mesh, Be
   running_ = settings;
   beginning_ = beginning;
   estimator_ = std::move(estimator);
+  estimator_->set_state_limits(limits_);
   last_.reset();
   estimator_->work_in_background();
   services_->start(running_, begun, mesh);
@@ -302,7 +322,7 @@ void EstimatorNode::catch_up() {
 void EstimatorNode::mark_stale() {
   if (!last_ || stale_) return;
   const double since = std::chrono::duration<double>(std::chrono::steady_clock::now() - arrival_).count();
-  if (since < running_.stale_after) return;
+  if (since < limits_.stale_after) return;
   stale_ = true;
   const Estimate estimate = stale(estimator_->estimate());
   outputs_.publish(estimate, last_stamp_);
@@ -311,7 +331,7 @@ void EstimatorNode::mark_stale() {
 
 Estimate EstimatorNode::stale(Estimate estimate) const {
   std::ostringstream why;
-  why << "no measurement could be used for " << running_.stale_after << " s";
+  why << "no measurement could be used for " << limits_.stale_after << " s";
   if (!why_skipped_.empty()) why << " (" << why_skipped_ << ")";
   if (estimate.state != EstimateState::stale) {
     why << "; the state was " << to_string(estimate.state);

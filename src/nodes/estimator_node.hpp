@@ -16,6 +16,7 @@
 #include "nodes/estimator_outputs.hpp"
 #include "nodes/map_publisher.hpp"
 #include "nodes/model_services.hpp"
+#include "nodes/reconfiguration.hpp"
 #include "nodes/ros_settings.hpp"
 #include "nodes/setup_watch.hpp"
 #include "tissue_stiffness/estimation/estimator.hpp"
@@ -35,9 +36,9 @@ namespace tissue_stiffness {
 /// removes them. For a model with `map`, MapPublisher maps the modulus over the body in the background.
 ///
 /// Private parameters: `model` (a file) or the model's keys; `model_frame` ("model"), `load_timeout` (0.1 s),
-/// `transform_timeout` (0.1 s), `queue_size` (100 frames), `diagnosis_period` (10 s; 0: on request only),
-/// `diagnosis_window` (20 s), `diagnostic_period` (1 s). A frame waits for `load_timeout` for the loads and other sensors
-/// up to its stamp. A check uses the frames of `diagnosis_window`.
+/// `transform_timeout` (0.1 s), `queue_size` (100 frames), `diagnostic_period` (1 s), and LiveOptions, which
+/// dynamic_reconfigure changes while the node runs. A frame waits for `load_timeout` for the loads and other sensors up to
+/// its stamp. A check uses the frames of `diagnosis_window`.
 class EstimatorNode {
  public:
   EstimatorNode(ros::NodeHandle node, const ros::NodeHandle& private_node);
@@ -46,7 +47,7 @@ class EstimatorNode {
   int exit_code() const { return exit_code_; }
 
  private:
-  EstimatorNode(ros::NodeHandle node, const NodeSettings& settings);
+  EstimatorNode(ros::NodeHandle node, const ros::NodeHandle& private_node, const NodeSettings& settings);
 
   void on_mesh(const TetMeshConstPtr& message);
   bool on_reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response);
@@ -56,8 +57,11 @@ class EstimatorNode {
   std::optional<TetMesh> wait_for_mesh();
   /// Has the worker run a changed model. Throws InputError with the reason if that cannot be built.
   void change_model(const ModelSettings& changed);
-  /// Applies changes before the next frame: a mesh that arrived, a model that was changed. What cannot be built is refused,
-  /// and the worker goes on with what it has. Returns false if waiting frames are of another mesh.
+  /// Applies options from a callback. What only the worker may use changes before its next frame, in take_options.
+  void change_options(const LiveOptions& options);
+  void take_options();
+  /// Applies changes before the next frame: options, a mesh that arrived, a model that was changed. What cannot be built is
+  /// refused, and the worker goes on with what it has. Returns false if waiting frames are of another mesh.
   bool take_changes();
   using Beginning = FrameQueue::Beginning;
   /// Builds an estimator beside the running one, and replaces that. Throws InputError for a model that does not fit the
@@ -93,9 +97,11 @@ class EstimatorNode {
   ros::Time last_stamp_;
   std::chrono::steady_clock::time_point arrival_;  ///< of the last frame that was used
   bool stale_ = false;                             ///< it was published since then
+  StateLimits limits_;                             ///< used only by the worker
 
   std::mutex changes_mutex_;
   std::condition_variable mesh_arrived_, answered_;
+  LiveOptions options_;  ///< as they are now
   std::optional<TetMesh> mesh_;
   std::optional<ModelSettings> model_;
   std::optional<std::string> answer_;  ///< why the changed model was refused; "": it runs; none: not known yet
@@ -105,6 +111,7 @@ class EstimatorNode {
   ros::Subscriber mesh_subscriber_;
   ros::ServiceServer reset_service_;
   std::unique_ptr<ModelServices> services_;
+  std::unique_ptr<Reconfiguration> reconfiguration_;
   std::thread worker_;
 };
 

@@ -40,7 +40,7 @@ void EstimatorOutputs::publish(const Estimator& estimator, const StepResult& res
   stiffness_.publish(to_message(result.estimate, header));
   misfit_.publish(to_message(result.misfit, header));
   if (surface_.getNumSubscribers() > 0) {
-    surface_.publish(surface_marker(estimator.mesh(), estimator.displacement(), result.misfit, header));
+    surface_.publish(surface_marker(estimator.mesh(), estimator.displacement(), result.misfit, colour_limit_, header));
   }
   if (points_.getNumSubscribers() > 0) {
     points_.publish(surface_cloud(estimator.mesh(), estimator.displacement(), result.misfit, header));

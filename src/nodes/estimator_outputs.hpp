@@ -20,6 +20,9 @@ class EstimatorOutputs {
   /// Prepares the topics before the first frame on this mesh.
   void prepare(const ModelSettings& settings, const TetMesh& mesh);
 
+  /// Sets the misfit from which the surface is red [standard deviations of the noise].
+  void set_colour_limit(double sigmas) { colour_limit_ = sigmas; }
+
   /// Publishes after each frame that was used. Messages without a subscriber are not made.
   void publish(const Estimator& estimator, const StepResult& result, const Frame& frame, const ros::Time& stamp) const;
   /// Publishes the estimate alone, when it changed without a frame.
@@ -30,6 +33,7 @@ class EstimatorOutputs {
 
   ros::NodeHandle node_;
   std::string model_frame_;
+  double colour_limit_ = 3.0;
   ros::Publisher stiffness_, misfit_, surface_, points_, measured_;
   std::map<int, ModelOutline> outlines_;          ///< by index in the model's list of observations
   std::map<int, ros::Publisher> outline_topics_;  ///< by the same index

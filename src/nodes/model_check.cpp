@@ -31,7 +31,7 @@ struct ModelCheck::Job {
   Recording recording;
 };
 
-ModelCheck::ModelCheck(const Options& options, Report report) : options_(options), report_(std::move(report)) {
+ModelCheck::ModelCheck(const Options& options, Report report) : report_(std::move(report)), options_(options) {
   thread_ = std::thread([this] { run(); });
 }
 
@@ -45,13 +45,19 @@ void ModelCheck::stop() {
   if (thread_.joinable()) thread_.join();
 }
 
+void ModelCheck::set_options(const Options& options) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  options_ = options;
+  changed_.notify_all();
+}
+
 void ModelCheck::start(const ModelSettings& settings, const TetMesh& mesh) {
   const std::lock_guard<std::mutex> lock(mutex_);
   settings_ = settings;
   mesh_ = mesh;
   last_.reset();
   given_up_ = news_ = true;
-  next_ = Clock::now();
+  took_.reset();
   changed_.notify_all();
 }
 
@@ -112,7 +118,8 @@ Diagnosis ModelCheck::check() {
 bool ModelCheck::due() const {
   if (!settings_ || !complete_) return false;
   if (served_ < requests_) return true;
-  return options_.period > 0.0 && news_ && frames_.size() >= kFewestFrames && Clock::now() >= next_;
+  if (!(options_.period > 0.0) || !news_ || frames_.size() < kFewestFrames) return false;
+  return !took_ || Clock::now() - ended_ >= std::max(std::chrono::duration<double>(options_.period), *took_);
 }
 
 ModelCheck::Job ModelCheck::next_job() {
@@ -154,14 +161,14 @@ void ModelCheck::run() {
     Outcome outcome;
     run_at_low_priority([&] { outcome = carry_out(job); });
     return_freed_memory();  // hundreds of megabytes
-    const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+    const auto end = Clock::now();
     if (outcome.diagnosis && !given_up_) report_(*outcome.diagnosis, stamp);
     lock.lock();
     if (given_up_) continue;  // the changed model is due, requests are still open
     outcome_ = std::move(outcome);
     last_ = outcome_.diagnosis;
-    next_ = Clock::now() +
-            std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::max(options_.period, seconds)));
+    ended_ = end;
+    took_ = end - begin;
     served_ = request;
     changed_.notify_all();
   }

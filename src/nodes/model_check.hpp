@@ -33,6 +33,9 @@ class ModelCheck {
   ModelCheck(const ModelCheck&) = delete;
   ModelCheck& operator=(const ModelCheck&) = delete;
 
+  /// Takes other options. A shorter window forgets older frames at the next one.
+  void set_options(const Options& options);
+
   /// Cancels a check in progress and ends the thread. A caller that waits for the check gets its NumericalError.
   void stop();
 
@@ -64,9 +67,9 @@ class ModelCheck {
   Job next_job();
   Outcome carry_out(Job& job) const;
 
-  const Options options_;
   const Report report_;
   mutable std::mutex mutex_;
+  Options options_;
   std::condition_variable changed_;
   std::optional<ModelSettings> settings_;
   TetMesh mesh_;
@@ -78,7 +81,8 @@ class ModelCheck {
   bool stopped_ = false;
   unsigned requests_ = 0, served_ = 0;  ///< requests by check(), and the last one that was served
   std::atomic<bool> given_up_{false};
-  std::chrono::steady_clock::time_point next_;
+  std::chrono::steady_clock::time_point ended_;        ///< the last check
+  std::optional<std::chrono::duration<double>> took_;  ///< the last check; none: of a running model there was none yet
   std::optional<Diagnosis> last_;
   Outcome outcome_;
   std::thread thread_;

@@ -1,5 +1,6 @@
 #include "nodes/node_keys.hpp"
 
+#include <cmath>
 #include <limits>
 #include <map>
 #include <stdexcept>
@@ -56,7 +57,15 @@ const std::vector<std::pair<std::string, std::vector<KeySpec>>>& all_keys() {
         number_key("queue_size", "frames", 1, 1e5, 100, "that may wait before the oldest is dropped"),
         number_key("diagnosis_period", "s", 0, 1e6, 10,
                    "wall time between checks of what the model misses; 0: on request only"),
-        number_key("diagnosis_window", "s", 1, 1e5, 20, "how much of the run a check sees"), diagnostic_period()}}};
+        number_key("diagnosis_window", "s", 1, 1e5, 20, "how much of the run a check sees"),
+        number_key("converged_within", "", 0.001, 0.2, 0.2,
+                   "relative standard deviation up to which an estimate may be `converged`"),
+        number_key("stale_after", "s", std::numeric_limits<double>::min(), std::numeric_limits<double>::infinity(),
+                   std::nan(""),
+                   "without a measurement or a load for so long the state is `stale`; the model's where absent"),
+        number_key("colour_limit", "", 0.1, 1000, 3,
+                   "misfit from which `tracked_surface` is red, in standard deviations of the noise"),
+        diagnostic_period()}}};
   return keys;
 }
 

@@ -12,7 +12,6 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kRedSigmas = 3.0;
 constexpr int kRings = 3;  // of facets around a measured node, over which its misfit is interpolated
 constexpr double kAmbient = 0.65;
 
@@ -22,12 +21,13 @@ const std::array<Eigen::Vector3f, 5> kScale = {
     Eigen::Vector3f(0.957F, 0.910F, 0.643F), Eigen::Vector3f(0.941F, 0.565F, 0.290F),
     Eigen::Vector3f(0.710F, 0.090F, 0.184F)};
 
-Eigen::Vector3f heat_colour(double sigmas) {
-  if (!std::isfinite(sigmas)) return Eigen::Vector3f::Constant(0.7F);
-  const double place = 4.0 * std::min(std::abs(sigmas) / kRedSigmas, 1.0);
+/// `share`: of the limit.
+Eigen::Vector3f heat_colour(double share) {
+  if (!std::isfinite(share)) return Eigen::Vector3f::Constant(0.7F);
+  const double place = 4.0 * std::min(std::abs(share), 1.0);
   const auto below = std::min<std::size_t>(static_cast<std::size_t>(place), 3);
-  const auto share = static_cast<float>(place - static_cast<double>(below));
-  return (1.0F - share) * kScale[below] + share * kScale[below + 1];
+  const auto rest = static_cast<float>(place - static_cast<double>(below));
+  return (1.0F - rest) * kScale[below] + rest * kScale[below + 1];
 }
 
 /// `light`: from 0 in the shade to 1 in the light.
@@ -151,9 +151,9 @@ visualization_msgs::Marker painted_surface(const TetMesh& mesh, const Eigen::Mat
 }
 
 visualization_msgs::Marker surface_marker(const TetMesh& mesh, const Eigen::Matrix3Xd& displacement, const Misfit& misfit,
-                                          const std_msgs::Header& header) {
+                                          double limit, const std_msgs::Header& header) {
   const Eigen::VectorXd sigmas = interpolated(misfit.node_sigmas, mesh);
-  const auto colour = [&](int node) { return heat_colour(sigmas[node]); };
+  const auto colour = [&](int node) { return heat_colour(sigmas[node] / limit); };
   return painted_surface(mesh, mesh.nodes + displacement, colour, "tracked_surface", header);
 }
 

@@ -23,10 +23,10 @@ visualization_msgs::Marker painted_surface(const TetMesh& mesh, const Eigen::Mat
                                            const std::function<Eigen::Vector3f(int node)>& colour, const std::string& name,
                                            const std_msgs::Header& header);
 
-/// Returns a TRIANGLE_LIST coloured by misfit: blue at 0 sigma over cream to red at 3 sigma and beyond. Colours are
+/// Returns a TRIANGLE_LIST coloured by misfit: blue at 0 sigma over cream to red at `limit` [sigma] and beyond. Colours are
 /// interpolated between measured nodes and grey far from them.
 visualization_msgs::Marker surface_marker(const TetMesh& mesh, const Eigen::Matrix3Xd& displacement, const Misfit& misfit,
-                                          const std_msgs::Header& header);
+                                          double limit, const std_msgs::Header& header);
 
 /// Returns the surface's nodes with FLOAT32 fields x y z, dx dy dz (displacement), misfit (all in m), misfit_sigma and the
 /// integer `vertex`. The misfit is NaN where nothing was measured.

@@ -42,7 +42,7 @@ Misfit misfit() {
 TEST(SurfaceMarker, ShowsAQuadraticFacetAsFourTrianglesTurnedOutwards) {
   const TetMesh mesh = quadratic_tetrahedron();
   const Eigen::Matrix3Xd moved = Eigen::Vector3d(0, 0, 1).replicate(1, 10);
-  const visualization_msgs::Marker marker = surface_marker(mesh, moved, misfit(), std_msgs::Header());
+  const visualization_msgs::Marker marker = surface_marker(mesh, moved, misfit(), 3.0, std_msgs::Header());
   ASSERT_EQ(marker.points.size(), 4U * 4U * 3U);
   ASSERT_EQ(marker.colors.size(), marker.points.size());
   const Eigen::Vector3d centre(0.25, 0.25, 1.25);
@@ -59,7 +59,7 @@ TEST(SurfaceMarker, ShowsAQuadraticFacetAsFourTrianglesTurnedOutwards) {
 
 TEST(SurfaceMarker, ColoursByMisfitAndInterpolatesBetweenMeasuredNodes) {
   const TetMesh mesh = quadratic_tetrahedron();
-  const auto marker = surface_marker(mesh, Eigen::Matrix3Xd::Zero(3, 10), misfit(), std_msgs::Header());
+  const auto marker = surface_marker(mesh, Eigen::Matrix3Xd::Zero(3, 10), misfit(), 3.0, std_msgs::Header());
   for (std::size_t i = 0; i < marker.points.size(); ++i) {
     const auto& p = marker.points[i];
     const auto& c = marker.colors[i];
@@ -73,11 +73,25 @@ TEST(SurfaceMarker, ColoursByMisfitAndInterpolatesBetweenMeasuredNodes) {
   }
 }
 
+TEST(SurfaceMarker, IsRedFromTheLimitOn) {
+  const TetMesh mesh = quadratic_tetrahedron();
+  const auto colour = [&](double limit) {  // of the node with 6 sigma
+    const auto marker = surface_marker(mesh, Eigen::Matrix3Xd::Zero(3, 10), misfit(), limit, std_msgs::Header());
+    for (std::size_t i = 0; i < marker.points.size(); ++i) {
+      if (marker.points[i].y == 1.0) return marker.colors[i];
+    }
+    throw std::logic_error("the node is not shown");
+  };
+  EXPECT_EQ(colour(3.0), colour(6.0));
+  EXPECT_GT(colour(12.0).g, 2.0F * colour(6.0).g) << "half of the limit is cream";
+  EXPECT_GT(colour(1000.0).b, colour(1000.0).r) << "far below the limit is blue";
+}
+
 TEST(SurfaceMarker, IsGreyWhereNothingWasMeasuredAndBrighterTowardsTheLight) {
   const TetMesh mesh = quadratic_tetrahedron();
   Misfit nothing = misfit();
   nothing.node_sigmas.setConstant(std::nan(""));
-  const auto marker = surface_marker(mesh, Eigen::Matrix3Xd::Zero(3, 10), nothing, std_msgs::Header());
+  const auto marker = surface_marker(mesh, Eigen::Matrix3Xd::Zero(3, 10), nothing, 3.0, std_msgs::Header());
   float top = 0.0F, bottom = 0.0F;
   for (std::size_t i = 0; i < marker.points.size(); ++i) {
     const auto& c = marker.colors[i];
