@@ -114,12 +114,18 @@ void StiffnessPanel::build_legend() {
       "background: qlineargradient(x1:0, y1:0, x2:1, y2:0, stop:0 #3b6fb6, stop:0.25 #6fb7c9, stop:0.5 #f4e8a4, "
       "stop:0.75 #f0904a, stop:1 #b5172f); border-radius: 4px;");
   row->addWidget(scale, 1);
-  row->addWidget(new QLabel("3 sigma", this));
+  row->addWidget(colour_limit_ = name_it(new QLabel(this), "colour_limit"));
   auto* layout = static_cast<QVBoxLayout*>(this->layout());
   layout->addLayout(row);
   auto* words = new QLabel("Grey: not measured. White balls: measured points. Arrows: missing force.", this);
   words->setWordWrap(true);
   layout->addWidget(words);
+}
+
+void StiffnessPanel::show_colour_limit(const dynamic_reconfigure::Config& options) {
+  for (const dynamic_reconfigure::DoubleParameter& option : options.doubles) {
+    if (option.name == "colour_limit") colour_limit_->setText(QString::number(option.value) + " sigma");
+  }
 }
 
 void StiffnessPanel::build_buttons() {
@@ -159,7 +165,11 @@ void StiffnessPanel::connect_to(const QString& node_namespace) {
     return;
   }
   node_->setCallbackQueue(&queue_);
+  colour_limit_->clear();
+  using dynamic_reconfigure::Config;
   subscribers_ = {
+      node_->subscribe<Config>("estimator_node/parameter_updates", 10,
+                               [this](const Config::ConstPtr& message) { show_colour_limit(*message); }),
       node_->subscribe<StiffnessEstimate>("stiffness", 1000,
                                           [this](const StiffnessEstimate::ConstPtr& message) {
                                             state_.take(*message);

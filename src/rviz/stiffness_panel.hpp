@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dynamic_reconfigure/Config.h>
 #include <ros/callback_queue.h>
 #include <ros/node_handle.h>
 #include <ros/subscriber.h>
@@ -48,6 +49,8 @@ class StiffnessPanel : public rviz::Panel {
   void show_estimate();
   void show_misfit();
   void show_effects();
+  /// Shows in the legend from which misfit on the surface is red.
+  void show_colour_limit(const dynamic_reconfigure::Config& options);
   /// Returns the effect of the selected row if it is an added one (or not, for `added` = false). Otherwise returns the
   /// button's default.
   std::string chosen(bool added) const;
@@ -73,7 +76,7 @@ class StiffnessPanel : public rviz::Panel {
 
   QLabel *quantity_ = nullptr, *headline_ = nullptr, *interval_ = nullptr, *misfit_ = nullptr, *state_badge_ = nullptr,
          *state_reason_ = nullptr;
-  QLabel *verdict_badge_ = nullptr, *summary_ = nullptr, *status_ = nullptr;
+  QLabel *verdict_badge_ = nullptr, *summary_ = nullptr, *status_ = nullptr, *colour_limit_ = nullptr;
   CurveView *modulus_view_ = nullptr, *misfit_view_ = nullptr;
   EffectList* effects_ = nullptr;
   QPushButton *diagnose_ = nullptr, *add_ = nullptr, *remove_ = nullptr, *reset_ = nullptr;

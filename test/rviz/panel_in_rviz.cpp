@@ -2,6 +2,7 @@
 #include <OgreCamera.h>
 #include <OgreMatrix4.h>
 #include <OgreVector4.h>
+#include <dynamic_reconfigure/Reconfigure.h>
 #include <geometry_msgs/Point.h>
 #include <gtest/gtest.h>
 #include <ros/ros.h>
@@ -247,6 +248,16 @@ TEST_F(PanelInRviz, T6_ResetAnswers) {
   press("reset");
   ASSERT_TRUE(wait_for([] { return part<QPushButton>("reset")->isEnabled(); }));
   EXPECT_EQ(label("status"), "the next frame starts from the prior");
+}
+
+TEST_F(PanelInRviz, T6_TheLegendFollowsTheLimitOfTheColours) {
+  ASSERT_TRUE(wait_for([] { return label("colour_limit") == "3 sigma"; })) << label("colour_limit");
+  dynamic_reconfigure::Reconfigure change;
+  change.request.config.doubles.resize(1);
+  change.request.config.doubles[0].name = "colour_limit";
+  change.request.config.doubles[0].value = 7.5;
+  ASSERT_TRUE(ros::service::call("/estimator_node/set_parameters", change));
+  ASSERT_TRUE(wait_for([] { return label("colour_limit") == "7.5 sigma"; })) << label("colour_limit");
 }
 
 TEST_F(PanelInRviz, T7_TheNamespaceIsUsedAndSaved) {
