@@ -41,7 +41,7 @@ std::vector<Frame> Recording::training() const {
 
 RecordingFit::RecordingFit(const ModelSettings& settings, const TetMesh& mesh, const Recording& recording,
                            const BasisOptions& basis)
-    : RecordingFit(settings, mesh, resolve_regions(settings.regions, mesh), recording, basis) {}
+    : RecordingFit(settings, mesh, resolve_regions(settings, mesh), recording, basis) {}
 
 RecordingFit::RecordingFit(const ModelSettings& settings, const TetMesh& mesh, std::map<std::string, Region> regions,
                            const Recording& recording, const BasisOptions& basis)

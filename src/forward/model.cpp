@@ -30,7 +30,7 @@ bool requires_finite_strain(const ModelPart& part) {
 }  // namespace
 
 Model::Model(const ModelSettings& settings, const TetMesh& mesh)
-    : Model(settings, mesh, resolve_regions(settings.regions, mesh)) {}
+    : Model(settings, mesh, resolve_regions(settings, mesh)) {}
 
 Model::Model(const ModelSettings& settings, const TetMesh& mesh, std::map<std::string, Region> regions)
     : Model(settings, std::make_shared<const Body>(mesh, std::move(regions)), nullptr) {}

@@ -2,6 +2,8 @@
 #include <functional>
 #include <set>
 
+#include "meshing/coarsen.hpp"
+#include "meshing/refine.hpp"
 #include "tissue_stiffness/meshing/build_mesh.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
@@ -81,7 +83,12 @@ Region resolve(const RegionSettings& settings, const TetMesh& mesh) {
 
 }  // namespace
 
-std::map<std::string, Region> resolve_regions(const std::vector<RegionSettings>& settings, const TetMesh& mesh) {
+std::map<std::string, Region> resolve_regions(const std::vector<RegionSettings>& settings, const TetMesh& mesh,
+                                              int times_refined) {
+  if (times_refined > 0) {
+    const TetMesh parent = coarsen_mesh(mesh);
+    return refine_regions(resolve_regions(settings, parent, times_refined - 1), parent, mesh);
+  }
   std::map<std::string, Region> regions;
   for (const RegionSettings& region : settings) {
     if (!regions.emplace(region.name, resolve(region, mesh)).second) {
@@ -89,6 +96,10 @@ std::map<std::string, Region> resolve_regions(const std::vector<RegionSettings>&
     }
   }
   return regions;
+}
+
+std::map<std::string, Region> resolve_regions(const ModelSettings& settings, const TetMesh& mesh) {
+  return resolve_regions(settings.regions, mesh, settings.mesh.refine);
 }
 
 }  // namespace tissue_stiffness

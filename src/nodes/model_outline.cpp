@@ -18,7 +18,7 @@ ModelOutline::ModelOutline(const ModelSettings& settings, const ObservationSetti
       cavity_(observation.segmentation.kind == SegmentationSettings::Kind::cavity),
       triangles_(observation.region.empty()
                      ? split_facets(mesh)
-                     : split_facets(mesh, resolve_regions(settings.regions, mesh).at(observation.region).facets)),
+                     : split_facets(mesh, resolve_regions(settings, mesh).at(observation.region).facets)),
       edges_(surface_edges(triangles_)) {}
 
 Contour ModelOutline::seen_by(const Camera& camera, const Eigen::Matrix3Xd& positions) const {

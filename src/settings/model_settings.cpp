@@ -95,7 +95,7 @@ ModelSettings read_model(const Value& root, const std::string& directory) {
   model.name = root.path();
   model.directory = directory;
   model.mesh = read_mesh(root.at("mesh"), directory);
-  if (root.has("regions")) model.regions = read_regions(root.at("regions"), model.mesh);
+  if (root.has("regions")) model.regions = read_regions(root.at("regions"));
   model.effects = read_effects(root.at("effects"));
   model.observations = read_observations(root.at("observations"));
   if (root.has("time")) model.time = read_time(root.at("time"));

@@ -103,19 +103,11 @@ MeshSettings read_mesh(const Value& map, const std::string& directory) {
   return mesh;
 }
 
-void require_refinable(const RegionSettings& region, const std::string& where, const std::string& refinement) {
-  if (!std::holds_alternative<VertexShape>(region.shape)) return;
-  throw InputError(where, "vertices with " + refinement,
-                   "box, sphere, ellipsoid or half_space: vertices do not cover a refined mesh");
-}
-
-std::vector<RegionSettings> read_regions(const Value& map, const MeshSettings& mesh) {
+std::vector<RegionSettings> read_regions(const Value& map) {
   if (map.type() != Value::Type::map) throw InputError(map.path(), map.shown(), "a map of named regions");
   std::vector<RegionSettings> regions;
   for (const std::string& name : map.keys()) {
     regions.push_back(read_region(name, map.at(name)));
-    if (mesh.refine > 0)
-      require_refinable(regions.back(), map.at(name).path(), "mesh.refine " + std::to_string(mesh.refine));
   }
   return regions;
 }

@@ -11,11 +11,7 @@ namespace tissue_stiffness {
 // keys are left unread.
 
 MeshSettings read_mesh(const Value& map, const std::string& directory);
-/// Throws InputError, naming `where`, for a region of `vertices`, which do not cover the nodes that a refinement adds.
-/// `refinement` says what asks for it.
-void require_refinable(const RegionSettings& region, const std::string& where, const std::string& refinement);
-/// The mesh tells which shapes are allowed.
-std::vector<RegionSettings> read_regions(const Value& map, const MeshSettings& mesh);
+std::vector<RegionSettings> read_regions(const Value& map);
 std::vector<ObservationSettings> read_observations(const Value& list);
 SegmentationSettings read_segmentation(const Value& map);
 

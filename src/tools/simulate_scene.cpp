@@ -13,7 +13,6 @@
 #include "meshing/refine.hpp"
 #include "observation/closest_point.hpp"
 #include "observation/observation_operator.hpp"
-#include "settings/read_sections.hpp"
 #include "tissue_stiffness/meshing/build_mesh.hpp"
 #include "tissue_stiffness/types/error.hpp"
 #include "tools/recording_writer.hpp"
@@ -34,9 +33,6 @@ double frames_of(const Scene& scene) {
 TetMesh refined_mesh(const Scene& scene) {
   if (scene.model.mesh.source != MeshSettings::Source::file) {
     throw InputError(scene.model.name + ": mesh", "a mesh from a contour", "file");
-  }
-  for (const RegionSettings& region : scene.model.regions) {
-    if (scene.refine > 0) require_refinable(region, scene.model.name + ": regions." + region.name, "simulation.refine > 0");
   }
   TetMesh mesh = build_mesh(scene.model.mesh);
   for (int i = 0; i < scene.refine; ++i) mesh = refine_mesh(mesh);
@@ -248,7 +244,8 @@ void require_moderate(const Scene& scene) {
 
 SimulationSummary simulate_scene(const Scene& scene, const std::string& recording,
                                  const std::function<void(std::size_t, std::size_t)>& progress) {
-  Model model(scene.model, refined_mesh(scene));
+  const TetMesh mesh = refined_mesh(scene);
+  Model model(scene.model, mesh, resolve_regions(scene.model.regions, mesh, scene.model.mesh.refine + scene.refine));
   require_known(scene, model);
   drive(scene, model);
   FullModel::Options options;

@@ -2,7 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <string>
+#include <vector>
+
 #include "meshing/box_mesh.hpp"
+#include "meshing/coarsen.hpp"
 #include "meshing/surface.hpp"
 #include "tissue_stiffness/meshing/build_mesh.hpp"
 #include "tissue_stiffness/types/error.hpp"
@@ -56,6 +61,42 @@ TEST(Refine, KeepsRegionsWhateverShapeTheyHad) {
       EXPECT_EQ(found.at(name).tets, wanted.at(name).tets) << name;
     }
   }
+}
+
+// What bulges out of a region's shape stays in the region.
+TEST(Refine, ARegionIsThatOfTheMeshThatWasRefined) {
+  for (const int order : {1, 2}) {
+    TetMesh coarse = make_box_mesh({0.1, 0.1, 0.02}, 4, 4, 1, order);
+    for (int i = 0; order == 2 && i < coarse.node_count(); ++i)
+      coarse.nodes(0, i) += 1e-4 * std::cos(400.0 * M_PI * coarse.nodes(1, i));
+    const TetMesh once = refine_mesh(coarse), twice = refine_mesh(once);
+    const std::vector<RegionSettings> patch{{"patch", BoxShape{{-1, 0.0249, 0.0199}, {0.0502, 0.0751, 1}}},
+                                            {"listed", VertexShape{{0, 1, 2, 5, 6, 7}}}};
+    const auto regions = resolve_regions(patch, coarse);
+    const auto of_once = resolve_regions(patch, once, 1), of_twice = resolve_regions(patch, twice, 2);
+    for (const std::string name : {"patch", "listed"}) {
+      const std::size_t facets = regions.at(name).facets.size();
+      EXPECT_GT(facets, 0U) << name;
+      EXPECT_EQ(of_once.at(name).facets.size(), 4 * facets) << name << ", order " << order;
+      EXPECT_EQ(of_twice.at(name).facets.size(), 16 * facets) << name << ", order " << order;
+      EXPECT_EQ(of_once.at(name).nodes, refine_regions(regions, coarse, once).at(name).nodes) << name;
+    }
+  }
+}
+
+TEST(Coarsen, TakesARefinementBack) {
+  for (const int order : {1, 2}) {
+    const TetMesh mesh = make_box_mesh({0.1, 0.03, 0.02}, 3, 2, 1, order), back = coarsen_mesh(refine_mesh(mesh));
+    EXPECT_EQ(back.corner_count, mesh.corner_count);
+    EXPECT_EQ(back.nodes, mesh.nodes);
+    EXPECT_EQ(back.tets, mesh.tets);
+    EXPECT_EQ(back.facets, mesh.facets);
+  }
+}
+
+TEST(Coarsen, RefusesAMeshThatWasNotRefined) {
+  EXPECT_THROW(coarsen_mesh(make_box_mesh({0.1, 0.03, 0.02}, 1, 1, 1, 1)), InputError);  // six tetrahedra
+  EXPECT_THROW(coarsen_mesh(make_box_mesh({0.1, 0.03, 0.02}, 4, 1, 1, 2)), InputError);
 }
 
 // A mesh of its own order holds a polynomial of that order; its children have to read the same one.

@@ -151,7 +151,6 @@ TEST(ModelSettings, RefusesWhatIsWrongAndSaysWhere) {
       {"scale: 0.001", "scale: -1", {"model.yaml:1: mesh.scale", "found -1", "> 0"}},
       {"order: 1", "order: 3", {"model.yaml:1: mesh.order", "found 3", "from 1 to 2"}},
       {"order: 1", "order: 1, refine: 3", {"model.yaml:1: mesh.refine", "found 3", "from 0 to 2"}},
-      {"order: 1", "order: 1, refine: 1", {"model.yaml:7: regions.some", "vertices with mesh.refine 1", "box, sphere"}},
       {"max_edge_length: 0.01", "max_edge_length: 0", {"model.yaml:1: mesh.max_edge_length", "found 0", "> 0 [m]"}},
       {"max: [1, 1, 0]", "max: [1, -1, 0]", {"regions.clamp.box.min", "min <= max = [1, -1, 0]"}},
       {"max: [1, 1, 0]", "max: [1, 1]", {"model.yaml:3: regions.clamp.box.max", "[1, 1]", "three numbers"}},
