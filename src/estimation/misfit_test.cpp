@@ -75,7 +75,13 @@ double MisfitTest::deviation() const {
 }
 
 double MisfitTest::z() const {
-  return frames_ > 0 ? std::max((excess() - tolerated_ * noise_level()) / deviation(), z_across()) : 0.0;
+  if (frames_ == 0) return 0.0;
+  const double tolerance = std::max(tolerated_ * noise_level(), shared_noise());
+  return std::max((excess() - tolerance) / deviation(), z_across());
+}
+
+double MisfitTest::shared_noise() const {
+  return difference_count_ > 0.0 ? std::max(0.0, 1.0 - difference_square_ / difference_count_) : 0.0;
 }
 
 // Only what is far above the known noise counts, because less is known of the mesh's error there.

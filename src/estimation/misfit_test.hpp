@@ -24,7 +24,7 @@ class MisfitTest {
   /// Sets the mean square that mesh and basis leave of each row, along the modes and across them, in units of the noise's
   /// variance.
   void set_numerics(double along, double across = 0.0) { numerics_ = along, numerics_across_ = across; }
-  /// Tolerates nothing along the modes beyond what set_numerics() says, because all of the numerics is known.
+  /// Tolerates nothing of the numerics along the modes beyond what set_numerics() says, because all of it is known.
   void tolerate_no_more() { tolerated_ = 0.0; }
 
   /// Sets the noise level that another model of the same recording has shown. This model's residuals across the modes
@@ -36,10 +36,14 @@ class MisfitTest {
   double excess() const;
   /// Returns the standard deviation of `excess` under noise alone.
   double deviation() const;
-  /// Returns (excess - t v) / deviation with v = noise_level() and t = `tolerated`, or 0 after tolerate_no_more(). Where
-  /// the noise is known from differences or by set_noise(), it returns the larger one of this and the same statistic across
-  /// the modes.
+  /// Returns (excess - max(t v, shared_noise)) / deviation with v = noise_level() and t = `tolerated`, or 0 after
+  /// tolerate_no_more(). Where the noise is known from differences or by set_noise(), it returns the larger one of this and
+  /// the same statistic across the modes.
   double z() const;
+  /// Returns what the stated noise may have along the modes beyond its variance, 0 to 1 noise variances. The part of the
+  /// stated variance that neighbouring points do not show, s = 1 - the mean square of their differences, is noise that
+  /// neighbours share, at least two of them. Modes are smooth, so along them it counts twice: 1 - s + 2 s = 1 + s.
+  double shared_noise() const;
   /// The test passes while z <= bound.
   bool passes() const { return z() <= bound; }
   /// Returns the mean square of what is unexplained, over all rows, in noise variances; 0 where it is no more than chance.

@@ -100,6 +100,30 @@ TEST(MisfitTest, KnowsTheNoiseFromDifferencesBetweenNeighbours) {
   EXPECT_TRUE(noisy.passes());
 }
 
+// An outline is off along a whole side: neighbours share most of the noise that is stated.
+TEST(MisfitTest, ToleratesNoiseThatNeighboursShare) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  const auto with_differences = [&](double along, double level) {
+    MisfitTest out = test_of(along, 0.3);
+    out.tolerate_no_more();
+    for (int k = 0; k < kFrames; ++k) {
+      Eigen::VectorXd differences(kRows);
+      for (int i = 0; i < kRows; ++i) differences[i] = std::sqrt(level) * normal(random);
+      out.add_differences(differences);
+    }
+    return out;
+  };
+  const MisfitTest shared = with_differences(1.7, 0.1), own = with_differences(1.7, 1.0), more = with_differences(2.5, 0.1);
+  EXPECT_NEAR(shared.shared_noise(), 0.9, 0.02);
+  EXPECT_NEAR(shared.z(), (shared.excess() - shared.shared_noise()) / shared.deviation(), 1e-12);
+  EXPECT_TRUE(shared.passes());
+  EXPECT_LT(own.shared_noise(), 0.02);
+  EXPECT_FALSE(own.passes()) << "neighbours show all of the stated noise";
+  EXPECT_FALSE(more.passes()) << "more than the stated noise";
+  EXPECT_EQ(with_differences(1.7, 4.0).shared_noise(), 0.0);
+}
+
 // A force has no rows across the modes, which would make noise of whatever it misses.
 TEST(MisfitTest, CountsAllThatAForceMisses) {
   const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(3, 2);
