@@ -116,9 +116,9 @@ class Contact {
   virtual const std::vector<int>& nodes() const = 0;
   /// Appends the points that touch. Reads the motion of nodes() only.
   virtual void find(const Motion&, const Parameters&, std::vector<Touch>&) const = 0;
-  /// Returns how far the obstacle goes from one time to another, over the size of its smallest part; infinity where it is
-  /// not there yet.
-  virtual double travel(double from, double to) const = 0;
+  /// Returns how far the obstacle goes from one time to another, over its size. It is infinite where the obstacle is not
+  /// there yet, and with friction, because that depends on the velocity in between.
+  virtual double travel(double from, double to, const Parameters&) const = 0;
 
  protected:
   ~Contact() = default;

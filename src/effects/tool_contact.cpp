@@ -113,7 +113,9 @@ class ToolContact : public RigidContact {
 
   bool needs_elasticity() const override { return true; }
   std::string reacting_region() const override { return region_; }
-  double travel(double from, double to) const override {
+  double travel(double from, double to, const Parameters& p) const override {
+    constexpr double unbounded = std::numeric_limits<double>::infinity();
+    if (friction(p) > 0.0) return unbounded;
     const int steps = std::max(1, static_cast<int>(std::ceil((to - from) / kPathStep)));
     double length = 0.0;
     std::optional<Pose> last = course_->pose(from);
@@ -123,7 +125,7 @@ class ToolContact : public RigidContact {
       length += std::max(moved(from_), moved(to_));
       last = next;
     }
-    return last ? length / size_ : std::numeric_limits<double>::infinity();
+    return last ? length / size_ : unbounded;
   }
 
  private:

@@ -80,7 +80,7 @@ int ContactTrajectory::steps_to(double time) const {
   const int most = force_steps(time - linear_.time());
   if (!linear_.idle()) return most;
   double travel = 0.0;
-  for (const Part& part : parts_) travel = std::max(travel, part.contact->travel(linear_.time(), time));
+  for (const Part& part : parts_) travel = std::max(travel, part.contact->travel(linear_.time(), time, part.parameters));
   return static_cast<int>(std::clamp(std::ceil(travel / kTravel), 1.0, static_cast<double>(most)));
 }
 

@@ -75,6 +75,29 @@ TEST(ContactModel, FollowsTheFullModelWhereABallMovesOverADampedBar) {
   expect_same({"viscous_damping: {beta: 0.01}", touching(kBall)});
 }
 
+// A slow tool needs few steps: frames that are 100 ms apart have the forces of frames that are 10 ms apart.
+TEST(ContactModel, TakesAsManyStepsAsASlowToolNeeds) {
+  Model model(settings({"viscous_damping: {beta: 0.01}", touching(kBall)}), block_mesh(4));
+  model.loads().set_first_stamp(0.0);
+  for (int k = 0; k <= 300; ++k) {
+    const double t = 0.01 * k, deep = 0.0015 * (1.0 - std::cos(2.0 * M_PI * t / 3.0)) / 2.0;
+    model.loads().courses().at("/pose")->add(
+        t, pose_values(Eigen::Isometry3d(Eigen::Translation3d(0.01, 0.01, 0.0302 - deep))));
+  }
+  const ContactModel contact(model, BasisOptions());
+  const auto often = contact.start(prior(model), 0.0), seldom = contact.start(prior(model), 0.0);
+  double force = 0.0, off = 0.0;
+  for (int k = 1; k <= 280; ++k) {
+    often->advance(0.01 * k);
+    if (k % 10 != 0) continue;
+    seldom->advance(0.01 * k);
+    force += often->output().tail<3>().squaredNorm();
+    off += (often->output() - seldom->output()).tail<3>().squaredNorm();
+  }
+  EXPECT_GT(force, 0.0);
+  EXPECT_LT(std::sqrt(off / force), 3e-3);
+}
+
 TEST(ContactModel, RelaxesAsTheFullModelDoes) {
   expect_same({"viscous_damping: {beta: 0.002}", "viscoelasticity: {gamma: 0.8, tau: 0.2}", touching(kBall)});
 }
