@@ -16,7 +16,7 @@ constexpr double kSettled = 1e-9;  // body sizes
 constexpr int kMostIterations = 60;
 constexpr double kCut = 0.4, kLeastCut = 0.01;  // of a step
 constexpr double kCloser = 0.95;                // what a step has to leave of the distance
-constexpr double kTravel = 0.02;                // of a tool's size, in a step
+constexpr double kTravel = 0.005;               // of a tool's size, in a step
 constexpr double kSameSpan = 1e-9;              // of a step
 
 Eigen::MatrixXd rows_of(const Eigen::MatrixXd& m, const std::vector<int>& rows) {

@@ -26,9 +26,9 @@ TetMesh build_mesh(
     const MeshSettings& settings, const Contour& contour, const Camera& camera,
     const std::function<void()>& checkpoint = [] {});
 
-/// Evaluates named regions on the rest mesh. A mesh that was refined so many times has the regions of the mesh that it was
-/// made from: what lies at a region's border would be inside on one mesh and outside on the other. Throws InputError for a
-/// region that holds nothing, a vertex out of range, or a mesh that was not refined so often.
+/// Evaluates named regions on the rest mesh. A mesh that was refined has the regions of the mesh that it was made from.
+/// What lies at a region's border would be inside on one mesh and outside on the other. Throws InputError for a region that
+/// holds nothing, a vertex out of range, or a mesh that was not refined so often.
 std::map<std::string, Region> resolve_regions(const std::vector<RegionSettings>& settings, const TetMesh& mesh,
                                               int times_refined = 0);
 /// Returns the regions of a model's mesh.
