@@ -202,8 +202,9 @@ void ContactTrajectory::step(double time) {
     if (now.off.cwiseAbs().maxCoeff() < tolerance) return end_step(step, now);
     Eigen::VectorXd next = step.free;
     if (!now.touched.empty()) {
-      const Eigen::MatrixXd &k = now.stiffness,
-                            left = Eigen::MatrixXd::Identity(k.rows(), k.cols()) + k * response_between(step, now.touched);
+      const SparseMatrix k = now.stiffness.sparseView();  // a node touches with the few of its facets
+      Eigen::MatrixXd left = k * response_between(step, now.touched);
+      left.diagonal().array() += 1.0;
       const Eigen::VectorXd right = rows_of(now.nodal, now.touched) - k * rows_of(step.free - now.u, now.touched);
       next += response(step, now.touched, left.partialPivLu().solve(right));
     }
