@@ -1,16 +1,29 @@
 """What scripts write into the documentation: the text between `<!-- measured: NAME -->` and `<!-- end -->`."""
 import os
 import re
+import time
 
 MARK = re.compile(r'(<!-- measured: (\w+) -->\n).*?(<!-- end -->)', re.S)
+
+
+def busy_cores(seconds=2.0):
+    """How many cores are busy now. The load average would count what has ended already."""
+    def busy_and_all():
+        with open('/proc/stat') as file:
+            ticks = [int(word) for word in file.readline().split()[1:9]]
+        return sum(ticks) - ticks[3] - ticks[4], sum(ticks)  # all but idle and waiting
+    before = busy_and_all()
+    time.sleep(seconds)
+    busy, all_of_them = (after - first for after, first in zip(busy_and_all(), before))
+    return os.cpu_count() * busy / max(1, all_of_them)
 
 
 def machine():
     """The machine in words, and how busy it is now, which should be before the measurement."""
     with open('/proc/cpuinfo') as file:
         name = re.search(r'model name\s*:\s*(.*)', file.read()).group(1)
-    load = os.getloadavg()[0]
-    busy = f' Other work kept it busy, with a load of {load:.1f} at the start.' if load > 1.0 else ''
+    others = busy_cores()
+    busy = f' Other work kept {others:.1f} of them busy at the start.' if others > 0.5 else ''
     return f'The machine has {os.cpu_count()} cores of {name}.{busy}\n'
 
 
