@@ -34,10 +34,6 @@ const KeySpec& key(const std::string& name) {
   return find_key(node_keys("segmentation_node"), name);
 }
 
-std::string size_of(std::uint32_t width, std::uint32_t height) {
-  return std::to_string(width) + " x " + std::to_string(height);
-}
-
 }  // namespace
 
 SegmentationNode::SegmentationNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
@@ -100,9 +96,10 @@ void SegmentationNode::on_image(const sensor_msgs::ImageConstPtr& message) {
   try {
     require_stamp(message->header, image_topic_);
     const cv::Mat image = to_image(message, segmentation_.kind, image_topic_);
-    if (camera_info_ && (camera_info_->width != message->width || camera_info_->height != message->height)) {
-      throw InputError(image_topic_, size_of(message->width, message->height) + " pixels",
-                       size_of(camera_info_->width, camera_info_->height) + " as in " + camera_info_topic_);
+    if (camera_info_) {
+      require_image_size(image.size(),
+                         cv::Size(static_cast<int>(camera_info_->width), static_cast<int>(camera_info_->height)),
+                         image_topic_, camera_info_topic_);
     }
     const Segmentation found = segment(message, image);
     // As a pointer: a subscriber in this process gets this very message.

@@ -106,6 +106,12 @@ Camera to_camera(const sensor_msgs::CameraInfo& info, const ObservationSettings&
   return camera;
 }
 
+void require_image_size(const cv::Size& image, const cv::Size& camera, const std::string& topic,
+                        const std::string& camera_info) {
+  const auto words = [](const cv::Size& size) { return std::to_string(size.width) + " x " + std::to_string(size.height); };
+  if (image != camera) throw InputError(topic, words(image) + " pixels", words(camera) + " as in " + camera_info);
+}
+
 cv::Mat to_image(const sensor_msgs::ImageConstPtr& image, const std::string& topic) {
   static const std::array<const char*, 4> grey{"mono8", "8UC1", "mono16", "16UC1"};
   const std::string& encoding = image->encoding;

@@ -46,6 +46,10 @@ Observation to_observation(const sensor_msgs::PointCloud2& cloud, const Observat
 Camera to_camera(const sensor_msgs::CameraInfo& info, const ObservationSettings& settings,
                  const Eigen::Isometry3d& model_from_sensor, const std::string& topic);
 
+/// Throws InputError, naming both topics, for an image of another size than its camera's.
+void require_image_size(const cv::Size& image, const cv::Size& camera, const std::string& topic,
+                        const std::string& camera_info);
+
 /// Returns the 8-bit grey or BGR pixels of an image. An image with such pixels is not copied, so the message must outlive
 /// the result.
 cv::Mat to_image(const sensor_msgs::ImageConstPtr& image, const std::string& topic);

@@ -63,11 +63,7 @@ void RecordedObservations::add_image(const RecordedMeasurement& measurement, Ins
   auto camera = std::make_shared<Camera>(
       to_camera(*camera_info(settings.camera_info, header.stamp), settings, *model_from_sensor, settings.camera_info));
   const cv::Mat image = to_image(measurement.image, settings.segmentation.kind, settings.topic);
-  if (image.cols != camera->width || image.rows != camera->height) {
-    throw InputError(
-        settings.topic, std::to_string(image.cols) + " x " + std::to_string(image.rows) + " pixels",
-        std::to_string(camera->width) + " x " + std::to_string(camera->height) + " as in " + settings.camera_info);
-  }
+  require_image_size(image.size(), {camera->width, camera->height}, settings.topic, settings.camera_info);
   keep_picture(measurement, image, *camera);
   const auto start = std::chrono::steady_clock::now();
   if (settings.kind == ObservationKind::tracks) {
