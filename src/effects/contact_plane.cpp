@@ -41,12 +41,10 @@ class ContactPlane : public RigidContact {
     }
     plane_ = std::make_shared<const Plane>(arguments.at("point").as_vector3("m"), normal.normalized());
   }
-  double travel(double /*from*/, double /*to*/, const Parameters& p) const override {
-    return friction(p) > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
-  }
 
  private:
   std::shared_ptr<const Obstacle> obstacle(double /*time*/, const Parameters& /*p*/) const override { return plane_; }
+  double path(double /*from*/, double /*to*/) const override { return 0.0; }
   double offset(const Parameters& p) const override { return p[kGap]; }
   double penalty(const Parameters& p) const override { return p[kStiffness] > 0.0 ? p[kStiffness] : default_penalty_; }
   double friction(const Parameters& p) const override { return p[kFriction]; }

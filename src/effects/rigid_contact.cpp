@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -94,6 +95,10 @@ void RigidContact::find(const Motion& motion, const Parameters& p, std::vector<T
   const double mu = friction(p);
   for_each_inside(motion, p,
                   [&](const Inside& inside, const Obstacle& there) { out.push_back(touch(motion, mu, inside, there)); });
+}
+
+double RigidContact::travel(double from, double to, const Parameters& p) const {
+  return friction(p) > 0.0 ? std::numeric_limits<double>::infinity() : path(from, to);
 }
 
 void RigidContact::add_force(const Motion& motion, const Parameters& p, Eigen::VectorXd& force) const {

@@ -43,6 +43,7 @@ class RigidContact : public Effect, public NonlinearForce, public Contact {
 
   const std::vector<int>& nodes() const override { return nodes_; }
   void find(const Motion& motion, const Parameters& p, std::vector<Touch>& out) const override;
+  double travel(double from, double to, const Parameters& p) const override;
 
  protected:
   /// `fine`: the size of what the obstacle's surface has to be resolved to, for the quadrature [m].
@@ -50,6 +51,8 @@ class RigidContact : public Effect, public NonlinearForce, public Contact {
 
   /// Returns the obstacle; null where there is none yet.
   virtual std::shared_ptr<const Obstacle> obstacle(double time, const Parameters& p) const = 0;
+  /// Returns how far it goes, as travel() does without friction.
+  virtual double path(double from, double to) const = 0;
   virtual double offset(const Parameters& p) const = 0;    ///< of the obstacle's surface, outwards [m]
   virtual double penalty(const Parameters& p) const = 0;   ///< k [N/m^3]
   virtual double friction(const Parameters& p) const = 0;  ///< mu [-]

@@ -113,9 +113,16 @@ class ToolContact : public RigidContact {
 
   bool needs_elasticity() const override { return true; }
   std::string reacting_region() const override { return region_; }
-  double travel(double from, double to, const Parameters& p) const override {
-    constexpr double unbounded = std::numeric_limits<double>::infinity();
-    if (friction(p) > 0.0) return unbounded;
+
+ private:
+  std::shared_ptr<const Obstacle> obstacle(double time, const Parameters& p) const override {
+    const std::optional<Pose> pose = course_->pose(time);
+    if (!pose) return nullptr;
+    const Eigen::Vector3d from = apply(*pose, from_), to = apply(*pose, to_);
+    if (flat_) return moving(Cylinder(from, to, p[kRadius]), time, *pose, p);
+    return moving(Capsule(from, to, p[kRadius]), time, *pose, p);
+  }
+  double path(double from, double to) const override {
     const int steps = std::max(1, static_cast<int>(std::ceil((to - from) / kPathStep)));
     double length = 0.0;
     std::optional<Pose> last = course_->pose(from);
@@ -125,16 +132,7 @@ class ToolContact : public RigidContact {
       length += std::max(moved(from_), moved(to_));
       last = next;
     }
-    return last ? length / size_ : unbounded;
-  }
-
- private:
-  std::shared_ptr<const Obstacle> obstacle(double time, const Parameters& p) const override {
-    const std::optional<Pose> pose = course_->pose(time);
-    if (!pose) return nullptr;
-    const Eigen::Vector3d from = apply(*pose, from_), to = apply(*pose, to_);
-    if (flat_) return moving(Cylinder(from, to, p[kRadius]), time, *pose, p);
-    return moving(Capsule(from, to, p[kRadius]), time, *pose, p);
+    return last ? length / size_ : std::numeric_limits<double>::infinity();
   }
   double offset(const Parameters& p) const override { return p[kOffset]; }
 

@@ -179,17 +179,22 @@ void ContactTrajectory::add_touches(const std::vector<Contact::Touch>& touches, 
   for (std::size_t i = 0; i < out.touched.size(); ++i)
     index[static_cast<std::size_t>(out.touched[i])] = static_cast<int>(i);
   const auto count = static_cast<Eigen::Index>(out.touched.size());
-  out.stiffness = Eigen::MatrixXd::Zero(count, count);
+  std::vector<Eigen::Triplet<double>> entries;
   for (const Contact::Touch& touch : touches) {
     const Eigen::Matrix3d tangent = touch.stiffness + touch.damping / span;
     for (Eigen::Index a = 0; a < touch.nodes.size(); ++a) {
       const int row = index[static_cast<std::size_t>(owner_.place(touch.nodes[a]))];
       for (Eigen::Index b = 0; b < touch.nodes.size(); ++b) {
         const int column = index[static_cast<std::size_t>(owner_.place(touch.nodes[b]))];
-        out.stiffness.block<3, 3>(row, column) += touch.shape[a] * touch.shape[b] * tangent;
+        const Eigen::Matrix3d block = touch.shape[a] * touch.shape[b] * tangent;
+        for (int i = 0; i < 3; ++i) {
+          for (int j = 0; j < 3; ++j) entries.emplace_back(row + i, column + j, block(i, j));
+        }
       }
     }
   }
+  out.stiffness.resize(count, count);
+  out.stiffness.setFromTriplets(entries.begin(), entries.end());
 }
 
 // Newton's method for u = free + H f(u), with f linearised at the last u: (1 + K H) f = f(u) - K (free - u). A step is cut
@@ -202,7 +207,7 @@ void ContactTrajectory::step(double time) {
     if (now.off.cwiseAbs().maxCoeff() < tolerance) return end_step(step, now);
     Eigen::VectorXd next = step.free;
     if (!now.touched.empty()) {
-      const SparseMatrix k = now.stiffness.sparseView();  // a node touches with the few of its facets
+      const SparseMatrix& k = now.stiffness;
       Eigen::MatrixXd left = k * response_between(step, now.touched);
       left.diagonal().array() += 1.0;
       const Eigen::VectorXd right = rows_of(now.nodal, now.touched) - k * rows_of(step.free - now.u, now.touched);

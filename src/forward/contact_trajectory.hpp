@@ -43,7 +43,7 @@ class ContactTrajectory : public Trajectory {
     Eigen::VectorXd u;          ///< at dofs() [m]
     Eigen::VectorXd nodal;      ///< at dofs() [N]
     std::vector<int> touched;   ///< indices into dofs(), ascending
-    Eigen::MatrixXd stiffness;  ///< -d force / d displacement between them [N/m]
+    SparseMatrix stiffness;     ///< -d force / d displacement between them [N/m]
     Eigen::VectorXd reactions;  ///< [N]
     Eigen::VectorXd off;        ///< u - free - H f [m]
   };
