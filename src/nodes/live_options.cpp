@@ -8,13 +8,21 @@
 namespace tissue_stiffness {
 namespace {
 
-const std::vector<std::pair<std::string, double EstimatorConfig::*>>& members() {
-  static const std::vector<std::pair<std::string, double EstimatorConfig::*>> list{
-      {"diagnosis_period", &EstimatorConfig::diagnosis_period},
-      {"diagnosis_window", &EstimatorConfig::diagnosis_window},
-      {"converged_within", &EstimatorConfig::converged_within},
-      {"stale_after", &EstimatorConfig::stale_after},
-      {"colour_limit", &EstimatorConfig::colour_limit}};
+/// An option by its name, in the message of dynamic_reconfigure and in LiveOptions.
+struct Option {
+  std::string name;
+  double EstimatorConfig::*in_config;
+  double& (*in)(LiveOptions&);
+};
+
+const std::vector<Option>& all_options() {
+  static const std::vector<Option> list{
+      {"diagnosis_period", &EstimatorConfig::diagnosis_period, [](LiveOptions& o) -> double& { return o.check.period; }},
+      {"diagnosis_window", &EstimatorConfig::diagnosis_window, [](LiveOptions& o) -> double& { return o.check.window; }},
+      {"converged_within", &EstimatorConfig::converged_within,
+       [](LiveOptions& o) -> double& { return o.limits.converged_within; }},
+      {"stale_after", &EstimatorConfig::stale_after, [](LiveOptions& o) -> double& { return o.limits.stale_after; }},
+      {"colour_limit", &EstimatorConfig::colour_limit, [](LiveOptions& o) -> double& { return o.colour_limit; }}};
   return list;
 }
 
@@ -24,37 +32,32 @@ const KeySpec& key(const std::string& name) {
 
 EstimatorConfig config_of(double KeySpec::*end) {
   EstimatorConfig out = EstimatorConfig::__getDefault__();
-  for (const auto& [name, member] : members()) out.*member = key(name).*end;
+  for (const Option& option : all_options()) out.*option.in_config = key(option.name).*end;
   return out;
 }
 
 }  // namespace
 
 LiveOptions read_live_options(const Value& own, double stale_after) {
-  const auto number = [&](const std::string& name) { return read_number(own, key(name)); };
   LiveOptions out;
-  out.check = {number("diagnosis_period"), number("diagnosis_window")};
-  out.limits.converged_within = number("converged_within");
-  out.limits.stale_after = own.has("stale_after") ? number("stale_after") : stale_after;
-  out.colour_limit = number("colour_limit");
+  for (const Option& option : all_options()) {
+    const bool of_model = option.name == "stale_after" && !own.has(option.name);
+    option.in(out) = of_model ? stale_after : read_number(own, key(option.name));
+  }
   return out;
 }
 
 LiveOptions to_live_options(const EstimatorConfig& config, const std::string& where) {
   std::vector<std::pair<std::string, Value>> entries;
-  for (const auto& [name, member] : members()) {
-    entries.emplace_back(name, Value::number(config.*member, where + ": " + name));
+  for (const Option& option : all_options()) {
+    entries.emplace_back(option.name, Value::number(config.*option.in_config, where + ": " + option.name));
   }
   return read_live_options(Value::map(std::move(entries), where), config.stale_after);
 }
 
-EstimatorConfig to_config(const LiveOptions& options) {
+EstimatorConfig to_config(LiveOptions options) {
   EstimatorConfig out = EstimatorConfig::__getDefault__();
-  out.diagnosis_period = options.check.period;
-  out.diagnosis_window = options.check.window;
-  out.converged_within = options.limits.converged_within;
-  out.stale_after = options.limits.stale_after;
-  out.colour_limit = options.colour_limit;
+  for (const Option& option : all_options()) out.*option.in_config = option.in(options);
   return out;
 }
 

@@ -22,7 +22,7 @@ LiveOptions read_live_options(const Value& own, double stale_after);
 
 /// Converts from the message of dynamic_reconfigure. Throws InputError for a value out of its range, named with `where`.
 LiveOptions to_live_options(const EstimatorConfig& config, const std::string& where);
-EstimatorConfig to_config(const LiveOptions& options);
+EstimatorConfig to_config(LiveOptions options);
 
 /// Return the ends of the ranges.
 EstimatorConfig least_config();
