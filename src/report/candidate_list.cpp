@@ -75,9 +75,12 @@ std::string line(const std::string& name, double probability, const std::string&
          "%\"></i></div><p>" + escape_html(percentage(probability, 2) + words) + "</p></li>";
 }
 
+bool in_set(const MissingEffect& c, const Diagnosis& d) {
+  return std::find(d.set.begin(), d.set.end(), c.effect) != d.set.end();
+}
+
 /// What the summary at the top says of the effect is not said again.
 std::string line(const MissingEffect& c, const Diagnosis& d, const Units& units) {
-  const bool in_set = std::find(d.set.begin(), d.set.end(), c.effect) != d.set.end();
   const bool told = d.best.effects == std::vector<std::string>{c.effect};
   std::vector<std::string> words;
   if (!told) words.push_back("explains " + gain(c.explained) + " of the squared error");
@@ -85,7 +88,7 @@ std::string line(const MissingEffect& c, const Diagnosis& d, const Units& units)
   if (!c.confusable_with.empty()) words.push_back("confusable with " + confusable_words(c));
   std::string text;
   for (const std::string& word : words) text += (word.empty() ? "" : "; ") + word;
-  return line(capitalised(effect_title(c.effect)), c.probability, in_set ? " class=\"chosen\"" : "", text);
+  return line(capitalised(effect_title(c.effect)), c.probability, in_set(c, d) ? " class=\"chosen\"" : "", text);
 }
 
 std::string row(const MissingEffect& c, const Units& units) {
@@ -104,10 +107,8 @@ std::string table(const Diagnosis& d, const Units& units, bool open) {
   for (const MissingEffect& c : d.candidates) rows += row(c, units);
   return "<details" + std::string(open ? " open" : "") + "><summary>All " + std::to_string(d.candidates.size()) +
          " effects that were tried</summary><div class=\"scroll\"><table><tr><th>effect</th><th "
-         "class=\"n\">probability</th>"
-         "<th class=\"n\">z</th><th class=\"n\">explains</th><th class=\"n\">held-out error</th><th class=\"n\">best fit "
-         "of "
-         "E</th><th>its parameters</th><th>confusable with (cosine)</th></tr>" +
+         "class=\"n\">probability</th><th class=\"n\">z</th><th class=\"n\">explains</th><th class=\"n\">held-out "
+         "error</th><th class=\"n\">best fit of E</th><th>its parameters</th><th>confusable with (cosine)</th></tr>" +
          rows + "</table></div></details>";
 }
 
@@ -117,8 +118,7 @@ std::string candidate_list(const Diagnosis& d, const Units& units) {
   if (d.candidates.empty()) return "";
   std::string lines;
   for (const MissingEffect& c : d.candidates) {
-    const bool in_set = std::find(d.set.begin(), d.set.end(), c.effect) != d.set.end();
-    if (in_set || c.probability >= kProbable) lines += line(c, d, units);
+    if (in_set(c, d) || c.probability >= kProbable) lines += line(c, d, units);
   }
   const bool open = lines.empty();
   if (d.adequate >= kProbable) lines += line("The model as given", d.adequate, "", "");

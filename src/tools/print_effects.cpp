@@ -1,6 +1,5 @@
 #include "tools/print_effects.hpp"
 
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -8,6 +7,7 @@
 #include <string>
 
 #include "effects/registry.hpp"
+#include "report/text.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -31,9 +31,8 @@ std::string name_of(const ParameterSpec& spec) {
   return spec.name + (spec.components > 1 ? " [x, y, z]" : "");
 }
 
-std::string sentence(std::string text) {
-  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-  return text + ".";
+std::string sentence(const std::string& text) {
+  return capitalised(text) + ".";
 }
 
 /// Escapes the mark of a table, which a cell must not hold.
