@@ -1,6 +1,5 @@
 #include "meshing/coarsen.hpp"
 
-#include <algorithm>
 #include <string>
 
 #include "meshing/surface.hpp"

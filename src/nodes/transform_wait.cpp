@@ -7,7 +7,7 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr std::chrono::milliseconds kLook{100};  // how soon a wait notices that ROS shuts down, which wakes nobody
+constexpr std::chrono::milliseconds kShutdownCheck{100};  // how soon a wait notices that ROS shuts down, which wakes nobody
 
 }  // namespace
 
@@ -31,7 +31,7 @@ bool TransformWait::wait(const std::string& target, const std::string& source, c
     do {
       const Clock::time_point now = Clock::now();
       if (now >= end || ros::isShuttingDown()) return false;
-      arrived_.wait_until(lock, std::min(end, now + kLook), [&] { return arrivals_ != seen; });
+      arrived_.wait_until(lock, std::min(end, now + kShutdownCheck), [&] { return arrivals_ != seen; });
     } while (arrivals_ == seen);
   }
 }
