@@ -35,6 +35,14 @@ inline LoadSample swaying_wrench(double time, double y_rate = 6.0, double z_rate
   return sample;
 }
 
+/// Feeds the loads of the first 0.3 s to the bar and to its estimator.
+inline void load_briefly(Experiment& bar, Estimator& estimator) {
+  for (int k = 0; k < 60; ++k) {
+    bar.add_load(swaying_wrench(0.005 * k));
+    estimator.add_load(swaying_wrench(0.005 * k));
+  }
+}
+
 /// Returns the result of the last frame.
 inline StepResult step_through(Estimator& estimator, const std::vector<Frame>& frames) {
   StepResult last;

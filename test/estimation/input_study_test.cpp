@@ -183,10 +183,7 @@ TEST(InputStudy, KnowsNothingBeforeItsFirstAnswer) {
   Experiment bar(model, mesh, {kTruth});
   Estimator estimator(model, mesh);
   estimator.set_first_stamp(0.0);
-  for (int k = 0; k < 60; ++k) {
-    bar.add_load(swaying_wrench(0.005 * k));
-    estimator.add_load(swaying_wrench(0.005 * k));
-  }
+  load_briefly(bar, estimator);
   const StepResult last = step_through(estimator, see_all(bar, bar.film(0.0, kFilmed, 2), kNoise, 7));
   EXPECT_EQ(last.estimate.state, EstimateState::converging);
   EXPECT_GT(std::log(last.estimate.parameters.front().upper95 / last.estimate.parameters.front().lower95), 2.0);
@@ -199,10 +196,7 @@ TEST(State, IsStaleWhileALoadStaysAway) {
   Experiment bar(model, mesh, {kTruth});
   Estimator estimator(model, mesh);
   estimator.set_first_stamp(0.0);
-  for (int k = 0; k < 60; ++k) {  // to 0.3 s
-    bar.add_load(swaying_wrench(0.005 * k));
-    estimator.add_load(swaying_wrench(0.005 * k));
-  }
+  load_briefly(bar, estimator);
   const StepResult last = step_through(estimator, see_all(bar, bar.film(0.0, kFilmed, 60), kNoise, 7));
   EXPECT_EQ(last.estimate.state, EstimateState::stale);
   EXPECT_NE(last.estimate.state_reason.find("/wrench"), std::string::npos) << last.estimate.state_reason;

@@ -39,10 +39,7 @@ EstimateState state_without_load(double stale_after) {
   Experiment bar(model, mesh, {kTruth});
   Estimator estimator(model, mesh);
   estimator.set_first_stamp(0.0);
-  for (int k = 0; k < 60; ++k) {  // to 0.3 s
-    bar.add_load(swaying_wrench(0.005 * k));
-    estimator.add_load(swaying_wrench(0.005 * k));
-  }
+  load_briefly(bar, estimator);
   StateLimits limits;
   limits.stale_after = stale_after;
   estimator.set_state_limits(limits);
