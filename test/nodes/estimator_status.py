@@ -1,6 +1,8 @@
 """What /diagnostics says of a running estimator, for tests that wait for it."""
+import subprocess
 import threading
 
+import roslib.packages
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
@@ -30,3 +32,23 @@ class EstimatorStatus:
             heard = cls.heard
             if not cls.changed.wait_for(lambda: cls.heard >= heard + 3 and cls.values.get('frames waiting') == '0', seconds):
                 raise AssertionError('frames still wait: %s' % cls.values)
+
+
+class OwnEstimator(EstimatorStatus):
+    """A test derives from this one to run an estimator_node of its own, `node`. It waits for at most `patience` seconds."""
+    patience = 60
+
+    @classmethod
+    def run_node(cls, *options):
+        program = roslib.packages.find_node('tissue_stiffness', 'estimator_node')[0]
+        cls.node = subprocess.Popen([program, '_model:=' + rospy.get_param('~model'), '_diagnostic_period:=0.1'] + list(options))
+
+    @classmethod
+    def tearDownClass(cls):
+        if cls.node.poll() is None:
+            cls.node.kill()
+            cls.node.wait()
+
+    def wait_for(self, condition, text):
+        with self.changed:
+            self.assertTrue(self.changed.wait_for(condition, self.patience), '%s; diagnostics are %s' % (text, self.values))

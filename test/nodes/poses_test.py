@@ -1,12 +1,10 @@
 #!/usr/bin/env python3
 """A frame whose sensor has no pose yet waits for it: it is used as soon as the pose comes, and an ending node does not wait."""
 import signal
-import subprocess
 import sys
 import threading
 import unittest
 
-import roslib.packages
 import rosbag
 import rospy
 import rostest
@@ -15,15 +13,16 @@ from sensor_msgs.msg import PointCloud2
 from tf2_msgs.msg import TFMessage
 
 from disturbed_test import DisturbedTest
-from estimator_status import EstimatorStatus
+from estimator_status import OwnEstimator
 from tissue_stiffness.msg import StiffnessEstimate
 
 TOPIC, FRAMES = '/tissue/vertices', 10
 TIMEOUT = 60  # s, that a frame waits
-PATIENCE = 0.5 * TIMEOUT
 
 
-class PosesTest(EstimatorStatus, unittest.TestCase):
+class PosesTest(OwnEstimator, unittest.TestCase):
+    patience = 0.5 * TIMEOUT
+
     @classmethod
     def setUpClass(cls):
         with rosbag.Bag(rospy.get_param('~bag')) as bag:
@@ -32,27 +31,15 @@ class PosesTest(EstimatorStatus, unittest.TestCase):
         cls.subscribers = [cls.watch_status(), rospy.Subscriber('stiffness', StiffnessEstimate, cls.on_estimate, queue_size=100)]
         cls.publisher = rospy.Publisher(TOPIC, PointCloud2, queue_size=100)
         cls.poses = rospy.Publisher('/tf', TFMessage, queue_size=10)
-        program = roslib.packages.find_node('tissue_stiffness', 'estimator_node')[0]
-        cls.node = subprocess.Popen([program, '_model:=' + rospy.get_param('~model'), '_transform_timeout:=%d' % TIMEOUT,
-                                     '_diagnosis_period:=0', '_diagnostic_period:=0.1'])
+        cls.run_node('_transform_timeout:=%d' % TIMEOUT, '_diagnosis_period:=0')
         while not (cls.publisher.get_num_connections() and cls.poses.get_num_connections() >= 2):  # mesh_node is the other
             threading.Event().wait(0.05)
-
-    @classmethod
-    def tearDownClass(cls):
-        if cls.node.poll() is None:
-            cls.node.kill()
-            cls.node.wait()
 
     @classmethod
     def on_estimate(cls, message):
         with cls.changed:
             cls.used.append(message.header.stamp)
             cls.changed.notify_all()
-
-    def wait_for(self, condition, text):
-        with self.changed:
-            self.assertTrue(self.changed.wait_for(condition, PATIENCE), '%s; diagnostics are %s' % (text, self.values))
 
     def publish(self, frame, frame_id):
         frame.header.frame_id = frame_id
@@ -78,7 +65,7 @@ class PosesTest(EstimatorStatus, unittest.TestCase):
         self.publish(self.frames[FRAMES], 'nowhere')
         self.wait_for(lambda: self.values.get('frames waiting') == '1', 'the frame does not wait')
         self.node.send_signal(signal.SIGINT)
-        self.assertEqual(self.node.wait(PATIENCE), 0)
+        self.assertEqual(self.node.wait(self.patience), 0)
 
 
 if __name__ == '__main__':

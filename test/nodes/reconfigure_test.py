@@ -2,13 +2,11 @@
 """What dynamic_reconfigure changes of a running estimator_node, and that the estimate goes on."""
 import math
 import signal
-import subprocess
 import sys
 import threading
 import unittest
 
 import dynamic_reconfigure.client
-import roslib.packages
 import rosbag
 import rospy
 import rostest
@@ -16,15 +14,14 @@ from sensor_msgs.msg import PointCloud2
 from visualization_msgs.msg import Marker
 
 from disturbed_test import DisturbedTest
-from estimator_status import EstimatorStatus
+from estimator_status import OwnEstimator
 from tissue_stiffness.msg import Diagnosis, StiffnessEstimate
 
 TOPIC = '/tissue/vertices'
-PATIENCE = 60  # s
 START = {'diagnosis_period': 0.0, 'diagnosis_window': 30.0, 'converged_within': 0.2, 'stale_after': 1e4, 'colour_limit': 3.0}
 
 
-class ReconfigureTest(EstimatorStatus, unittest.TestCase):
+class ReconfigureTest(OwnEstimator, unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         with rosbag.Bag(rospy.get_param('~bag')) as bag:
@@ -41,26 +38,14 @@ class ReconfigureTest(EstimatorStatus, unittest.TestCase):
 
     @classmethod
     def start_node(cls, *options):
-        program = roslib.packages.find_node('tissue_stiffness', 'estimator_node')[0]
-        model = '_model:=' + rospy.get_param('~model')
-        cls.node = subprocess.Popen([program, model, '_diagnostic_period:=0.1'] + list(options))
-        cls.client = dynamic_reconfigure.client.Client('/estimator_node', timeout=PATIENCE)
-
-    @classmethod
-    def tearDownClass(cls):
-        if cls.node.poll() is None:
-            cls.node.kill()
-            cls.node.wait()
+        cls.run_node(*options)
+        cls.client = dynamic_reconfigure.client.Client('/estimator_node', timeout=cls.patience)
 
     @classmethod
     def keep(cls, message, into):
         with cls.changed:
             into.append(message)
             cls.changed.notify_all()
-
-    def wait_for(self, condition, text):
-        with self.changed:
-            self.assertTrue(self.changed.wait_for(condition, PATIENCE), '%s; diagnostics are %s' % (text, self.values))
 
     def change(self, **values):
         """Returns the values that hold afterwards. Frames that are published later are judged by them."""
@@ -76,8 +61,8 @@ class ReconfigureTest(EstimatorStatus, unittest.TestCase):
         return self.estimates[-1]
 
     def test_1_private_parameters_are_the_start_values(self):
-        self.assertEqual({name: self.client.get_configuration(PATIENCE)[name] for name in START}, START)
-        ranges = {one['name']: (one['min'], one['max']) for one in self.client.get_parameter_descriptions(PATIENCE)}
+        self.assertEqual({name: self.client.get_configuration(self.patience)[name] for name in START}, START)
+        ranges = {one['name']: (one['min'], one['max']) for one in self.client.get_parameter_descriptions(self.patience)}
         self.assertEqual(ranges['converged_within'], (0.001, 0.2))
         self.assertEqual(ranges['diagnosis_window'], (1.0, 1e5))
 
@@ -108,9 +93,9 @@ class ReconfigureTest(EstimatorStatus, unittest.TestCase):
 
     def test_4_the_colours_of_the_surface(self):
         def red(frame):
-            before = len(self.surfaces)
             self.play([frame])
-            self.wait_for(lambda: len(self.surfaces) > before, 'no surface')
+            stamp = frame.header.stamp
+            self.wait_for(lambda: self.surfaces and self.surfaces[-1].header.stamp == stamp, 'no surface at %s' % stamp)
             return sum(colour.r > 1.5 * colour.b for colour in self.surfaces[-1].colors)
         self.change(colour_limit=1000.0)
         self.assertEqual(red(self.frames[66]), 0)
@@ -132,10 +117,10 @@ class ReconfigureTest(EstimatorStatus, unittest.TestCase):
     def test_7_a_node_that_is_started_again_has_the_last_values(self):
         last = dict(START, colour_limit=0.1, stale_after=0.5)
         self.node.send_signal(signal.SIGINT)
-        self.assertEqual(self.node.wait(PATIENCE), 0)
+        self.assertEqual(self.node.wait(self.patience), 0)
         self.client.close()
         self.start_node()
-        self.assertEqual({name: self.client.get_configuration(PATIENCE)[name] for name in START}, last)
+        self.assertEqual({name: self.client.get_configuration(self.patience)[name] for name in START}, last)
 
 
 if __name__ == '__main__':
