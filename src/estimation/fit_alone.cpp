@@ -13,8 +13,11 @@ constexpr double kNoise = 2.0;  // mean square over the noise's below which no o
 
 LinearFit fit_alone(const JointRows& rows, std::size_t recording, const Eigen::VectorXd& z, MisfitTest& test) {
   const Eigen::Index p = rows.parameters().size();
-  InputPosterior posterior([&](const Eigen::VectorXd& at) { return InputPosterior::Equations{rows.of(recording, at)}; },
-                           rows.parameters().prior_mean(), rows.prior_std(), rows.nuisance_std());
+  InputPosterior posterior(
+      [&](const Eigen::VectorXd& at, Constants constants) {
+        return InputPosterior::Equations{rows.of(recording, at, constants)};
+      },
+      rows.parameters().prior_mean(), rows.prior_std(), rows.nuisance_std());
   InputPosterior::Fit best = posterior.mode(z.head(p));
   if (posterior.scales(best.normal)[0] > kNoise) {
     InputPosterior::Fit other = posterior.mode(rows.parameters().prior_mean());
@@ -44,7 +47,7 @@ Eigen::VectorXd with_own_parameters(const JointRows& rows, std::size_t recording
   const Eigen::VectorXd mean = rows.parameters().prior_mean(), precision = rows.prior_std().cwiseAbs2().cwiseInverse();
   const auto count = static_cast<Eigen::Index>(own.size());
   for (int step = 0; step < kOwnSteps && count > 0; ++step) {
-    const NormalEquations normal = rows.of(recording, z);
+    const NormalEquations normal = rows.of(recording, z, Constants::held);
     Eigen::MatrixXd information(count, count);
     Eigen::VectorXd pull(count);
     for (Eigen::Index i = 0; i < count; ++i) {

@@ -178,8 +178,8 @@ void InputLinearisation::correct_loads(const Eigen::VectorXd& z) {
   for (const Load& load : loads_) load.course->correct(load.basis, z.segment(load.first, load.basis.size()));
 }
 
-// Returns theta at the centre, at the sigma points around it, and with each constant to either side.
-std::vector<Eigen::VectorXd> InputLinearisation::points(const Eigen::VectorXd& w) const {
+// Returns theta at the centre, at the sigma points around it, and with each varied constant to either side.
+std::vector<Eigen::VectorXd> InputLinearisation::points(const Eigen::VectorXd& w, Constants constants) const {
   const Eigen::VectorXd centre = models_.base.parameters().theta(w);
   std::vector<Eigen::VectorXd> out{centre};
   for (const double side : {1.0, -1.0}) {
@@ -190,6 +190,7 @@ std::vector<Eigen::VectorXd> InputLinearisation::points(const Eigen::VectorXd& w
     }
   }
   for (const double side : {1.0, -1.0}) {
+    if (constants == Constants::held) break;
     for (const UncertainConstant& constant : models_.constants) {
       Eigen::VectorXd theta = centre;
       theta[constant.index] += side * kConstantStep * constant.std;
@@ -208,7 +209,7 @@ InputLinearisation::Row InputLinearisation::row(std::size_t index, const std::ve
   };
   const Prediction there = predict(0);
   const Eigen::Index rows = there.predicted.size();
-  const auto np = static_cast<std::size_t>(p_), nc = models_.constants.size();
+  const auto np = static_cast<std::size_t>(p_), nc = (thetas.size() - 1) / 2 - np;
   Row out;
   out.parameters.resize(rows, p_);
   for (std::size_t i = 0; i < np; ++i) {
@@ -326,10 +327,10 @@ Eigen::MatrixXd InputLinearisation::mesh_columns(std::size_t frame, const Eigen:
 }
 
 // Visits every used frame, linearised at z, with the modal amplitudes of the loads' errors.
-void InputLinearisation::each_row(const Eigen::VectorXd& z, const Visitor& visit) {
+void InputLinearisation::each_row(const Eigen::VectorXd& z, Constants constants, const Visitor& visit) {
   force_noise_.start_run();
   correct_loads(z);
-  const std::vector<Eigen::VectorXd> thetas = points(z.head(p_));
+  const std::vector<Eigen::VectorXd> thetas = points(z.head(p_), constants);
   const auto all = models_.runs->start_all(thetas, q_.start);
   std::vector<LoadErrorResponse> responses;
   for (const Load& load : loads_)
@@ -357,17 +358,16 @@ void InputLinearisation::each_row(const Eigen::VectorXd& z, const Visitor& visit
   }
 }
 
-NormalEquations InputLinearisation::at(const Eigen::VectorXd& z) {
+NormalEquations InputLinearisation::at(const Eigen::VectorXd& z, Constants varied) {
   NormalEquations out(size_, static_cast<Eigen::Index>(models_.constants.size()));
   const Eigen::Index l = load_columns(), c = size_ - p_ - l;
-  each_row(z, [&](const Row& row, const Eigen::MatrixXd& amplitudes) {
+  each_row(z, varied, [&](const Row& row, const Eigen::MatrixXd& amplitudes) {
     Eigen::MatrixXd own(row.error.size(), p_ + c);
     own << row.parameters, row.direct;
     const Eigen::MatrixXd weighted = row.precision.asDiagonal() * own, seen = row.precision.asDiagonal() * row.modes;
     const Eigen::MatrixXd direct = weighted.transpose() * own;
     const Eigen::MatrixXd across = (weighted.transpose() * row.modes) * amplitudes;
     const Eigen::VectorXd pull = weighted.transpose() * row.error;
-    const Eigen::MatrixXd constants = weighted.transpose() * row.constants;
     out.information.topLeftCorner(p_, p_) += direct.topLeftCorner(p_, p_);
     out.information.topRightCorner(p_, c) += direct.topRightCorner(p_, c);
     out.information.bottomRightCorner(c, c) += direct.bottomRightCorner(c, c);
@@ -377,14 +377,16 @@ NormalEquations InputLinearisation::at(const Eigen::VectorXd& z) {
     out.gradient.head(p_) += pull.head(p_);
     out.gradient.tail(c) += pull.tail(c);
     out.gradient.segment(p_, l) += amplitudes.transpose() * (seen.transpose() * row.error);
+    out.cost += row.error.dot(row.precision.cwiseProduct(row.error));
+    out.rows += static_cast<double>((row.precision.array() > 0.0).count());
+    if (varied == Constants::held) return;
+    const Eigen::MatrixXd constants = weighted.transpose() * row.constants;
     out.constants.topRows(p_) += constants.topRows(p_);
     out.constants.bottomRows(c) += constants.bottomRows(c);
     out.constants.middleRows(p_, l) += amplitudes.transpose() * (seen.transpose() * row.constants);
     const Eigen::MatrixXd weighted_constants = row.precision.asDiagonal() * row.constants;
     out.constants_information += weighted_constants.transpose() * row.constants;
     out.constants_gradient += weighted_constants.transpose() * row.error;
-    out.cost += row.error.dot(row.precision.cwiseProduct(row.error));
-    out.rows += static_cast<double>((row.precision.array() > 0.0).count());
   });
   out.force_noise = force_noise_.found();
   out.information.triangularView<Eigen::StrictlyLower>() = out.information.transpose();

@@ -88,17 +88,18 @@ class InputLinearisation {
 
   /// Sets by how much the variance of a force sensor's noise is larger than stated. NormalEquations tell it.
   void set_force_noise(int source, double variance) { force_noise_.set(source, variance); }
-  /// Returns the normal equations at z. Throws NumericalError when runs diverge.
-  NormalEquations at(const Eigen::VectorXd& z);
-  /// Visits every used frame in the order of time.
-  void each_row(const Eigen::VectorXd& z, const Visitor& visit);
+  /// Returns the normal equations at z, those of the constants only where these are varied. Throws NumericalError when
+  /// runs diverge.
+  NormalEquations at(const Eigen::VectorXd& z, Constants constants);
+  /// Visits every used frame in the order of time. Rows have no columns of constants that are held.
+  void each_row(const Eigen::VectorXd& z, Constants constants, const Visitor& visit);
 
  private:
   void add_load(const std::string& topic, const std::shared_ptr<Course>& course);
   void add_pose(std::size_t source);
   void add_force_sensor(std::size_t source);
   void correct_loads(const Eigen::VectorXd& z);
-  std::vector<Eigen::VectorXd> points(const Eigen::VectorXd& w) const;
+  std::vector<Eigen::VectorXd> points(const Eigen::VectorXd& w, Constants constants) const;
   Eigen::MatrixXd modes_seen(const Frame& frame, const Eigen::VectorXd& theta, const Eigen::MatrixXd& seen,
                              const ReducedModes& modes) const;
   Row row(std::size_t index, const std::vector<Eigen::VectorXd>& thetas, const Eigen::MatrixXd& u,

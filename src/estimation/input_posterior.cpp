@@ -113,13 +113,14 @@ double InputPosterior::learnt(const Eigen::MatrixXd& covariance, Eigen::Index i)
 InputPosterior::Fit InputPosterior::at(const Eigen::VectorXd& w) {
   Eigen::VectorXd z = Eigen::VectorXd::Zero(size_);
   z.head(p_) = w;
-  return {z, rows_(z)};
+  return {z, rows_(z, Constants::varied)};
 }
 
 InputPosterior::Fit InputPosterior::mode(const Eigen::VectorXd& w) {
   Fit fit = at(w);
-  for (int k = 0; k < kMostIterations && improve(fit); ++k) {
-  }
+  bool moved = false;
+  for (int k = 0; k < kMostIterations && improve(fit); ++k) moved = true;
+  if (moved) fit.normal = rows_(fit.z, Constants::varied);
   return fit;
 }
 
@@ -133,7 +134,7 @@ bool InputPosterior::improve(Fit& fit) {
   double share = std::min(1.0, (prior_std_.array() / step.head(p_).array().abs().max(1e-300)).minCoeff());
   for (int cut = 0; cut < kMostCuts; ++cut, share *= 0.3) {
     const Eigen::VectorXd z = fit.z + share * step;
-    Fit next{z, rows_(z)};
+    Fit next{z, rows_(z, Constants::held)};
     if (!(cost(next, s) < cost(fit, s))) continue;
     fit = std::move(next);
     return true;
@@ -158,7 +159,7 @@ InputPosterior::Line InputPosterior::line(const Fit& mode) const {
 InputPosterior::Point InputPosterior::most_probable(const Line& line, double along, Eigen::VectorXd z) {
   Point out{along, 0.0, 0.0, {}};
   for (int k = 0; k < kMostSteps; ++k) {
-    const Fit fit{z, rows_(z)};
+    const Fit fit{z, rows_(z, Constants::held)};
     const NormalEquations normal = sum(fit.normal, line.scales);
     Eigen::MatrixXd inverse_covariance = normal.information;
     inverse_covariance.diagonal() += prior_information();
@@ -248,7 +249,7 @@ InputPosterior::Moments InputPosterior::integrate(const Fit& mode) {
     spread += weights[static_cast<Eigen::Index>(k)] * apart * apart.transpose();
   }
   // By the law of total covariance the linear form holds at a held place on the line, and the place itself has the spread.
-  Moments out{{mean, rows_(mean)}, Eigen::MatrixXd::Zero(size_, size_)};
+  Moments out{{mean, rows_(mean, Constants::varied)}, Eigen::MatrixXd::Zero(size_, size_)};
   const Eigen::VectorXd drift = covariance(out.mean.normal).leftCols(p_) * along.dual;
   const double linear = along.dual.dot(drift.head(p_));
   if (along.dual.dot(spread.topLeftCorner(p_, p_) * along.dual) > linear) {

@@ -29,7 +29,7 @@ class InputPosterior {
     Eigen::MatrixXd beyond_linear;
   };
 
-  using Rows = std::function<Equations(const Eigen::VectorXd& z)>;
+  using Rows = std::function<Equations(const Eigen::VectorXd& z, Constants constants)>;
   /// `prior_mean` and `prior_std` are those of the parameters. The nuisances have mean 0 and standard deviation
   /// `nuisance_std`.
   InputPosterior(Rows rows, const Eigen::VectorXd& prior_mean, const Eigen::VectorXd& prior_std,

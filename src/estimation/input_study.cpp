@@ -30,8 +30,8 @@ class InputFit {
       : rows_(rows),
         columns_(rows.columns()),
         p_(rows.parameters().size()),
-        posterior_([this](const Eigen::VectorXd& z) { return rows_.at(z); }, rows.parameters().prior_mean(),
-                   rows.prior_std(), rows.nuisance_std()) {}
+        posterior_([this](const Eigen::VectorXd& z, Constants constants) { return rows_.at(z, constants); },
+                   rows.parameters().prior_mean(), rows.prior_std(), rows.nuisance_std()) {}
 
   InputStudy::Answer run() {
     InputStudy::Answer answer;

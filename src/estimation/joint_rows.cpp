@@ -62,16 +62,16 @@ Eigen::VectorXd JointRows::nuisance_std() const {
   return out;
 }
 
-NormalEquations JointRows::of(std::size_t recording, const Eigen::VectorXd& z) const {
-  return columns_.spread(recording, parts_[recording]->rows.at(columns_.of(recording, z)));
+NormalEquations JointRows::of(std::size_t recording, const Eigen::VectorXd& z, Constants constants) const {
+  return columns_.spread(recording, parts_[recording]->rows.at(columns_.of(recording, z), constants));
 }
 
-InputPosterior::Equations JointRows::at(const Eigen::VectorXd& z) const {
+InputPosterior::Equations JointRows::at(const Eigen::VectorXd& z, Constants constants) const {
   InputPosterior::Equations out;
   for (std::size_t r = 0; r < parts_.size(); ++r) {
     out.push_back(parts_[r]->predicted
                       ? NormalEquations(columns_.size(), static_cast<Eigen::Index>(columns_.constants().size()))
-                      : of(r, z));
+                      : of(r, z, constants));
   }
   return out;
 }
@@ -82,16 +82,18 @@ MisfitTest JointRows::test(std::size_t recording, const Eigen::VectorXd& z, doub
                         constants = columns_.constants_of(recording, tolerated.constants);
   MisfitTest out;
   NeighbourWeights weights;
-  parts_[recording]->rows.each_row(columns_.of(recording, z), [&](const InputLinearisation::Row& row,
-                                                                  const Eigen::MatrixXd& amplitudes) {
-    const Eigen::Index p = row.parameters.cols(), d = row.direct.cols(), l = amplitudes.cols();
-    const Eigen::VectorXd explained = row.constants * constants + row.parameters * move.head(p) +
-                                      row.modes * (amplitudes * move.segment(p, l)) + row.direct * move.tail(d);
-    const Eigen::Index most = std::min<Eigen::Index>(kModes, std::max<Eigen::Index>(1, row.error.size() / 4));
-    const Eigen::VectorXd residual = row.error - explained;
-    out.add(residual, row.precision, with_unit_columns(row.modes.leftCols(std::min(most, row.modes.cols())), row.forces));
-    out.add_differences(differences(weights, row, residual));
-  });
+  parts_[recording]->rows.each_row(
+      columns_.of(recording, z), Constants::varied,
+      [&](const InputLinearisation::Row& row, const Eigen::MatrixXd& amplitudes) {
+        const Eigen::Index p = row.parameters.cols(), d = row.direct.cols(), l = amplitudes.cols();
+        const Eigen::VectorXd explained = row.constants * constants + row.parameters * move.head(p) +
+                                          row.modes * (amplitudes * move.segment(p, l)) + row.direct * move.tail(d);
+        const Eigen::Index most = std::min<Eigen::Index>(kModes, std::max<Eigen::Index>(1, row.error.size() / 4));
+        const Eigen::VectorXd residual = row.error - explained;
+        out.add(residual, row.precision,
+                with_unit_columns(row.modes.leftCols(std::min(most, row.modes.cols())), row.forces));
+        out.add_differences(differences(weights, row, residual));
+      });
   out.set_fitted(fitted);
   return out;
 }

@@ -39,9 +39,9 @@ class JointRows {
   Eigen::VectorXd nuisance_std() const;
 
   /// Returns the normal equations of one recording, in z of all.
-  NormalEquations of(std::size_t recording, const Eigen::VectorXd& z) const;
+  NormalEquations of(std::size_t recording, const Eigen::VectorXd& z, Constants constants) const;
   /// Returns those of each recording; of predicted ones they are empty.
-  InputPosterior::Equations at(const Eigen::VectorXd& z) const;
+  InputPosterior::Equations at(const Eigen::VectorXd& z, Constants constants) const;
   /// Tests a recording's residual at z, less what tolerated constants may leave of it. `fitted`: degrees of freedom that
   /// the fit took of it.
   MisfitTest test(std::size_t recording, const Eigen::VectorXd& z, double fitted,

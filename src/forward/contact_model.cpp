@@ -66,7 +66,8 @@ std::unique_ptr<Trajectory> ContactModel::resume(const Eigen::VectorXd& theta, c
   return std::make_unique<ContactTrajectory>(*this, theta, dynamic_cast<const ContactTrajectory&>(from));
 }
 
-void ContactModel::restrict_output_to(const std::vector<int>& nodes) {
+void ContactModel::restrict_output_to(const OutputNodes& nodes) {
+  forces_alone_ = nodes && nodes->empty();
   reduced_.restrict_output_to(nodes);
 }
 

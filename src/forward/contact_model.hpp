@@ -26,8 +26,11 @@ class ContactModel : public ForwardModel {
 
   std::unique_ptr<Trajectory> start(const Eigen::VectorXd& theta, double start) const override;
   std::unique_ptr<Trajectory> resume(const Eigen::VectorXd& theta, const Trajectory& from) const override;
-  void restrict_output_to(const std::vector<int>& nodes) override;
+  void restrict_output_to(const OutputNodes& nodes) override;
   std::string description() const override;
+
+  /// Whether the output is restricted to the contacts' reactions, for which no body's motion is solved.
+  bool gives_forces_alone() const { return forces_alone_; }
 
   const Model& model() const { return reduced_.model(); }
   const ReducedModel& reduced() const { return reduced_; }
@@ -51,6 +54,7 @@ class ContactModel : public ForwardModel {
   ReducedModel reduced_;
   std::vector<int> nodes_, dofs_, places_;
   Eigen::MatrixXd basis_;
+  bool forces_alone_ = false;
   mutable std::mutex mutex_;
   mutable std::vector<std::shared_ptr<const NodalFlexibility>> known_;
 };

@@ -1,9 +1,8 @@
 #include "forward/contact_trajectory.hpp"
 
-#include <Eigen/LU>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "forward/force_steps.hpp"
 #include "tissue_stiffness/types/error.hpp"
@@ -12,17 +11,56 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr double kSettled = 1e-9;  // body sizes
+constexpr double kSettled = 1e-6;  // body sizes; a step of Newton's method leaves far less than what it changes
 constexpr int kMostIterations = 60;
-constexpr double kCut = 0.4, kLeastCut = 0.01;  // of a step
-constexpr double kCloser = 0.95;                // what a step has to leave of the distance
-constexpr double kTravel = 0.005;               // of a tool's size, in a step
-constexpr double kSameSpan = 1e-9;              // of a step
+constexpr double kFlat = 0.1;  // of the slope along a step of Newton's method, where the search along it ends
+constexpr int kMostSearches = 20;
+constexpr double kSolved = 1e-5;     // of the residual that the forces start from
+constexpr double kTravel = 0.01;      // of a tool's size, in a step
+constexpr double kSame = 1e-9;       // relative
+constexpr double kMostGrowth = 2.4;  // of a step over the last, for BDF2 to be stable: 1 + sqrt(2) (Grigorieff 1983)
 
 Eigen::MatrixXd rows_of(const Eigen::MatrixXd& m, const std::vector<int>& rows) {
   Eigen::MatrixXd out(static_cast<Eigen::Index>(rows.size()), m.cols());
   for (std::size_t i = 0; i < rows.size(); ++i) out.row(static_cast<Eigen::Index>(i)) = m.row(rows[i]);
   return out;
+}
+
+std::vector<int> nonzero(const Eigen::VectorXd& v) {
+  std::vector<int> out;
+  for (Eigen::Index i = 0; i < v.size(); ++i) {
+    if (v[i] != 0.0) out.push_back(static_cast<int>(i));
+  }
+  return out;
+}
+
+/// Solves (1 + K H) f = b by conjugate gradients in the inner product f^T H g, in which that matrix is symmetric. Returns
+/// false where it is not positive definite.
+bool solve_contacts(const SparseMatrix& k, const Eigen::MatrixXd& h, const Eigen::VectorXd& b, Eigen::VectorXd& f) {
+  Eigen::VectorXd moved = h * f;
+  Eigen::VectorXd residual = b - f - k * moved, h_residual = h * residual;
+  double size = residual.dot(h_residual);
+  const double small = kSolved * kSolved * size;
+  Eigen::VectorXd direction = residual, h_direction = h_residual;
+  for (Eigen::Index i = 0; i < 2 * b.size() && size > small; ++i) {
+    const Eigen::VectorXd image = direction + k * h_direction, h_image = h * image;
+    const double curvature = direction.dot(h_image);
+    if (!(curvature > 0.0)) return false;
+    const double share = size / curvature;
+    f += share * direction;
+    residual -= share * image;
+    h_residual -= share * h_image;
+    const double left = residual.dot(h_residual), kept = left / size;
+    direction = residual + kept * direction;
+    h_direction = h_residual + kept * h_direction;
+    size = left;
+  }
+  return f.allFinite();
+}
+
+Eigen::Matrix3d convex_part(const Eigen::Matrix3d& m) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(m);
+  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() * solver.eigenvectors().transpose();
 }
 
 }  // namespace
@@ -37,8 +75,11 @@ ContactTrajectory::ContactTrajectory(const ContactModel& owner, const Eigen::Vec
   const Eigen::Index shared = std::min(state_.cols(), from.state_.cols());
   state_.leftCols(shared) = linear_.modes()->to_modal * (from.linear_.modes()->shapes * from.state_.leftCols(shared));
   force_ = from.force_;
+  force_rate_ = from.force_rate_;
   modal_force_ = shapes_.transpose() * force_;
   stretch_ = from.stretch_;
+  stretch_before_ = from.stretch_before_;
+  span_before_ = from.span_before_;
   if (relaxed_.cols() == from.relaxed_.cols()) relaxed_ = from.relaxed_;
   at_ = from.at_;
   reactions_ = from.reactions_;
@@ -55,8 +96,10 @@ ContactTrajectory::ContactTrajectory(const ContactModel& owner, const Eigen::Vec
       modal_step_(linear_.step()),
       state_(Eigen::MatrixXd::Zero(softness_.size(), modal_step_.states())),
       force_(Eigen::VectorXd::Zero(shapes_.rows())),
+      force_rate_(force_),
       modal_force_(Eigen::VectorXd::Zero(softness_.size())),
       stretch_(Eigen::VectorXd::Zero(shapes_.rows())),
+      stretch_before_(stretch_),
       relaxed_(Eigen::MatrixXd::Zero(shapes_.rows(), static_cast<Eigen::Index>(branches_.size()))),
       at_(Eigen::VectorXd::Zero(shapes_.rows())),
       reactions_(Eigen::VectorXd::Zero(owner.model().output_size() - owner.model().fem().dof_count())),
@@ -103,18 +146,19 @@ ContactTrajectory::Step ContactTrajectory::begin_step(double time) {
   modal_step_.advance(out.span, none, unit, by_force);
   out.modal = by_force.col(0);
   out.free = owner_.basis() * linear_.coordinates() + shapes_ * out.modes.col(0);
-  out.memory = stiffness_damping_ / out.span * stretch_;
-  out.resistance = 1.0 + stiffness_damping_ / out.span;
+  // s' by the differences of three times (BDF2). Where the last step was too short for that to be stable, or there was
+  // none, by those of two.
+  const double growth = out.span < kMostGrowth * span_before_ ? out.span / span_before_ : 0.0;
+  const double damping = stiffness_damping_ / out.span;
+  out.memory = damping * ((1.0 + growth) * stretch_ - growth * growth / (1.0 + growth) * stretch_before_);
+  out.resistance = 1.0 + damping * (1.0 + 2.0 * growth) / (1.0 + growth);
   for (std::size_t b = 0; b < branches_.size(); ++b) {
     const RelaxationStep relaxing(branches_[b], out.span);
     const double gamma = branches_[b].modulus;
     out.resistance += gamma * (1.0 - relaxing.to);
     out.memory += gamma * (relaxing.decay * relaxed_.col(static_cast<Eigen::Index>(b)) + relaxing.from * stretch_);
   }
-  std::vector<int> remembered;
-  for (Eigen::Index i = 0; i < out.memory.size(); ++i) {
-    if (out.memory[i] != 0.0) remembered.push_back(static_cast<int>(i));
-  }
+  const std::vector<int> remembered = nonzero(out.memory);
   if (remembered.empty()) return out;
   const Eigen::VectorXd memory = rows_of(out.memory, remembered);
   const Eigen::MatrixXd shapes = rows_of(shapes_, remembered);
@@ -125,10 +169,12 @@ ContactTrajectory::Step ContactTrajectory::begin_step(double time) {
 }
 
 const Eigen::MatrixXd& ContactTrajectory::response_between(const Step& step, const std::vector<int>& forced) {
-  if (response_.forced == forced && std::abs(response_.span - step.span) < kSameSpan * step.span) return response_.between;
+  const auto same = [](double a, double b) { return std::abs(a - b) < kSame * b; };
+  if (response_.forced == forced && same(response_.span, step.span) && same(response_.resistance, step.resistance))
+    return response_.between;
   const Eigen::MatrixXd shapes = rows_of(shapes_, forced);
   const Eigen::VectorXd modal = step.modal - softness_ / step.resistance;
-  response_ = {forced, step.span,
+  response_ = {forced, step.span, step.resistance,
                flexibility_.unit->between(forced) / (flexibility_.ratio * step.resistance) +
                    shapes * (modal.asDiagonal() * shapes.transpose())};
   return response_.between;
@@ -141,105 +187,153 @@ Eigen::VectorXd ContactTrajectory::response(const Step& step, const std::vector<
   return flexibility_.unit->under(forced, forces) / (flexibility_.ratio * step.resistance) + shapes_ * modal;
 }
 
-ContactTrajectory::Forces ContactTrajectory::forces_at(const Step& step, Eigen::VectorXd u) {
+ContactTrajectory::Contacts ContactTrajectory::contacts_at(const Step& step, Eigen::VectorXd u) {
   const std::vector<int>& dofs = owner_.dofs();
   for (std::size_t i = 0; i < dofs.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     displacement_[dofs[i]] = u[k];
     velocity_[dofs[i]] = (u[k] - at_[k]) / step.span;
   }
-  Forces out;
+  Contacts out;
   out.u = std::move(u);
   out.nodal = Eigen::VectorXd::Zero(out.u.size());
   out.reactions = Eigen::VectorXd::Zero(reactions_.size());
-  std::vector<Contact::Touch> touches;
   for (const Part& part : parts_) {
-    const std::size_t first = touches.size();
-    part.contact->find({step.time, displacement_, velocity_}, part.parameters, touches);
-    for (std::size_t t = first; t < touches.size() && part.reaction >= 0; ++t) {
-      out.reactions.segment<3>(part.reaction) += touches[t].force;
+    const std::size_t first = out.touches.size();
+    part.contact->find({step.time, displacement_, velocity_}, part.parameters, out.touches);
+    for (std::size_t t = first; t < out.touches.size() && part.reaction >= 0; ++t) {
+      out.reactions.segment<3>(part.reaction) += out.touches[t].force;
     }
   }
-  add_touches(touches, step.span, out);
-  out.off = out.u - step.free - response(step, out.touched, rows_of(out.nodal, out.touched));
-  return out;
-}
-
-void ContactTrajectory::add_touches(const std::vector<Contact::Touch>& touches, double span, Forces& out) const {
-  std::set<int> touched;
-  for (const Contact::Touch& touch : touches) {
+  std::vector<char> touched(dofs.size(), 0);
+  for (const Contact::Touch& touch : out.touches) {
     for (Eigen::Index a = 0; a < touch.nodes.size(); ++a) {
       const int place = owner_.place(touch.nodes[a]);
       out.nodal.segment<3>(place) += touch.shape[a] * touch.force;
-      touched.insert({place, place + 1, place + 2});
+      std::fill_n(touched.begin() + place, 3, char{1});
     }
   }
-  out.touched.assign(touched.begin(), touched.end());
-  std::vector<int> index(owner_.dofs().size(), -1);
-  for (std::size_t i = 0; i < out.touched.size(); ++i)
-    index[static_cast<std::size_t>(out.touched[i])] = static_cast<int>(i);
-  const auto count = static_cast<Eigen::Index>(out.touched.size());
-  std::vector<Eigen::Triplet<double>> entries;
-  for (const Contact::Touch& touch : touches) {
-    const Eigen::Matrix3d tangent = touch.stiffness + touch.damping / span;
-    for (Eigen::Index a = 0; a < touch.nodes.size(); ++a) {
-      const int row = index[static_cast<std::size_t>(owner_.place(touch.nodes[a]))];
-      for (Eigen::Index b = 0; b < touch.nodes.size(); ++b) {
-        const int column = index[static_cast<std::size_t>(owner_.place(touch.nodes[b]))];
-        const Eigen::Matrix3d block = touch.shape[a] * touch.shape[b] * tangent;
-        for (int i = 0; i < 3; ++i) {
-          for (int j = 0; j < 3; ++j) entries.emplace_back(row + i, column + j, block(i, j));
-        }
-      }
-    }
+  for (std::size_t i = 0; i < touched.size(); ++i) {
+    if (touched[i] != 0) out.touched.push_back(static_cast<int>(i));
   }
-  out.stiffness.resize(count, count);
-  out.stiffness.setFromTriplets(entries.begin(), entries.end());
+  return out;
 }
 
-// Newton's method for u = free + H f(u), with f linearised at the last u: (1 + K H) f = f(u) - K (free - u). A step is cut
-// while it does not bring the two sides closer.
+// The points of one facet follow each other, so their blocks are added before they go into the matrix.
+SparseMatrix ContactTrajectory::stiffness(const Contacts& contacts, double span, Tangent tangent) const {
+  std::vector<int> index(owner_.dofs().size(), -1);
+  for (std::size_t i = 0; i < contacts.touched.size(); ++i)
+    index[static_cast<std::size_t>(contacts.touched[i])] = static_cast<int>(i);
+  const auto count = static_cast<Eigen::Index>(contacts.touched.size());
+  std::vector<Eigen::Triplet<double>> entries;
+  const std::vector<Contact::Touch>& touches = contacts.touches;
+  for (std::size_t first = 0, end = 0; first < touches.size(); first = end) {
+    const auto& nodes = touches[first].nodes;
+    Eigen::MatrixXd facet = Eigen::MatrixXd::Zero(3 * nodes.size(), 3 * nodes.size());
+    for (; end < touches.size() && touches[end].nodes == nodes; ++end) {
+      const Contact::Touch& touch = touches[end];
+      const Eigen::Matrix3d all = touch.stiffness + touch.damping / span;
+      const Eigen::Matrix3d point = tangent == Tangent::exact ? all : convex_part(all);
+      for (Eigen::Index b = 0; b < nodes.size(); ++b) {
+        for (Eigen::Index a = 0; a < nodes.size(); ++a)
+          facet.block<3, 3>(3 * a, 3 * b) += touch.shape[a] * touch.shape[b] * point;
+      }
+    }
+    const auto place = [&](Eigen::Index i) {
+      return index[static_cast<std::size_t>(owner_.place(nodes[i / 3]))] + static_cast<int>(i % 3);
+    };
+    for (Eigen::Index j = 0; j < facet.cols(); ++j) {
+      for (Eigen::Index i = 0; i < facet.rows(); ++i) entries.emplace_back(place(i), place(j), facet(i, j));
+    }
+  }
+  SparseMatrix out(count, count);
+  out.setFromTriplets(entries.begin(), entries.end());
+  return out;
+}
+
+// Solves u = free + H f(u) with f linearised at the last u: (1 + K H) f = f(u) - K (free - u).
+std::optional<ContactTrajectory::NewtonStep> ContactTrajectory::newton_step(const Step& step, const Contacts& contacts,
+                                                                            const Eigen::VectorXd& forces,
+                                                                            Tangent tangent) {
+  NewtonStep out{Eigen::VectorXd::Zero(contacts.u.size()), step.free - contacts.u};
+  if (contacts.touched.empty()) return out;
+  const SparseMatrix k = stiffness(contacts, step.span, tangent);
+  const Eigen::VectorXd right = rows_of(contacts.nodal, contacts.touched) - k * rows_of(out.change, contacts.touched);
+  Eigen::VectorXd balanced = rows_of(forces, contacts.touched);
+  if (!solve_contacts(k, response_between(step, contacts.touched), right, balanced)) return std::nullopt;
+  for (std::size_t i = 0; i < contacts.touched.size(); ++i)
+    out.forces[contacts.touched[i]] = balanced[static_cast<Eigen::Index>(i)];
+  out.change += response(step, contacts.touched, balanced);
+  return out;
+}
+
+// Goes along a step of Newton's method to where the energy 1/2 f^T H f - W(free + H f) is least, W being the contacts'
+// work. Its slope along the change of u is change . (f - f(u)).
+ContactTrajectory::Contacts ContactTrajectory::search(const Step& step, const Contacts& from, Eigen::VectorXd& forces,
+                                                      const NewtonStep& newton) {
+  const Eigen::VectorXd more = newton.forces - forces;
+  Contacts best = contacts_at(step, from.u + newton.change);
+  double low = 0.0, slope_low = newton.change.dot(forces - from.nodal);
+  double share = 1.0, slope = newton.change.dot(newton.forces - best.nodal);
+  const double flat = kFlat * std::abs(slope_low);
+  double high = share, slope_high = slope;
+  for (int k = 0; slope_high > flat && std::abs(slope) > flat && k < kMostSearches; ++k) {
+    share = low + (high - low) * slope_low / (slope_low - slope_high);
+    best = contacts_at(step, from.u + share * newton.change);
+    slope = newton.change.dot(forces + share * more - best.nodal);
+    // The end that stays loses half of its slope, so that both come closer (the Illinois method).
+    if (slope > 0.0) {
+      high = share;
+      slope_high = slope;
+      slope_low *= 0.5;
+    } else {
+      low = share;
+      slope_low = slope;
+      slope_high *= 0.5;
+    }
+  }
+  forces += share * more;
+  return best;
+}
+
+// The exact tangent may not be definite where a curved tool is deep inside the tissue. The energy need not fall along a
+// step then, so the convex part of the tangent takes its place (projected Newton, Teran et al. 2005).
 void ContactTrajectory::step(double time) {
   const Step step = begin_step(time);
   const double tolerance = kSettled * body_size(owner_.model().mesh().nodes);
-  Forces now = forces_at(step, at_);
+  // The forces go on as over the last step.
+  Eigen::VectorXd forces = force_ + step.span * force_rate_;
+  const std::vector<int> forced = nonzero(forces);
+  Contacts now = contacts_at(step, step.free + response(step, forced, rows_of(forces, forced)));
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
-    if (now.off.cwiseAbs().maxCoeff() < tolerance) return end_step(step, now);
-    Eigen::VectorXd next = step.free;
-    if (!now.touched.empty()) {
-      const SparseMatrix& k = now.stiffness;
-      Eigen::MatrixXd left = k * response_between(step, now.touched);
-      left.diagonal().array() += 1.0;
-      const Eigen::VectorXd right = rows_of(now.nodal, now.touched) - k * rows_of(step.free - now.u, now.touched);
-      next += response(step, now.touched, left.partialPivLu().solve(right));
-    }
-    if (!next.allFinite()) break;
-    const Eigen::VectorXd change = next - now.u;
-    Forces best = forces_at(step, next);
-    for (double share = kCut; share > kLeastCut && best.off.norm() > kCloser * now.off.norm(); share *= kCut) {
-      Forces other = forces_at(step, now.u + share * change);
-      if (other.off.norm() < best.off.norm()) best = std::move(other);
-    }
-    now = std::move(best);
+    std::optional<NewtonStep> newton = newton_step(step, now, forces, Tangent::exact);
+    if (!newton || !(newton->change.dot(forces - now.nodal) < 0.0))
+      newton = newton_step(step, now, forces, Tangent::convex);
+    if (!newton || !newton->change.allFinite()) break;
+    const bool settled = newton->change.cwiseAbs().maxCoeff() < tolerance;
+    now = search(step, now, forces, *newton);
+    if (settled) return end_step(step, now);
   }
   throw NumericalError("the contact does not settle within a step of " + std::to_string(step.span) + " s");
 }
 
-void ContactTrajectory::end_step(const Step& step, const Forces& forces) {
-  const Eigen::VectorXd modal = shapes_.transpose() * forces.nodal;
+void ContactTrajectory::end_step(const Step& step, const Contacts& contacts) {
+  const Eigen::VectorXd modal = shapes_.transpose() * contacts.nodal;
   modal_step_.advance(step.span, modal_force_, modal, state_);
-  force_ = forces.nodal;
+  force_rate_ = (contacts.nodal - force_) / step.span;
+  force_ = contacts.nodal;
   modal_force_ = modal;
-  const Eigen::VectorXd stretch = (forces.nodal + step.memory) / step.resistance;
+  const Eigen::VectorXd stretch = (contacts.nodal + step.memory) / step.resistance;
   for (std::size_t b = 0; b < branches_.size(); ++b) {
     const RelaxationStep relaxing(branches_[b], step.span);
     auto z = relaxed_.col(static_cast<Eigen::Index>(b));
     z = (relaxing.decay * z + relaxing.from * stretch_ + relaxing.to * stretch).eval();
   }
-  stretch_ = stretch;
+  stretch_before_ = std::exchange(stretch_, stretch);
+  span_before_ = step.span;
   for (std::size_t i = 0; i < owner_.dofs().size(); ++i)
     at_[static_cast<Eigen::Index>(i)] = displacement_[owner_.dofs()[i]];
-  reactions_ = forces.reactions;
+  reactions_ = contacts.reactions;
 }
 
 Eigen::VectorXd ContactTrajectory::coordinates() const {
@@ -248,7 +342,8 @@ Eigen::VectorXd ContactTrajectory::coordinates() const {
 }
 
 Eigen::VectorXd ContactTrajectory::displacement() const {
-  Eigen::VectorXd u = owner_.reduced().displacement(coordinates());
+  Eigen::VectorXd u(owner_.model().fem().dof_count());
+  owner_.reduced().recover(coordinates(), u);
   if (!stretch_.isZero(0.0)) u += flexibility_.unit->response(stretch_) / flexibility_.ratio;
   return u;
 }
@@ -259,7 +354,13 @@ Eigen::VectorXd ContactTrajectory::velocity() const {
 
 Eigen::VectorXd ContactTrajectory::output() const {
   Eigen::VectorXd out(owner_.model().output_size());
-  out << displacement(), linear_.reactions() + reactions_;
+  out.tail(reactions_.size()) = linear_.reactions() + reactions_;
+  const Eigen::Index dofs = owner_.model().fem().dof_count();
+  if (owner_.gives_forces_alone()) {
+    out.head(dofs).setZero();
+  } else {
+    out.head(dofs) = displacement();
+  }
   return out;
 }
 

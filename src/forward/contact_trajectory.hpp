@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -39,25 +40,34 @@ class ContactTrajectory : public Trajectory {
     double resistance;       ///< a
   };
   /// The contacts' forces at a displacement u.
-  struct Forces {
-    Eigen::VectorXd u;          ///< at dofs() [m]
-    Eigen::VectorXd nodal;      ///< at dofs() [N]
-    std::vector<int> touched;   ///< indices into dofs(), ascending
-    SparseMatrix stiffness;     ///< -d force / d displacement between them [N/m]
+  struct Contacts {
+    Eigen::VectorXd u;         ///< at dofs() [m]
+    Eigen::VectorXd nodal;     ///< at dofs() [N]
+    std::vector<int> touched;  ///< indices into dofs(), ascending
+    std::vector<Contact::Touch> touches;
     Eigen::VectorXd reactions;  ///< [N]
-    Eigen::VectorXd off;        ///< u - free - H f [m]
   };
+  /// A step of Newton's method: forces f at dofs() [N], and by how much u changes with them [m].
+  struct NewtonStep {
+    Eigen::VectorXd forces, change;
+  };
+  enum class Tangent { exact, convex };
   ContactTrajectory(const ContactModel& owner, const Eigen::VectorXd& theta, ReducedTrajectory linear);
   int steps_to(double time) const;
   void step(double time);
   Step begin_step(double time);
-  Forces forces_at(const Step& step, Eigen::VectorXd u);
-  void add_touches(const std::vector<Contact::Touch>& touches, double span, Forces& out) const;
+  Contacts contacts_at(const Step& step, Eigen::VectorXd u);
+  /// Returns -d force / d displacement between what is touched [N/m].
+  SparseMatrix stiffness(const Contacts& contacts, double span, Tangent tangent) const;
+  /// Returns nothing where the tangent is not positive definite along a direction. `forces`: from where it is solved.
+  std::optional<NewtonStep> newton_step(const Step& step, const Contacts& contacts, const Eigen::VectorXd& forces,
+                                        Tangent tangent);
+  Contacts search(const Step& step, const Contacts& from, Eigen::VectorXd& forces, const NewtonStep& newton);
   /// H is the response to the contacts' forces at the step's end. These return H between some of dofs() [m/N], and the
   /// displacement H f at all of them under forces at some [m].
   const Eigen::MatrixXd& response_between(const Step& step, const std::vector<int>& forced);
   Eigen::VectorXd response(const Step& step, const std::vector<int>& forced, const Eigen::VectorXd& forces) const;
-  void end_step(const Step& step, const Forces& forces);
+  void end_step(const Step& step, const Contacts& contacts);
   Eigen::VectorXd coordinates() const;
 
   const ContactModel& owner_;
@@ -69,17 +79,20 @@ class ContactTrajectory : public Trajectory {
   Eigen::MatrixXd shapes_;    ///< modes at dofs()
   Eigen::VectorXd softness_;  ///< Omega^-2 of each mode
   ModalStep modal_step_;
-  Eigen::MatrixXd state_;  ///< response of the modes to the contacts: columns q, q', z...
-  Eigen::VectorXd force_;  ///< of the contacts at dofs() [N]
+  Eigen::MatrixXd state_;       ///< response of the modes to the contacts: columns q, q', z...
+  Eigen::VectorXd force_;       ///< of the contacts at dofs() [N]
+  Eigen::VectorXd force_rate_;  ///< over the last step [N/s]
   Eigen::VectorXd modal_force_;
-  Eigen::VectorXd stretch_;    ///< s at dofs() [N]
-  Eigen::MatrixXd relaxed_;    ///< z of each branch at dofs() [N]
-  Eigen::VectorXd at_;         ///< displacement at dofs() [m]
-  Eigen::VectorXd reactions_;  ///< of the last step [N]
+  Eigen::VectorXd stretch_;         ///< s at dofs() [N]
+  Eigen::VectorXd stretch_before_;  ///< a step earlier [N]
+  double span_before_ = 0.0;        ///< of the last step; 0: none [s]
+  Eigen::MatrixXd relaxed_;         ///< z of each branch at dofs() [N]
+  Eigen::VectorXd at_;              ///< displacement at dofs() [m]
+  Eigen::VectorXd reactions_;       ///< of the last step [N]
   /// What response_between() returned last. It is asked for the same again while the tool touches the same nodes.
   struct Response {
     std::vector<int> forced;
-    double span = 0.0;
+    double span = 0.0, resistance = 0.0;
     Eigen::MatrixXd between;
   } response_;
   Eigen::VectorXd displacement_, velocity_;  ///< of all nodes, for the contacts: zero at other nodes than theirs

@@ -21,7 +21,7 @@ class FirstOrderModel : public ForwardModel {
 
   std::unique_ptr<Trajectory> start(const Eigen::VectorXd& theta, double start) const override;
   void advance_through(Trajectory& run, const std::vector<double>& times, const Show& show) const override;
-  void restrict_output_to(const std::vector<int>& nodes) override { reduced_.restrict_output_to(nodes); }
+  void restrict_output_to(const OutputNodes& nodes) override { reduced_.restrict_output_to(nodes); }
   std::string description() const override;
 
   const ReducedModel& reduced() const { return reduced_; }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "forward/model.hpp"
+#include "forward/output_rows.hpp"
 
 namespace tissue_stiffness {
 
@@ -90,7 +91,7 @@ class ForwardModel {
   using Show = std::function<void(std::size_t, const Eigen::Ref<const Eigen::VectorXd>&)>;
   virtual void advance_through(Trajectory& run, const std::vector<double>& times, const Show& show) const;
   /// Runs started from now on need to give the motion of these nodes only. Cheaper models may leave the others at rest.
-  virtual void restrict_output_to(const std::vector<int>&) {}
+  virtual void restrict_output_to(const OutputNodes&) {}
   /// Returns a description in one line.
   virtual std::string description() const = 0;
 

@@ -29,8 +29,8 @@ class HyperReducedModel : public ForwardModel {
   std::unique_ptr<Trajectory> resume(const Eigen::VectorXd& theta, const Trajectory& from) const override;
   std::unique_ptr<Trajectories> resume_all(const std::vector<Eigen::VectorXd>& thetas,
                                            const Trajectory& from) const override;
-  void restrict_output_to(const std::vector<int>& nodes) override { output_.restrict_to(basis_.vectors, nodes); }
-  const std::vector<int>& output_nodes() const { return output_.nodes(); }
+  void restrict_output_to(const OutputNodes& nodes) override { output_.restrict_to(basis_.vectors, nodes); }
+  const OutputNodes& output_nodes() const { return output_.nodes(); }
   std::string description() const override;
 
   const Model& model() const { return model_; }

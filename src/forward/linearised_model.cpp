@@ -290,7 +290,7 @@ LinearisedModel::LinearisedModel(const Model& model, const Eigen::VectorXd& thet
     throw InputError(model.settings().name, why, "a model that can be linearised about a run");
   }
   Builder(*this, step, options).build();
-  output_.restrict_to(vectors_, {});
+  output_.restrict_to(vectors_, std::nullopt);
 }
 
 namespace {

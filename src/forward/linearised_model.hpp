@@ -34,7 +34,7 @@ class LinearisedModel : public ForwardModel {
                   const Eigen::VectorXd& step, const Options& options);
 
   std::unique_ptr<Trajectory> start(const Eigen::VectorXd& theta, double start) const override;
-  void restrict_output_to(const std::vector<int>& nodes) override { output_.restrict_to(vectors_, nodes); }
+  void restrict_output_to(const OutputNodes& nodes) override { output_.restrict_to(vectors_, nodes); }
   std::string description() const override;
 
   /// Returns the displacement of every node at an instant, 3n [m], and its rate [m/s].

@@ -21,20 +21,21 @@ Eigen::MatrixXd basis_rows(const Eigen::MatrixXd& basis, const std::vector<int>&
   return rows;
 }
 
-void OutputRows::restrict_to(const Eigen::MatrixXd& basis, const std::vector<int>& nodes) {
+void OutputRows::restrict_to(const Eigen::MatrixXd& basis, const OutputNodes& nodes) {
   nodes_ = nodes;
-  rows_ = PackedMatrix(basis_rows(basis, nodes));
+  rows_ = PackedMatrix(nodes ? basis_rows(basis, *nodes) : Eigen::MatrixXd(0, basis.cols()));
 }
 
 void OutputRows::displacements(const Eigen::MatrixXd& basis, const Eigen::MatrixXd& coordinates,
                                Eigen::MatrixXd& out) const {
-  if (nodes_.empty()) return multiply_tall(basis, coordinates, out.topLeftCorner(basis.rows(), coordinates.cols()));
+  if (!nodes_) return multiply_tall(basis, coordinates, out.topLeftCorner(basis.rows(), coordinates.cols()));
+  if (nodes_->empty()) return;
   VectorPool::Loan scratch(scratch_, rows_.rows() * coordinates.cols());
   Eigen::Map<Eigen::MatrixXd> seen(scratch->data(), rows_.rows(), coordinates.cols());
   rows_.multiply(coordinates, seen);
   for (Eigen::Index k = 0; k < seen.cols(); ++k) {
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      out.block<3, 1>(3 * nodes_[i], k) = seen.block<3, 1>(3 * static_cast<Eigen::Index>(i), k);
+    for (std::size_t i = 0; i < nodes_->size(); ++i) {
+      out.block<3, 1>(3 * (*nodes_)[i], k) = seen.block<3, 1>(3 * static_cast<Eigen::Index>(i), k);
     }
   }
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "fem/products.hpp"
@@ -14,18 +15,20 @@ void multiply_tall(const Eigen::MatrixXd& tall, const Eigen::MatrixXd& small, Ei
 /// Returns the basis (3n x m) at some nodes, three rows for each.
 Eigen::MatrixXd basis_rows(const Eigen::MatrixXd& basis, const std::vector<int>& nodes);
 
-/// The rows of a basis that an output needs: those of some nodes, or all.
+/// Nodes whose motion an output needs, ascending; absent: all nodes. Forces alone need none.
+using OutputNodes = std::optional<std::vector<int>>;
+
+/// The rows of a basis that an output needs.
 class OutputRows {
  public:
-  void restrict_to(const Eigen::MatrixXd& basis, const std::vector<int>& nodes);
-  /// Empty: all.
-  const std::vector<int>& nodes() const { return nodes_; }
+  void restrict_to(const Eigen::MatrixXd& basis, const OutputNodes& nodes);
+  const OutputNodes& nodes() const { return nodes_; }
   /// Computes the displacements of several columns of coordinates. Rows of `out` that do not belong to the output are not
   /// changed. Thread safe.
   void displacements(const Eigen::MatrixXd& basis, const Eigen::MatrixXd& coordinates, Eigen::MatrixXd& out) const;
 
  private:
-  std::vector<int> nodes_;
+  OutputNodes nodes_;
   PackedMatrix rows_;
   mutable VectorPool scratch_;
 };

@@ -296,7 +296,7 @@ const Eigen::MatrixXd& ReducedModel::start_shapes() const {
   return start_shapes_;
 }
 
-void ReducedModel::restrict_output_to(const std::vector<int>& nodes) {
+void ReducedModel::restrict_output_to(const OutputNodes& nodes) {
   output_.restrict_to(basis_.vectors, nodes);
 }
 

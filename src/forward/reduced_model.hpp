@@ -64,7 +64,7 @@ class ReducedModel : public ForwardModel {
   /// Returns the model in a basis larger by half; null when that adds no vectors.
   std::unique_ptr<ReducedModel> grown() const;
   void advance_through(Trajectory& run, const std::vector<double>& times, const Show& show) const override;
-  void restrict_output_to(const std::vector<int>& nodes) override;
+  void restrict_output_to(const OutputNodes& nodes) override;
   std::string description() const override;
 
   const Model& model() const { return model_; }

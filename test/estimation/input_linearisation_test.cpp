@@ -57,7 +57,7 @@ struct Rows {
 Rows rows_at(InputLinearisation& linearisation, const Eigen::VectorXd& z) {
   std::vector<Rows> frames;
   Eigen::Index count = 0;
-  linearisation.each_row(z, [&](const InputLinearisation::Row& row, const Eigen::MatrixXd& amplitudes) {
+  linearisation.each_row(z, Constants::varied, [&](const InputLinearisation::Row& row, const Eigen::MatrixXd& amplitudes) {
     Eigen::MatrixXd columns(row.error.size(), z.size());
     columns << row.parameters, row.modes * amplitudes, row.direct;
     frames.push_back({row.error, columns});

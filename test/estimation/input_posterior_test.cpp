@@ -16,7 +16,7 @@ using Values = std::function<Eigen::VectorXd(const Eigen::VectorXd& z)>;
 
 // Returns the rows y - h(z) of unit noise, with h's derivatives by differences; a row's weight may fall with its error.
 InputPosterior::Rows rows_of(const Values& h, const Eigen::VectorXd& y, double robust = 1e9) {
-  return [=](const Eigen::VectorXd& z) {
+  return [=](const Eigen::VectorXd& z, Constants) {
     NormalEquations out(z.size(), 0);
     Eigen::MatrixXd slope(y.size(), z.size());
     for (Eigen::Index i = 0; i < z.size(); ++i) {
@@ -61,14 +61,16 @@ InputPosterior posterior(const InputPosterior::Rows& rows, double prior_std, dou
 // y = X w + C c: a joint fit of both says which c is most probable, and by how much w moves with it.
 TEST(InputPosterior, ToleratesWhatConstantsLeave) {
   const Eigen::Vector4d x(3.0, 1.0, -2.0, 0.5), c(1.0, 2.0, 0.3, -4.0), y = 0.2 * x + 0.2 * c;
-  const auto rows = [&](const Eigen::VectorXd& z) {
+  const auto rows = [&](const Eigen::VectorXd& z, Constants constants) {
     NormalEquations out(1, 1);
     const Eigen::Vector4d error = y - x * z[0];
     out.information(0, 0) = x.squaredNorm();
     out.gradient[0] = x.dot(error);
-    out.constants(0, 0) = x.dot(c);
-    out.constants_information(0, 0) = c.squaredNorm();
-    out.constants_gradient[0] = c.dot(error);
+    if (constants == Constants::varied) {
+      out.constants(0, 0) = x.dot(c);
+      out.constants_information(0, 0) = c.squaredNorm();
+      out.constants_gradient[0] = c.dot(error);
+    }
     out.cost = error.squaredNorm();
     out.rows = 4.0;
     return InputPosterior::Equations{out};

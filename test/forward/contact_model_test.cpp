@@ -126,6 +126,46 @@ TEST(ContactModel, ResumesWhereItWas) {
   EXPECT_LT((whole->output() - second->output()).norm(), 1e-6 * whole->output().norm());
 }
 
+// A ball that is deep inside the tissue at once: the exact tangent is indefinite there. Where nothing relaxes, a slow body
+// comes to the same place as in many steps.
+TEST(ContactModel, SettlesWhereAToolIsDeepAtOnce) {
+  Model model(settings({"mass_damping: {alpha: 200}", touching(kBall)}), block_mesh(6));
+  model.loads().set_first_stamp(0.0);
+  for (int k = 0; k <= 200; ++k) {
+    const double t = 0.01 * k, deep = 0.004 * std::min(1.0, std::max(0.0, t - 0.5) / 0.02);
+    model.loads().courses().at("/pose")->add(t,
+                                             pose_values(Eigen::Isometry3d(Eigen::Translation3d(0.01, 0.01, 0.03 - deep))));
+  }
+  const ContactModel contact(model, BasisOptions());
+  const auto at_once = contact.start(prior(model), 0.0), slowly = contact.start(prior(model), 0.0);
+  at_once->advance(0.6);
+  for (int k = 1; k <= 300; ++k) slowly->advance(0.002 * k);
+  for (const auto* run : {&at_once, &slowly}) (*run)->advance(1.9);
+  EXPECT_GT(slowly->output().tail<3>().norm(), 0.1);
+  EXPECT_LT((at_once->output() - slowly->output()).norm(), 1e-3 * slowly->output().norm());
+}
+
+// Sensors of forces need no motion of the body, and those of some points only theirs. The surface is shown all the same.
+TEST(ContactModel, RestrictsTheOutputAndNotTheDisplacement) {
+  Model model(settings({"viscous_damping: {beta: 0.01}", touching(kBall)}), block_mesh());
+  drive(model);
+  ContactModel contact(model, BasisOptions());
+  const auto all = contact.start(prior(model), 0.0);
+  all->advance(0.3);
+  const Eigen::VectorXd expected = all->output();
+  const Eigen::Index dofs = expected.size() - 3;
+  for (const OutputNodes& nodes : {OutputNodes(std::vector<int>()), OutputNodes({3, 7})}) {
+    contact.restrict_output_to(nodes);
+    const auto run = contact.start(prior(model), 0.0);
+    run->advance(0.3);
+    const Eigen::VectorXd output = run->output();
+    EXPECT_LT((run->displacement() - expected.head(dofs)).norm(), 1e-12 * expected.head(dofs).norm());
+    EXPECT_LT((output.tail<3>() - expected.tail<3>()).norm(), 1e-12 * expected.tail<3>().norm());
+    EXPECT_EQ(output.head(dofs).isZero(0.0), nodes->empty());
+    for (const int node : *nodes) EXPECT_LT((output - expected).segment<3>(3 * node).norm(), 1e-12 * expected.norm());
+  }
+}
+
 // Sigma points of a model with one modulus share its static response.
 TEST(ContactModel, AStifferBodyOnlyScalesTheResponse) {
   Model model(settings({touching(kBall)}, "{prior: 2.0e4, factor: 2}"), block_mesh());

@@ -139,7 +139,7 @@ TEST_F(HyperReducedBar, ShowsOnlyTheNodesOfItsOutput) {
   whole->advance(0.1);
   const Eigen::VectorXd u = whole->output();
   EXPECT_EQ(u, whole->displacement());
-  reduced_.restrict_output_to({3, 20});
+  reduced_.restrict_output_to(std::vector<int>{3, 20});
   const auto some = reduced_.start_all({theta_, theta_}, 0.0);
   some->advance({0.1, 0.1});
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(u.size(), 2);

@@ -260,7 +260,7 @@ TEST(ReducedModel, ShowsManyInstantsAsItShowsEach) {
   ReducedModel reduced(model, linear);
   FirstOrderModel first_order(model);
   for (ForwardModel* forward : std::initializer_list<ForwardModel*>{&reduced, &first_order}) {
-    for (const std::vector<int>& nodes : {std::vector<int>{}, std::vector<int>{3, 7, mesh.node_count() - 1}}) {
+    for (const OutputNodes& nodes : {OutputNodes(), OutputNodes({3, 7, mesh.node_count() - 1})}) {
       forward->restrict_output_to(nodes);
       const auto run = forward->start(theta, 0.0), step = forward->start(theta, 0.0);
       std::size_t shown = 0;
