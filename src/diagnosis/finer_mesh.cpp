@@ -26,6 +26,7 @@ std::shared_ptr<const RecordingFit> on_finer_mesh(const FittedModel& base, const
   const auto basis = [&](const TetMesh& mesh) {
     BasisOptions options = basis_beside(model.mesh(), mesh);
     options.keep_root = true;
+    options.growths = base.recording_fit->growths();
     return RecordingFit::chosen_at(base.fit, std::move(options));
   };
   if (known != nullptr) return std::make_shared<const RecordingFit>(settings, *known, basis(known->model().mesh()));

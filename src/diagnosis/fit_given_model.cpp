@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "diagnosis/estimate_at_last.hpp"
+#include "estimation/basis_error.hpp"
 #include "forward/hyper_basis.hpp"
+#include "meshing/surface.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -37,6 +39,20 @@ Eigen::VectorXd starting_point_of_finite(const RecordingFit& recording_fit) {
   return recording_fit.cost_in_full(estimated) < recording_fit.cost_in_full(scanned) ? estimated : scanned;
 }
 
+// What the basis leaves out is no missing physics. A body that nothing damps rings in more modes than the usual basis
+// holds.
+FittedModel in_sufficient_basis(FittedModel fitted, const TetMesh& mesh) {
+  RecordingFit& known = *fitted.recording_fit;
+  const Model& model = known.model();
+  if (!known.linear() || model.starts_in_motion()) return fitted;
+  const BasisGrowth growth = grow_basis(*known.reduced(), false, known.whole(), fitted.fit.w, surface_nodes(mesh));
+  if (growth.growths == 0) return fitted;
+  BasisOptions larger = RecordingFit::keeping_root();
+  larger.growths = growth.growths;
+  auto grown = std::make_unique<RecordingFit>(model.settings(), mesh, known.recording(), larger);
+  return fit_recording(std::move(grown), fitted.fit.w, kSpread);
+}
+
 }  // namespace
 
 FittedModel fit_given_model(const ModelSettings& settings, const TetMesh& mesh, const Recording& recording) {
@@ -44,7 +60,7 @@ FittedModel fit_given_model(const ModelSettings& settings, const TetMesh& mesh, 
   const Model& model = recording_fit->model();
   const Eigen::VectorXd start =
       why_not_hyper_reduced(model).empty() ? starting_point_of_finite(*recording_fit) : starting_point(*recording_fit);
-  return fit_recording(std::move(recording_fit), start, kSpread);
+  return in_sufficient_basis(fit_recording(std::move(recording_fit), start, kSpread), mesh);
 }
 
 }  // namespace tissue_stiffness

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "filter/posterior_linearization_filter.hpp"
 #include "forward/reduced_trajectory.hpp"
@@ -11,6 +12,8 @@ namespace tissue_stiffness {
 namespace {
 
 constexpr std::size_t kComparedFrames = 32;  // frames compared, about
+constexpr int kMostGrowths = 4;              // growths of the basis at once, by half each
+constexpr double kGrowthHelps = 0.7;         // of the error: a growth that leaves no more is worth another
 
 std::size_t stride(const FitProblem& problem) {
   return (problem.frames.size() + kComparedFrames - 1) / kComparedFrames;
@@ -46,6 +49,23 @@ BasisError basis_error(const ReducedModel& reduced, const FitProblem& problem, c
   }
   const double rms = kBasisSafety * std::sqrt(square / static_cast<double>(basis.rows()));
   return {rms, rms / least_noise(problem.model)};
+}
+
+BasisGrowth grow_basis(const ReducedModel& reduced, bool exhausted, const FitProblem& problem, const Eigen::VectorXd& w,
+                       const std::vector<int>& nodes) {
+  BasisGrowth out;
+  out.exhausted = exhausted;
+  for (const ReducedModel* now = &reduced;; now = out.larger.get()) {
+    const double before = out.error.rms;
+    out.error = basis_error(*now, problem, w, nodes);
+    if (out.exhausted || out.error.sigmas <= kBasisShare) return out;
+    const bool helps = out.growths == 0 || out.error.rms < kGrowthHelps * before;
+    std::shared_ptr<ReducedModel> larger = out.growths == kMostGrowths || !helps ? nullptr : now->grown();
+    out.exhausted = larger == nullptr;
+    if (!larger) return out;
+    out.larger = std::move(larger);
+    ++out.growths;
+  }
 }
 
 Eigen::VectorXd basis_shift(const ReducedModel& reduced, const FitProblem& problem, const Eigen::VectorXd& w,

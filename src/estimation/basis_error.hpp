@@ -22,6 +22,18 @@ constexpr double kBasisShare = 0.1;  ///< of the noise: what a basis may leave o
 BasisError basis_error(const ReducedModel& reduced, const FitProblem& problem, const Eigen::VectorXd& w,
                        const std::vector<int>& nodes);
 
+/// How far a basis has grown.
+struct BasisGrowth {
+  std::shared_ptr<ReducedModel> larger;  ///< null: it has not grown
+  int growths = 0;
+  BasisError error;
+  bool exhausted = false;  ///< more vectors do not help
+};
+/// Grows the basis by half at a time, until it leaves out a small part of the noise (kBasisShare), or growth helps no more.
+/// An `exhausted` basis is only checked. The arguments are those of basis_error.
+BasisGrowth grow_basis(const ReducedModel& reduced, bool exhausted, const FitProblem& problem, const Eigen::VectorXd& w,
+                       const std::vector<int>& nodes);
+
 /// Returns the standard deviation of the most precise sensor's noise [m].
 double least_noise(const Model& model);
 /// Returns whether a frame of the problem is one of those that are compared.

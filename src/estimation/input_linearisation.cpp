@@ -6,9 +6,11 @@
 #include <utility>
 
 #include "effects/registry.hpp"
+#include "estimation/basis_error.hpp"
 #include "fit/ensemble.hpp"
 #include "forward/load_error_response.hpp"
 #include "forward/reduced_trajectory.hpp"
+#include "meshing/surface.hpp"
 #include "types/least_squares.hpp"
 
 namespace tissue_stiffness {
@@ -81,6 +83,15 @@ InputModels::InputModels(const Model& model)
       constants(model.parameters().uncertain_constants()),
       rigid(rigid_motions(base.mesh())) {
   runs = make_study_model(uncertain);
+}
+
+void InputModels::grow_basis(const MeshError::Question& question) {
+  const auto* reduced = dynamic_cast<const ReducedModel*>(runs.get());
+  if (reduced == nullptr || !studied_in_full(base)) return;
+  const FitProblem problem{base, *reduced, operators, question.frames, {question.start}, question.checkpoint};
+  BasisGrowth growth = tissue_stiffness::grow_basis(*reduced, exhausted, problem, question.w, surface_nodes(base.mesh()));
+  exhausted = growth.exhausted;
+  if (growth.larger) runs = std::move(growth.larger);
 }
 
 InputLinearisation::InputLinearisation(const MeshError::Question& question, InputModels& models)

@@ -20,12 +20,17 @@ namespace tissue_stiffness {
 struct InputModels {
   Model base;       ///< the estimator's, for its parameters
   Model uncertain;  ///< keeps constants that have a tolerance apart
-  std::unique_ptr<ForwardModel> runs;
+  std::shared_ptr<ForwardModel> runs;
   std::vector<std::unique_ptr<ObservationOperator>> operators;
   std::vector<UncertainConstant> constants;
   Eigen::MatrixXd rigid;  ///< translations and rotations of the body, 3n x 6
 
+  bool exhausted = false;  ///< more vectors do not make the basis of the runs better
+
   explicit InputModels(const Model& model);
+  /// Lets the basis of the runs leave out no more than that of the estimator: what is known of its constants is apart
+  /// here, so it takes other vectors.
+  void grow_basis(const MeshError::Question& question);
   const ReducedModel& linear_form() const { return linear_form_of(*runs); }
 };
 

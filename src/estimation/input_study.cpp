@@ -287,6 +287,7 @@ InputStudy::Answer InputStudy::study(const std::vector<const Question*>& questio
     for (const auto& [topic, course] : question.courses) *models.uncertain.loads().courses().at(topic) = course;
     models.uncertain.loads().set_first_stamp(question.first_stamp);
     models.base.loads().set_first_stamp(question.first_stamp);
+    models.grow_basis(question);
     models.runs->restrict_output_to(observed_nodes(models.operators, question.frames));
     parts.push_back(std::make_unique<JointRows::Part>(question, models, predicted[r]));
   }

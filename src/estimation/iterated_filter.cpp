@@ -30,12 +30,10 @@ constexpr double kRelinearizationGrowth = 1.1;  // growth of the recording betwe
 constexpr double kScanMisfit = 4.0;             // mean square error over sigma that asks for a scan of the parameters
 constexpr int kScanPoints = 25;                 // points on either side of the prior's mean
 constexpr std::size_t kFirstBasisCheck = 4;     // frames before the first check of the basis
-constexpr int kMostGrowths = 4;                 // growths of the basis at once, by half each
 constexpr double kChangedSpread = 0.05;         // prior standard deviations, of the sigma points after a change
 constexpr int kWatchedFrames = 4;               // frames between looks at the residual in full, which cost as many frames
 constexpr double kBeyond = 1.5;                 // times the energy of the training: a larger motion has to be checked
 constexpr double kSurprise = 2.0;               // times the residual of the last check: it has to be made again
-constexpr double kGrowthHelps = 0.7;            // of the error: a growth that leaves no more is worth another
 
 }  // namespace
 
@@ -275,21 +273,16 @@ bool IteratedFilter::grow_basis(const FitProblem& problem) {
   if (!basis_is_due(problem.frames.size())) return false;
   notes_.basis = problem.frames.size();
   if (model_.nonlinear()) return check_hyper_reduction(problem);
-  auto reduced = std::dynamic_pointer_cast<ReducedModel>(forward_);
-  const std::vector<int> surface = surface_nodes(model_.mesh());
-  for (int k = 0;; ++k) {
-    const FitProblem run{model_, *reduced, operators_, problem.frames, start_, problem.checkpoint};
-    const BasisError error = tissue_stiffness::basis_error(*reduced, run, filter_.mean(), surface);
-    const bool helps = k == 0 || error.rms < kGrowthHelps * *notes_.basis_error;
-    notes_.basis_error = error.rms;
-    if (notes_.basis_exhausted || error.sigmas <= kBasisShare) break;
-    std::shared_ptr<ReducedModel> larger = k == kMostGrowths || !helps ? nullptr : reduced->grown();
-    notes_.basis_exhausted = larger == nullptr;
-    if (!larger) break;
-    reduced = std::move(larger);
-  }
-  notes_.basis_shift = basis_shift(*reduced, problem, filter_.mean(), filter_.spread(), model_.parameters().prior_std());
-  return std::exchange(forward_, reduced) != reduced;
+  const auto& reduced = dynamic_cast<const ReducedModel&>(*forward_);
+  BasisGrowth growth =
+      tissue_stiffness::grow_basis(reduced, notes_.basis_exhausted, problem, filter_.mean(), surface_nodes(model_.mesh()));
+  notes_.basis_error = growth.error.rms;
+  notes_.basis_exhausted = growth.exhausted;
+  notes_.basis_shift = basis_shift(growth.larger ? *growth.larger : reduced, problem, filter_.mean(), filter_.spread(),
+                                   model_.parameters().prior_std());
+  if (!growth.larger) return false;
+  forward_ = std::move(growth.larger);
+  return true;
 }
 
 bool IteratedFilter::check_hyper_reduction(const FitProblem& problem) {

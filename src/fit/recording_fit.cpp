@@ -48,7 +48,8 @@ RecordingFit::RecordingFit(const ModelSettings& settings, const TetMesh& mesh, s
     : recording_(recording),
       training_(recording.training()),
       model_(settings, mesh, std::move(regions)),
-      operators_(make_observation_operators(model_)) {
+      operators_(make_observation_operators(model_)),
+      growths_(basis.growths) {
   prepare(&basis, nullptr);
 }
 
@@ -59,7 +60,8 @@ RecordingFit::RecordingFit(const ModelSettings& settings, const RecordingFit& re
     : recording_(relative.recording_),
       training_(relative.training_),
       model_(settings, relative.model_),
-      operators_(make_observation_operators(model_)) {
+      operators_(make_observation_operators(model_)),
+      growths_(relative.growths_) {
   prepare(basis, relative.forward_.get());
 }
 
@@ -69,6 +71,7 @@ void RecordingFit::prepare(const BasisOptions* basis, const ForwardModel* relati
   model_.loads().drive(recording_.first_stamp, recording_.loads);
   if (basis == nullptr) return;
   BasisOptions whole = *basis;
+  whole.growths = growths_;
   whole.steps_per_frame = kSteps;
   whole.extrapolated = true;
   forward_ = make_forward_model(model_, whole, relative);
@@ -76,6 +79,7 @@ void RecordingFit::prepare(const BasisOptions* basis, const ForwardModel* relati
   forward_->restrict_output_to(nodes);
   if (studied_in_full(model_) || basis->nonlinear != BasisOptions::Nonlinear::in_full) return;
   BasisOptions quick = *basis;
+  quick.growths = growths_;
   const auto& parts = model_.parts();
   const bool steered = std::any_of(parts.begin(), parts.end(), [&](const Model::Part& part) {
     return adds_extra_force(part) && model_.estimated(part);

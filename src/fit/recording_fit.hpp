@@ -43,6 +43,9 @@ class RecordingFit {
   /// Returns `basis` with its vectors chosen at a fit, and within the fit's standard deviations, in place of the prior.
   static BasisOptions chosen_at(const BatchFit& fit, BasisOptions basis = keeping_root());
 
+  /// Returns how often the sizes of the basis have grown, which all that is made from this inherits (BasisOptions).
+  int growths() const { return growths_; }
+
   const Model& model() const { return model_; }
   const Recording& recording() const { return recording_; }
 
@@ -143,6 +146,7 @@ class RecordingFit {
   FullMotions motions_;                            ///< of all runs in full; of models that have a form in few vectors
   std::unique_ptr<CorrectedSurrogate> surrogate_;  ///< at the last full run; null: none yet
   std::vector<std::unique_ptr<ObservationOperator>> operators_;
+  int growths_ = 0;  ///< of the basis
 };
 
 /// A fitted model holds a model, its fit to the training frames, and the free run at that fit.

@@ -105,7 +105,7 @@ namespace {
 class Builder {
  public:
   Builder(const Model& model, const BasisOptions& options, const std::shared_ptr<const BasisRoot>& known)
-      : model_(model), options_(options), prior_(model, options.around, options.reach), root_(make_root(known)) {}
+      : model_(model), options_(options.grown()), prior_(model, options.around, options.reach), root_(make_root(known)) {}
 
   ReducedBasis build() {
     OrthonormalBasis basis(mass_, most(root_->loads.cols()));
@@ -361,6 +361,14 @@ class Builder {
 };
 
 }  // namespace
+
+BasisOptions BasisOptions::grown() const {
+  BasisOptions out = *this;
+  for (; out.growths > 0; --out.growths) {
+    for (int* count : {&out.size, &out.per_part, &out.largest, &out.released}) *count += (*count + 1) / 2;
+  }
+  return out;
+}
 
 ReducedBasis build_reduced_basis(const Model& model, const BasisOptions& options,
                                  const std::shared_ptr<const BasisRoot>& known) {

@@ -26,6 +26,7 @@ struct BasisOptions {
   int per_part = 32;  ///< more for each effect that is absent at the prior, or whose place or angle is estimated
   int largest = 160;  ///< limit of their sum; vectors for compliant supports are added to it
   int released = 40;  ///< vectors for each support that may be compliant
+  int growths = 0;    ///< so many times all of these grow by half
   /// How nonlinear effects are treated: simulated in full, at first order (FirstOrderModel), or left out.
   enum class Nonlinear { in_full, first_order, left_out } nonlinear = Nonlinear::in_full;
   int steps_per_frame = 4;  ///< for simulations in full
@@ -42,6 +43,8 @@ struct BasisOptions {
   Eigen::VectorXd around = {}, reach = {};
   bool keep_root = false;  ///< for later models of the same body; it holds the stiffness's factor
 
+  /// Returns these options with the sizes that the growths lead to, and no growths.
+  BasisOptions grown() const;
   /// Returns these options with nonlinear effects left out.
   BasisOptions linear_form() const {
     BasisOptions out = *this;

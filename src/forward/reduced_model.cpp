@@ -117,12 +117,8 @@ ReactionRows ReducedModel::reaction_rows(const Eigen::VectorXd& theta, const Red
 }
 
 std::unique_ptr<ReducedModel> ReducedModel::grown() const {
-  const auto larger = [](int count) { return count + (count + 1) / 2; };
   BasisOptions options = options_;
-  options.size = larger(options.size);
-  options.per_part = larger(options.per_part);
-  options.largest = larger(options.largest);
-  options.released = larger(options.released);
+  ++options.growths;
   options.adopt = false;
   auto out = std::make_unique<ReducedModel>(model_, options, this);
   if (out->basis_.vectors.cols() <= basis_.vectors.cols()) return nullptr;

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "bar.hpp"
+#include "estimation/basis_error.hpp"
+#include "meshing/surface.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -71,6 +73,24 @@ Rows rows_at(InputLinearisation& linearisation, const Eigen::VectorXd& z) {
     first += frame.error.size();
   }
   return out;
+}
+
+// The uncertain Poisson's ratio takes vectors of its own. Runs in a basis of its own must not differ by more than those of
+// the estimator from the motion, or the study's test takes the basis for a misfit.
+TEST(InputModels, HaveABasisThatLeavesOutASmallPartOfTheNoise) {
+  Setting s;
+  BasisOptions few;
+  few.size = few.per_part = 10;
+  few.largest = 20;
+  s.models->runs = std::make_shared<ReducedModel>(s.models->uncertain, few);
+  const auto sigmas = [&] {
+    const ReducedModel& runs = s.models->linear_form();
+    const FitProblem problem{s.models->base, runs, s.models->operators, s.question->frames, {0.0}};
+    return basis_error(runs, problem, s.question->w, surface_nodes(s.mesh)).sigmas;
+  };
+  ASSERT_GT(sigmas(), kBasisShare);
+  for (int k = 0; k < 4; ++k) s.models->grow_basis(*s.question);
+  EXPECT_LE(sigmas(), kBasisShare);
 }
 
 TEST(InputLinearisation, ColumnsAreTheDerivativesOfTheRows) {
