@@ -24,10 +24,13 @@ def page_of(root, name):
     sys.exit('follow_tutorials: found no page %s; allowed: %s' % (name, ', '.join(ALL)))
 
 
+def shown_lines(match):
+    return [line[4:] for line in (match.group('shown') or '').splitlines()]
+
+
 def blocks(page):
     """(commands, the lines of output that the page shows below them), for each block of shell code."""
-    return [(found.group('commands'), [line[4:] for line in (found.group('shown') or '').splitlines()])
-            for found in BLOCK.finditer(page)]
+    return [(match.group('commands'), shown_lines(match)) for match in BLOCK.finditer(page)]
 
 
 def program(page):
@@ -50,37 +53,38 @@ def outputs(printed, count):
 def same(shown, printed):
     """Whether a line of a page is what was printed, but for wall times and the digits of a live number."""
     shown, printed = (WALL_TIME.sub('', line.rstrip()) for line in (shown, printed))
-    if LIVE.sub('', shown) != LIVE.sub('', printed):
+    if LIVE.sub('live', shown) != LIVE.sub('live', printed):
         return False
     return all(abs(float(a) - float(b)) <= LIVE_WITHIN * abs(float(b))
                for a, b in zip(LIVE.findall(shown), LIVE.findall(printed)))
 
 
-def compared(shown, printed):
-    """(line of the page, what was printed in its place or None) for each line that was not printed in this order."""
-    different, at = [], 0
+def paired(shown, printed):
+    """(line of the page, the line that was printed in its place or None), in the page's order."""
+    pairs, at = [], 0
     for line in shown:
         found = next((k for k in range(at, len(printed)) if same(line, printed[k])), None)
-        if found is not None:
-            at = found + 1
-            continue
-        near = difflib.get_close_matches(line, printed[at:], 1, NEAR)
-        different.append((line, near[0] if near else None))
-        if near:
-            at = printed.index(near[0], at) + 1
-    return different
+        if found is None:
+            near = difflib.get_close_matches(line, printed[at:], 1, NEAR)
+            found = printed.index(near[0], at) if near else None
+        pairs.append((line, None if found is None else printed[found]))
+        at = at if found is None else found + 1
+    return pairs
+
+
+def different(shown, printed):
+    return [(line, found) for line, found in paired(shown, printed) if found is None or not same(line, found)]
 
 
 def updated(page, printed):
-    """The page with what was printed in place of the lines that differ."""
+    """The page with what was printed, but for wall times."""
     lists = iter(outputs(printed, len(blocks(page))))
 
-    def block(found):
-        text = found.group(0)
-        shown = [line[4:] for line in (found.group('shown') or '').splitlines()]
-        for line, near in compared(shown, next(lists)):
-            if near is not None:
-                text = text.replace('    %s\n' % line, '    %s\n' % re.sub(r'; [\d.e+]+ frames/s$', '', near), 1)
+    def block(match):
+        text = match.group(0)
+        for line, found in paired(shown_lines(match), next(lists)):
+            if found is not None and WALL_TIME.sub('', line) != WALL_TIME.sub('', found):
+                text = text.replace('    %s\n' % line, '    %s\n' % re.sub(r'; [\d.e+]+ frames/s$', '', found), 1)
         return text
     return BLOCK.sub(block, page)
 
@@ -118,7 +122,7 @@ def follow(root, clone, name, write):
         sys.exit('follow_tutorials: a command of %s failed with code %d' % (os.path.relpath(path, root), code))
     count = 0
     for (_, shown), lines in zip(blocks(page), outputs(printed, len(blocks(page)))):
-        for line, near in compared(shown, lines):
+        for line, near in different(shown, lines):
             count += 1
             print('%s shows:    %s\n  was printed: %s' % (name, line, 'nothing like it' if near is None else near))
     print('== %s: %d lines differ' % (name, count), flush=True)

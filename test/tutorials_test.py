@@ -64,6 +64,12 @@ class TutorialsTest(unittest.TestCase):
         code, printed, page = follow(stale, '--write')
         self.assertEqual((code, page), (1, PAGE.replace('8 s', '3 s')))
 
+    def test_live_digits_may_differ_and_are_written(self):
+        live = PAGE.replace('echo "$name converged"', 'echo 11919.059539308575').replace('    tissue converged', '    11920.000000000001')
+        self.assertEqual(follow(live)[0], 0)
+        code, _, page = follow(live, '--write')
+        self.assertEqual((code, page), (0, live.replace('    11920.000000000001', '    11919.059539308575')))
+
     def test_a_line_in_another_block_or_order_is_not_the_same(self):
         self.assertEqual(follow(PAGE.replace('    tissue converged', '    tissue again'))[0], 1)
         swapped = PAGE.replace('    E is 12.3 kPa; 8 s\n    tissue converged', '    tissue converged\n    E is 12.3 kPa; 8 s')
@@ -80,6 +86,7 @@ class TutorialsTest(unittest.TestCase):
         self.assertTrue(same('11919.059539308575', '12100.159539308571'))
         self.assertFalse(same('11919.059539308575', '13100.159539308571'))
         self.assertFalse(same('11919.059539308575', 'converged'))
+        self.assertFalse(same('11919.059539308575', ''))
         self.assertFalse(same('E is 12.3 kPa', 'E is 12.4 kPa'))
         self.assertFalse(same('at 0.97 s', 'at 0.98 s'))
 
