@@ -59,16 +59,37 @@ def same(shown, printed):
                for a, b in zip(LIVE.findall(shown), LIVE.findall(printed)))
 
 
+def shape(line):
+    """A line with its words and numbers made equal, and its blanks single: rows of one table have the same."""
+    return ' '.join(re.sub(r'[A-Za-z_]+', 'a', re.sub(r'[\d.]+', '0', line)).split())
+
+
+def likeness(shown, printed):
+    """How well a printed line stands for a line of a page; 0 is not at all. Two lines that are near outdo one that is the same."""
+    if same(shown, printed):
+        return 1.2
+    letters = difflib.SequenceMatcher(None, shown, printed, autojunk=False)
+    if shape(shown) != shape(printed) and (letters.quick_ratio() < NEAR or letters.ratio() < NEAR):
+        return 0.0
+    return 1.0 + 0.1 * letters.ratio()
+
+
 def paired(shown, printed):
-    """(line of the page, the line that was printed in its place or None), in the page's order."""
-    pairs, at = [], 0
-    for line in shown:
-        found = next((k for k in range(at, len(printed)) if same(line, printed[k])), None)
-        if found is None:
-            near = difflib.get_close_matches(line, printed[at:], 1, NEAR)
-            found = printed.index(near[0], at) if near else None
-        pairs.append((line, None if found is None else printed[found]))
-        at = at if found is None else found + 1
+    """(line of the page, the line that was printed in its place or None), in the page's order: the most alike of all such lists."""
+    like = [[likeness(line, other) for other in printed] for line in shown]
+    best = [[0.0] * (len(printed) + 1) for _ in range(len(shown) + 1)]  # of all lines from here on
+    for i in range(len(shown) - 1, -1, -1):
+        for k in range(len(printed) - 1, -1, -1):
+            best[i][k] = max(best[i][k + 1], best[i + 1][k], like[i][k] + best[i + 1][k + 1] if like[i][k] else 0.0)
+    pairs, k = [], 0
+    for i, line in enumerate(shown):
+        while k < len(printed) and best[i][k] == best[i][k + 1]:
+            k += 1
+        if k < len(printed) and like[i][k] and best[i][k] == like[i][k] + best[i + 1][k + 1]:
+            pairs.append((line, printed[k]))
+            k += 1
+        else:
+            pairs.append((line, None))
     return pairs
 
 
@@ -76,16 +97,20 @@ def different(shown, printed):
     return [(line, found) for line, found in paired(shown, printed) if found is None or not same(line, found)]
 
 
+def current(shown, printed):
+    """A line of the page with what was printed, but for wall times."""
+    if printed is None or WALL_TIME.sub('', shown) == WALL_TIME.sub('', printed):
+        return shown
+    return re.sub(r'; [\d.e+]+ frames/s$', '', printed)
+
+
 def updated(page, printed):
-    """The page with what was printed, but for wall times."""
     lists = iter(outputs(printed, len(blocks(page))))
 
     def block(match):
-        text = match.group(0)
-        for line, found in paired(shown_lines(match), next(lists)):
-            if found is not None and WALL_TIME.sub('', line) != WALL_TIME.sub('', found):
-                text = text.replace('    %s\n' % line, '    %s\n' % re.sub(r'; [\d.e+]+ frames/s$', '', found), 1)
-        return text
+        lines = [current(*pair) for pair in paired(shown_lines(match), next(lists))]
+        before = match.group(0)[:match.start('shown') - match.start()] if lines else match.group(0)
+        return before + ''.join('    %s\n' % line for line in lines)
     return BLOCK.sub(block, page)
 
 

@@ -64,6 +64,14 @@ class TutorialsTest(unittest.TestCase):
         code, printed, page = follow(stale, '--write')
         self.assertEqual((code, page), (1, PAGE.replace('8 s', '3 s')))
 
+    def test_rows_that_changed_their_order_are_written_in_it(self):
+        rows = ['gel_layer     16.8 %  0.100', 'added_mass    12.1 %  0.101', 'gravity        6.4 %  0.105']
+        page = '```sh\n' + ''.join('echo "%s"\n' % row for row in ['head', *rows, 'foot']) + '```\n\n'
+        shown = ''.join('    %s\n' % line for line in ['head', rows[1], 'friction       6.5 %  0.102', rows[0], 'foot'])
+        code, _, written = follow(page + shown, '--write')
+        self.assertEqual(code, 1)
+        self.assertEqual(written, page + ''.join('    %s\n' % line for line in ['head', *rows, 'foot']))
+
     def test_live_digits_may_differ_and_are_written(self):
         live = PAGE.replace('echo "$name converged"', 'echo 11919.059539308575').replace('    tissue converged', '    11920.000000000001')
         self.assertEqual(follow(live)[0], 0)
