@@ -7,6 +7,8 @@ import subprocess
 import sys
 import time
 
+from measured_pages import table as page_table, write
+
 SCENE = '''mesh: {{file: bar.vtk, boundary: faceted, discretisation_error: false}}
 regions:
   clamp: {{box: {{min: [-1, -1, -1], max: [1.0e-6, 1, 1]}}}}
@@ -112,6 +114,9 @@ def main():
           (shards, killed, 'an identical' if same else 'ANOTHER', folders))
     if not same or table.count(b'\n') != count + 1 or folders != count:
         sys.exit(1)
+    write(os.path.join(root, 'doc', 'many_recordings.md'), {'many_recordings': page_table(
+        ['recordings', 'answered', 'shards', 'times killed', 'rows', 'table'],
+        [[str(n) for n in (count, answered, shards, killed, table.count(b'\n') - 1)] + ['identical']])})
 
 
 if __name__ == '__main__':

@@ -54,7 +54,7 @@ def measured(root):
 
 class FirstHourTest(unittest.TestCase):
     def test_the_recipe_goes_from_the_build_to_an_estimate(self):
-        commands = measure_first_hour.commands_of(read('doc/recipe.md'))
+        commands = measure_first_hour.commands_of(measure_first_hour.until_its_time(read('doc/recipe.md')))
         self.assertEqual(commands[0], 'scripts/build')
         self.assertIn(' estimate ', commands[-1])
         self.assertEqual(measure_first_hour.folder_of_last(commands), 'silicone/result')
@@ -94,6 +94,15 @@ class FirstHourTest(unittest.TestCase):
     def test_only_shell_blocks_are_commands(self):
         page = 'Text\n```sh\na\n\nb c\n```\n```yaml\nkey: 1\n```\n```sh\nd\n```\n'
         self.assertEqual(measure_first_hour.commands_of(page), ['a', 'b c', 'd'])
+
+    def test_what_follows_the_time_is_not_counted(self):
+        with tempfile.TemporaryDirectory() as root:
+            small_repository(root)
+            path = os.path.join(root, 'doc', 'recipe.md')
+            with open(path, 'a') as file:
+                file.write('```sh\nfalse\n```\n')
+            subprocess.run(['git', '-C', root, '-c', 'user.name=a', '-c', 'user.email=a@b', 'commit', '-qam', 'b'], check=True)
+            self.assertEqual(measured(root).returncode, 0)
 
     def test_every_page_has_a_place_for_its_times(self):
         for page, name in MARKS.items():

@@ -1,10 +1,12 @@
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
 #include "python/model_file.hpp"
 #include "tissue_stiffness/estimation/estimator.hpp"
+#include "tissue_stiffness/types/error.hpp"
 
 namespace py = pybind11;
 
@@ -14,7 +16,10 @@ namespace {
 /// An estimator that Python's threads may share: one call at a time, while the others run Python.
 class SharedEstimator {
  public:
-  SharedEstimator(const ModelFile& model, const TetMesh& mesh) : estimator_(model.settings, mesh) {}
+  SharedEstimator(const ModelFile& model, const TetMesh& mesh)
+      : stale_after_(model.settings.stale_after), estimator_(model.settings, mesh) {}
+
+  double stale_after() const { return stale_after_; }
 
   template <typename Call>
   auto alone(const Call& call) {
@@ -24,6 +29,7 @@ class SharedEstimator {
   }
 
  private:
+  const double stale_after_;  // the model's
   std::mutex mutex_;
   Estimator estimator_;
 };
@@ -34,6 +40,20 @@ auto copied(Member member) {
   return [member](SharedEstimator& shared) {
     return shared.alone([&](Estimator& estimator) { return (estimator.*member)(); });
   };
+}
+
+/// Returns limits that are checked as the node's are: an estimate may be held to a stricter limit, and to no looser one.
+StateLimits state_limits(double converged_within, double stale_after) {
+  const double loosest = StateLimits().converged_within;
+  if (!(converged_within > 0.0 && converged_within <= loosest)) {
+    throw InputError("converged_within", py::str("{:g}").format(converged_within),
+                     py::str("more than 0, at most {:g}").format(loosest));
+  }
+  if (!(stale_after > 0.0)) throw InputError("stale_after", py::str("{:g}").format(stale_after), "a time of more than 0 s");
+  StateLimits limits;
+  limits.converged_within = converged_within;
+  limits.stale_after = stale_after;
+  return limits;
 }
 
 }  // namespace
@@ -66,6 +86,13 @@ void bind_estimator(py::module& module) {
             shared.alone([&](Estimator& estimator) { estimator.set_first_stamp(time); });
           },
           py::arg("stamp"))
+      .def(
+          "set_state_limits",
+          [](SharedEstimator& shared, double converged_within, const std::optional<double>& stale_after) {
+            const StateLimits limits = state_limits(converged_within, stale_after.value_or(shared.stale_after()));
+            shared.alone([&](Estimator& estimator) { estimator.set_state_limits(limits); });
+          },
+          py::arg("converged_within") = StateLimits().converged_within, py::arg("stale_after") = std::nullopt)
       .def("reset", copied(&Estimator::reset))
       .def("load_inputs", copied(&Estimator::load_inputs))
       .def("mesh", copied(&Estimator::mesh))

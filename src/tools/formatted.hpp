@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdio>
 #include <ostream>
 #include <string>
@@ -12,6 +14,13 @@ std::string formatted(const char* pattern, Arguments... arguments) {
   char line[256];
   std::snprintf(line, sizeof line, pattern, arguments...);
   return line;
+}
+
+/// Puts blanks before a text until it has so many characters. A pattern would count the bytes of a µ.
+inline std::string right_aligned(const std::string& text, std::size_t width) {
+  const auto characters = static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+  return std::string(width - std::min(width, characters), ' ') + text;
 }
 
 template <typename... Arguments>

@@ -8,6 +8,7 @@
 #include "report/text.hpp"
 #include "tools/estimate_recording.hpp"
 #include "tools/formatted.hpp"
+#include "tools/lengths.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -52,14 +53,20 @@ void print_map(const StiffnessMap& map, std::ostream& out) {
     const ShownUnit unit = shown_unit(patch.young_modulus, "Pa");
     const double spread = unit.scale * patch.std * patch.young_modulus;
     const auto shown = [&](double modulus) { return rounded(unit.scale * modulus, spread); };
-    print_line(out, "  at (%6.3f, %6.3f, %6.3f) m  %s %s, 95 %%: %s .. %s", patch.center.x(), patch.center.y(),
-               patch.center.z(), shown(patch.young_modulus).c_str(), unit.name.c_str(), shown(patch.lower95).c_str(),
+    const auto place = [&](Eigen::Index axis) { return fixed_number(1e3 * patch.center[axis], 0); };
+    print_line(out, "  at (%4s, %4s, %4s) mm  %s %s, 95 %%: %s .. %s", place(0).c_str(), place(1).c_str(), place(2).c_str(),
+               shown(patch.young_modulus).c_str(), unit.name.c_str(), shown(patch.lower95).c_str(),
                shown(patch.upper95).c_str());
   }
 }
 
 void print_recordings(const std::vector<RecordingRecord>& recordings, const Paint& paint, std::ostream& out) {
-  out << paint.bold(formatted("%-32s %-10s %7s %11s %9s %10s  %s", "recording", "", "frames", "error [mm]", "of noise",
+  std::vector<double> errors;
+  errors.reserve(recordings.size());
+  for (const RecordingRecord& r : recordings) errors.push_back(r.rms_error);
+  const Lengths length(errors);
+  const std::string error = right_aligned("error [" + length.unit() + "]", 11);
+  out << paint.bold(formatted("%-32s %-10s %7s %s %9s %10s  %s", "recording", "", "frames", error.c_str(), "of noise",
                               "misfit", "agreement"))
       << "\n";
   const auto verdict = [](double z, bool passes) {
@@ -67,11 +74,13 @@ void print_recordings(const std::vector<RecordingRecord>& recordings, const Pain
   };
   for (const RecordingRecord& r : recordings) {
     print_line(out, "%-32s %-10s %7d %11s %9s %10s  %s", short_path(r.name).c_str(), r.predicted ? "predicted" : "fitted",
-               r.frames, short_number(1e3 * r.rms_error, 3).c_str(), short_number(r.rms_sigma, 3).c_str(),
+               r.frames, length(r.rms_error).c_str(), short_number(r.rms_sigma, 3).c_str(),
                verdict(r.misfit_z, r.misfit_passes).c_str(), verdict(r.agreement_z, r.agrees).c_str());
-    for (const ParameterEstimate& p : r.own)
-      print_line(out, "  %-30s %s -+ %s %s", p.name.c_str(), short_number(p.mean, 4).c_str(),
-                 short_number(1.96 * p.std, 2).c_str(), p.unit.c_str());
+    for (const ParameterEstimate& p : r.own) {
+      const ShownUnit unit = shown_unit(std::max(std::abs(p.mean), 1.96 * p.std), p.unit);
+      print_line(out, "  %-30s %s -+ %s %s", p.name.c_str(), short_number(unit.scale * p.mean, 4).c_str(),
+                 short_number(unit.scale * 1.96 * p.std, 2).c_str(), unit.name.c_str());
+    }
   }
 }
 
@@ -102,16 +111,17 @@ void print_summary(const EstimationRun& run, const Paint& paint, std::ostream& o
   }
   out << "inputs        " << inputs_line(results) << "\n";
   out << "state         " << painted(results.state, paint) << ": " << results.state_reason << "\n";
-  if (results.recordings.empty())
+  if (results.recordings.empty()) {
     print_line(out, "frames        %d used, %d skipped, %d late messages; %.3g frames/s", results.used(), results.skipped(),
                run.late, static_cast<double>(results.frames.size()) / run.seconds);
+  }
   if (run.broken_stamps > 0) {
     out << paint.warning("left out") << "      " << run.broken_stamps << " messages with broken stamps; the last one is on "
         << run.last_broken_stamp << "\n";
   }
   if (std::isfinite(results.rms_error)) {  // forces alone have none
-    print_line(out, "rms error     %s mm, %.3g of the noise; %.3g %% of the motion",
-               short_number(1e3 * results.rms_error, 4).c_str(), results.rms_error / results.noise_rms,
+    print_line(out, "rms error     %s, %.3g of the noise; %.3g %% of the motion",
+               with_unit(results.rms_error, "m", 4).c_str(), results.rms_error / results.noise_rms,
                100.0 * results.relative_error);
   }
   if (!results.recordings.empty()) return print_recordings(results.recordings, paint, out);

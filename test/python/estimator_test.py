@@ -87,6 +87,49 @@ class EstimatorTest(Bench):
         estimator.reset()
         self.assertTrue(estimator.step(frames[0]).used)
 
+    def test_limits_judge_later_frames_and_lose_no_estimate(self):
+        model, bag, _ = self.results(INERTIA + PULL + elasticity(unknown(2.4e4)), INERTIA + PULL + elasticity(1.2e4))
+        frames = ts.read_bag(model, bag).frames
+        estimator = ts.Estimator(model)
+        for frame in frames[:-2]:
+            before = estimator.step(frame).estimate
+        self.assertEqual(before.state, 'converged', before.state_reason)
+        relative = before[MODULUS].std / before[MODULUS].mean
+        estimator.set_state_limits(converged_within=0.5 * relative)
+        self.assertEqual(estimator.estimate.state, 'converged')  # no frame has come since
+        strict = estimator.step(frames[-2]).estimate
+        self.assertEqual(strict.state, 'converging')
+        self.assertIn('is known to', strict.state_reason)
+        self.assertLess(abs(strict.young_modulus - before.young_modulus), before[MODULUS].std)
+        estimator.set_state_limits()
+        self.assertEqual(estimator.step(frames[-1]).state, 'converged')
+
+    def test_a_limit_says_how_long_a_load_may_stay_away(self):
+        text = MODEL + INERTIA + PULL + elasticity(unknown(2.4e4)) + SEEN
+
+        def last_state(model, *limits, **named):
+            estimator = ts.Estimator(ts.Model.from_text(model, self.folder))
+            if limits or named:
+                estimator.set_state_limits(*limits, **named)
+            for frame in falling_frames(estimator.mesh):  # 0.63 s, with a load for the first half
+                step = estimator.step(frame.load('/wrench', [0, 0, -1e-3]) if frame.stamp < 0.3 else frame)
+            return step.state
+        patient = last_state(text)
+        self.assertNotEqual(patient, 'stale')
+        self.assertEqual(last_state(text, 0.2, 0.2), 'stale')
+        self.assertEqual(last_state(text, stale_after=0.5), patient)
+        self.assertEqual(last_state(text + 'stale_after: 0.2\n'), 'stale')
+        self.assertEqual(last_state(text + 'stale_after: 0.2\n', 0.1), 'stale')  # the model's own is kept
+
+    def test_limits_that_cannot_be_are_refused(self):
+        estimator = ts.Estimator(self.write_model(INERTIA + GRAVITY + elasticity(unknown(4e5))))
+        for wrong in (0, -0.1, 0.21, np.nan, np.inf):
+            self.refuses(lambda: estimator.set_state_limits(wrong), 'converged_within: found', 'at most 0.2')
+        for wrong in (0, -1, np.nan):
+            self.refuses(lambda: estimator.set_state_limits(stale_after=wrong), 'stale_after: found', 'more than 0 s')
+        self.refuses(lambda: estimator.set_state_limits('tight'), "converged_within: found 'tight'", 'a number')
+        estimator.set_state_limits(0.2, np.inf)
+
     def test_model_files_name_what_is_wrong(self):
         self.refuses(lambda: ts.Model(self.path('none.yaml')), 'none.yaml')
         self.refuses(lambda: ts.Model(self.write('model.yaml', MODEL + INERTIA + SEEN + 'colour: red\n')), 'model.yaml', 'colour')

@@ -38,6 +38,15 @@ class Estimator:
         """Sets the recording's first stamp [s], where that is not the first frame's or load's."""
         self._core.set_first_stamp(number(stamp, 'stamp'))
 
+    def set_state_limits(self, converged_within: float = 0.2, stale_after: Optional[float] = None) -> None:
+        """Sets the limits by which the states of later frames are judged; the estimate itself goes on.
+
+        converged_within: relative standard deviation up to which an estimate may be converged, at most 0.2.
+        stale_after: time without a measurement or a load after which the estimate is stale [s]; the model's by default.
+        """
+        self._core.set_state_limits(number(converged_within, 'converged_within', 'a number'),
+                                    None if stale_after is None else number(stale_after, 'stale_after'))
+
     def reset(self) -> None:
         """Goes back to the prior; loads and frames are forgotten."""
         self._core.reset()

@@ -77,11 +77,11 @@ class Recording:
     name: str = ''
 
 
-def number(value: Any, where: str) -> float:
+def number(value: Any, where: str, allowed: str = 'a number [s]') -> float:
     try:
         return float(value)
     except (TypeError, ValueError):
-        raise input_error(where, repr(value), 'a number [s]') from None
+        raise input_error(where, repr(value), allowed) from None
 
 
 def checked_loads(loads: Iterable[Union[Load, _core.LoadSample]], inputs: _core.Inputs) -> List[_core.LoadSample]:
