@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <vector>
 
+#include "types/two_digits.hpp"
+
 namespace tissue_stiffness {
 namespace {
 
@@ -38,20 +40,17 @@ StateJudgement by_shape(const StateEvidence& e) {
 StateJudgement by_size(const StateEvidence& e) {
   if (std::pow(e.misfit.rms_sigma, 2) <= std::pow(kFullSigmas, 2) + e.systematic.of_mesh())
     return {EstimateState::converged, "the misfit is about the noise"};
-  char text[100];
-  std::snprintf(text, sizeof text, "the misfit is %.2g times the noise", e.misfit.rms_sigma);
-  return {EstimateState::doubtful, text};
+  return {EstimateState::doubtful, "the misfit is " + two_digits(e.misfit.rms_sigma) + " times the noise"};
 }
 
 }  // namespace
 
 std::string misfit_text(const MisfitTest& test) {
   char text[200];
-  std::snprintf(
-      text, sizeof text,
-      "along the body's lowest modes, and in forces, the misfit is %.2g times the noise's variance, %.1f standard "
-      "deviations beyond what passes",
-      1.0 + test.excess(), test.z());
+  std::snprintf(text, sizeof text,
+                "along the body's lowest modes, and in forces, the misfit is %s times the noise's variance, %.1f standard "
+                "deviations beyond what passes",
+                two_digits(1.0 + test.excess()).c_str(), test.z());
   return text;
 }
 

@@ -16,8 +16,7 @@ constexpr int kMostIterations = 60;
 constexpr double kFlat = 0.1;  // of the slope along a step of Newton's method, where the search along it ends
 constexpr int kMostSearches = 20;
 constexpr double kSolved = 1e-5;     // of the residual that the forces start from
-constexpr double kTravel = 0.01;      // of a tool's size, in a step
-constexpr double kSame = 1e-9;       // relative
+constexpr double kTravel = 0.01;     // of a tool's size, in a step
 constexpr double kMostGrowth = 2.4;  // of a step over the last, for BDF2 to be stable: 1 + sqrt(2) (Grigorieff 1983)
 
 Eigen::MatrixXd rows_of(const Eigen::MatrixXd& m, const std::vector<int>& rows) {
@@ -34,11 +33,72 @@ std::vector<int> nonzero(const Eigen::VectorXd& v) {
   return out;
 }
 
+Eigen::Matrix3d convex_part(const Eigen::Matrix3d& m) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(m);
+  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() * solver.eigenvectors().transpose();
+}
+
+/// -d force / d displacement between touched degrees of freedom [N/m], a block for each facet.
+class ContactStiffness {
+ public:
+  /// `index`: the row of each of the model's dofs(). `convex`: take the convex part of each point's stiffness.
+  ContactStiffness(const ContactModel& owner, const std::vector<Contact::Touch>& touches, const std::vector<int>& index,
+                   double span, bool convex) {
+    for (std::size_t first = 0, end = 0; first < touches.size(); first = end) {  // a facet's points follow each other
+      const auto& nodes = touches[first].nodes;
+      Facet facet{{}, Eigen::MatrixXd::Zero(3 * nodes.size(), 3 * nodes.size())};
+      for (Eigen::Index a = 0; a < nodes.size(); ++a)
+        facet.rows.push_back(index[static_cast<std::size_t>(owner.place(nodes[a]))]);
+      for (; end < touches.size() && touches[end].nodes == nodes; ++end) {
+        const Contact::Touch& touch = touches[end];
+        const Eigen::Matrix3d all = touch.stiffness + touch.damping / span;
+        const Eigen::Matrix3d point = convex ? convex_part(all) : all;
+        for (Eigen::Index b = 0; b < nodes.size(); ++b) {
+          for (Eigen::Index a = 0; a < nodes.size(); ++a)
+            facet.block.block<3, 3>(3 * a, 3 * b) += touch.shape[a] * touch.shape[b] * point;
+        }
+      }
+      facets_.push_back(std::move(facet));
+    }
+  }
+
+  Eigen::VectorXd operator*(const Eigen::VectorXd& u) const {
+    Eigen::VectorXd out = Eigen::VectorXd::Zero(u.size());
+    for (const Facet& facet : facets_) {
+      Eigen::VectorXd own(facet.block.rows());
+      for (std::size_t a = 0; a < facet.rows.size(); ++a)
+        own.segment<3>(3 * static_cast<Eigen::Index>(a)) = u.segment<3>(facet.rows[a]);
+      const Eigen::VectorXd force = facet.block * own;
+      for (std::size_t a = 0; a < facet.rows.size(); ++a)
+        out.segment<3>(facet.rows[a]) += force.segment<3>(3 * static_cast<Eigen::Index>(a));
+    }
+    return out;
+  }
+
+ private:
+  struct Facet {
+    std::vector<int> rows;  ///< first one of each node
+    Eigen::MatrixXd block;
+  };
+  std::vector<Facet> facets_;
+};
+
+/// H between touched degrees of freedom [m/N], in the parts that it is the sum of.
+struct ContactResponse {
+  const Eigen::MatrixXd& unit;    ///< static response
+  double share;                   ///< of it
+  const Eigen::MatrixXd& shapes;  ///< of the modes
+  Eigen::VectorXd modal;          ///< displacement of each mode by a unit force
+
+  Eigen::VectorXd operator*(const Eigen::VectorXd& f) const {
+    return share * (unit * f) + shapes * modal.cwiseProduct(shapes.transpose() * f);
+  }
+};
+
 /// Solves (1 + K H) f = b by conjugate gradients in the inner product f^T H g, in which that matrix is symmetric. Returns
 /// false where it is not positive definite.
-bool solve_contacts(const SparseMatrix& k, const Eigen::MatrixXd& h, const Eigen::VectorXd& b, Eigen::VectorXd& f) {
-  Eigen::VectorXd moved = h * f;
-  Eigen::VectorXd residual = b - f - k * moved, h_residual = h * residual;
+bool solve_contacts(const ContactStiffness& k, const ContactResponse& h, const Eigen::VectorXd& b, Eigen::VectorXd& f) {
+  Eigen::VectorXd residual = b - f - k * (h * f), h_residual = h * residual;
   double size = residual.dot(h_residual);
   const double small = kSolved * kSolved * size;
   Eigen::VectorXd direction = residual, h_direction = h_residual;
@@ -56,11 +116,6 @@ bool solve_contacts(const SparseMatrix& k, const Eigen::MatrixXd& h, const Eigen
     size = left;
   }
   return f.allFinite();
-}
-
-Eigen::Matrix3d convex_part(const Eigen::Matrix3d& m) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(m);
-  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() * solver.eigenvectors().transpose();
 }
 
 }  // namespace
@@ -168,16 +223,9 @@ ContactTrajectory::Step ContactTrajectory::begin_step(double time) {
   return out;
 }
 
-const Eigen::MatrixXd& ContactTrajectory::response_between(const Step& step, const std::vector<int>& forced) {
-  const auto same = [](double a, double b) { return std::abs(a - b) < kSame * b; };
-  if (response_.forced == forced && same(response_.span, step.span) && same(response_.resistance, step.resistance))
-    return response_.between;
-  const Eigen::MatrixXd shapes = rows_of(shapes_, forced);
-  const Eigen::VectorXd modal = step.modal - softness_ / step.resistance;
-  response_ = {forced, step.span, step.resistance,
-               flexibility_.unit->between(forced) / (flexibility_.ratio * step.resistance) +
-                   shapes * (modal.asDiagonal() * shapes.transpose())};
-  return response_.between;
+const ContactTrajectory::Touched& ContactTrajectory::touched(const std::vector<int>& dofs) {
+  if (touched_.dofs != dofs) touched_ = {dofs, flexibility_.unit->between(dofs), rows_of(shapes_, dofs)};
+  return touched_;
 }
 
 Eigen::VectorXd ContactTrajectory::response(const Step& step, const std::vector<int>& forced,
@@ -219,48 +267,22 @@ ContactTrajectory::Contacts ContactTrajectory::contacts_at(const Step& step, Eig
   return out;
 }
 
-// The points of one facet follow each other, so their blocks are added before they go into the matrix.
-SparseMatrix ContactTrajectory::stiffness(const Contacts& contacts, double span, Tangent tangent) const {
-  std::vector<int> index(owner_.dofs().size(), -1);
-  for (std::size_t i = 0; i < contacts.touched.size(); ++i)
-    index[static_cast<std::size_t>(contacts.touched[i])] = static_cast<int>(i);
-  const auto count = static_cast<Eigen::Index>(contacts.touched.size());
-  std::vector<Eigen::Triplet<double>> entries;
-  const std::vector<Contact::Touch>& touches = contacts.touches;
-  for (std::size_t first = 0, end = 0; first < touches.size(); first = end) {
-    const auto& nodes = touches[first].nodes;
-    Eigen::MatrixXd facet = Eigen::MatrixXd::Zero(3 * nodes.size(), 3 * nodes.size());
-    for (; end < touches.size() && touches[end].nodes == nodes; ++end) {
-      const Contact::Touch& touch = touches[end];
-      const Eigen::Matrix3d all = touch.stiffness + touch.damping / span;
-      const Eigen::Matrix3d point = tangent == Tangent::exact ? all : convex_part(all);
-      for (Eigen::Index b = 0; b < nodes.size(); ++b) {
-        for (Eigen::Index a = 0; a < nodes.size(); ++a)
-          facet.block<3, 3>(3 * a, 3 * b) += touch.shape[a] * touch.shape[b] * point;
-      }
-    }
-    const auto place = [&](Eigen::Index i) {
-      return index[static_cast<std::size_t>(owner_.place(nodes[i / 3]))] + static_cast<int>(i % 3);
-    };
-    for (Eigen::Index j = 0; j < facet.cols(); ++j) {
-      for (Eigen::Index i = 0; i < facet.rows(); ++i) entries.emplace_back(place(i), place(j), facet(i, j));
-    }
-  }
-  SparseMatrix out(count, count);
-  out.setFromTriplets(entries.begin(), entries.end());
-  return out;
-}
-
 // Solves u = free + H f(u) with f linearised at the last u: (1 + K H) f = f(u) - K (free - u).
 std::optional<ContactTrajectory::NewtonStep> ContactTrajectory::newton_step(const Step& step, const Contacts& contacts,
                                                                             const Eigen::VectorXd& forces,
                                                                             Tangent tangent) {
   NewtonStep out{Eigen::VectorXd::Zero(contacts.u.size()), step.free - contacts.u};
   if (contacts.touched.empty()) return out;
-  const SparseMatrix k = stiffness(contacts, step.span, tangent);
+  std::vector<int> index(owner_.dofs().size(), -1);
+  for (std::size_t i = 0; i < contacts.touched.size(); ++i)
+    index[static_cast<std::size_t>(contacts.touched[i])] = static_cast<int>(i);
+  const ContactStiffness k(owner_, contacts.touches, index, step.span, tangent == Tangent::convex);
+  const Touched& there = touched(contacts.touched);
+  const double share = 1.0 / (flexibility_.ratio * step.resistance);
+  const ContactResponse h{there.unit, share, there.shapes, step.modal - softness_ / step.resistance};
   const Eigen::VectorXd right = rows_of(contacts.nodal, contacts.touched) - k * rows_of(out.change, contacts.touched);
   Eigen::VectorXd balanced = rows_of(forces, contacts.touched);
-  if (!solve_contacts(k, response_between(step, contacts.touched), right, balanced)) return std::nullopt;
+  if (!solve_contacts(k, h, right, balanced)) return std::nullopt;
   for (std::size_t i = 0; i < contacts.touched.size(); ++i)
     out.forces[contacts.touched[i]] = balanced[static_cast<Eigen::Index>(i)];
   out.change += response(step, contacts.touched, balanced);

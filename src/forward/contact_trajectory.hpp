@@ -57,15 +57,11 @@ class ContactTrajectory : public Trajectory {
   void step(double time);
   Step begin_step(double time);
   Contacts contacts_at(const Step& step, Eigen::VectorXd u);
-  /// Returns -d force / d displacement between what is touched [N/m].
-  SparseMatrix stiffness(const Contacts& contacts, double span, Tangent tangent) const;
   /// Returns nothing where the tangent is not positive definite along a direction. `forces`: from where it is solved.
   std::optional<NewtonStep> newton_step(const Step& step, const Contacts& contacts, const Eigen::VectorXd& forces,
                                         Tangent tangent);
   Contacts search(const Step& step, const Contacts& from, Eigen::VectorXd& forces, const NewtonStep& newton);
-  /// H is the response to the contacts' forces at the step's end. These return H between some of dofs() [m/N], and the
-  /// displacement H f at all of them under forces at some [m].
-  const Eigen::MatrixXd& response_between(const Step& step, const std::vector<int>& forced);
+  /// H is the response to the contacts' forces at the step's end. Returns H f at all of dofs() under forces at some [m].
   Eigen::VectorXd response(const Step& step, const std::vector<int>& forced, const Eigen::VectorXd& forces) const;
   void end_step(const Step& step, const Contacts& contacts);
   Eigen::VectorXd coordinates() const;
@@ -89,12 +85,13 @@ class ContactTrajectory : public Trajectory {
   Eigen::MatrixXd relaxed_;         ///< z of each branch at dofs() [N]
   Eigen::VectorXd at_;              ///< displacement at dofs() [m]
   Eigen::VectorXd reactions_;       ///< of the last step [N]
-  /// What response_between() returned last. It is asked for the same again while the tool touches the same nodes.
-  struct Response {
-    std::vector<int> forced;
-    double span = 0.0, resistance = 0.0;
-    Eigen::MatrixXd between;
-  } response_;
+  /// What the response between touched nodes needs. The tool often touches the same nodes in the next step.
+  struct Touched {
+    std::vector<int> dofs;   ///< indices into dofs()
+    Eigen::MatrixXd unit;    ///< static response between them, that of flexibility_.unit [m/N]
+    Eigen::MatrixXd shapes;  ///< of the modes there
+  } touched_;
+  const Touched& touched(const std::vector<int>& dofs);
   Eigen::VectorXd displacement_, velocity_;  ///< of all nodes, for the contacts: zero at other nodes than theirs
 };
 
