@@ -60,7 +60,7 @@ std::string modulus_remark(const Diagnosis& d) {
   const std::string file = d.final_effects.empty() ? "the given model" : "model_next.yaml";
   return "<p class=\"soft\">" +
          escape_html("This is the estimate of " + file + (mixed ? ", averaged over the effects that may also act" : "") +
-                     ". It counts the errors of mesh and inputs. Best fits of E, which only compare models, do not: they "
+                     ". It counts the errors of mesh and inputs. Best fits of E do not: they "
                      "are " +
                      fits + ".") +
          "</p>";

@@ -164,8 +164,7 @@ std::string colophon(const std::string& command_line, const std::vector<std::pai
   return section("made", "How to make this again",
                  "<pre>" + escape_html(command_line) + "</pre>" +
                      (remark.empty() ? "" : "<p>" + escape_html(remark) + "</p>") + "<p class=\"soft\">" +
-                     escape_html(list) +
-                     "</p><p class=\"soft\">The page contains two libraries under the MIT licence:</p>" +
+                     escape_html(list) + "</p><p class=\"soft\">Two libraries are under the MIT licence:</p>" +
                      licence("uPlot", report_assets.uplot_licence) + licence("three.js", report_assets.three_licence));
 }
 

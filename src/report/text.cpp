@@ -140,6 +140,7 @@ ShownUnit shown_unit(double value, const std::string& unit) {
   if (unit == "kg" && std::abs(value) < 1.0 && value != 0.0) {
     return std::abs(value) < 1e-3 ? ShownUnit{1e6, "mg"} : ShownUnit{1e3, "g"};
   }
+  if (unit == "-" && std::abs(value) < 1e-3 && value != 0.0) return {100.0, "%"};
   const LeadingSymbol leading = leading_symbol(unit);
   if (leading.symbol.empty() || !std::isfinite(value) || value == 0.0) return {1.0, unit == "-" ? "" : unit};
   const bool grows = leading.symbol == "Pa" || leading.symbol == "N";  // nobody writes km, ks or krad

@@ -36,7 +36,8 @@ std::string test_statistic(double z);
 std::string positions_in_millimetres(const std::string& text);
 
 /// A unit with the SI prefix that suits `value`: 30e3 Pa -> {1e-3, "kPa"}. Units that begin with Pa, N, m, s or rad get a
-/// prefix, and kilograms become grams: 1.5e-8 m^3/N -> {1e9, "mm^3/N"}. Other units keep their name; "-" is shown as "".
+/// prefix, and kilograms become grams: 1.5e-8 m^3/N -> {1e9, "mm^3/N"}. Other units keep their name; "-" is shown as "", and as % below a
+/// thousandth.
 struct ShownUnit {
   double scale = 1.0;
   std::string name;

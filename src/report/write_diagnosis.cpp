@@ -35,7 +35,7 @@ std::string probabilities(const Diagnosis& d) {
   return text.empty() ? text : text + ".";
 }
 
-// Returns "These may act without being missed: added mass (49 %, elasticity.young_modulus 10 % higher with it). ..."
+// Returns "E's interval allows for what may act unseen: added mass (49 %, E 10 % higher)."
 std::string traces(const Diagnosis& d) {
   std::string list;
   for (const RivalExplanation& trace : d.traces) {
@@ -43,14 +43,15 @@ std::string traces(const Diagnosis& d) {
     for (const auto& [name, ratio] : trace.modulus_ratio) {
       const long percent = std::lround(100.0 * std::abs(ratio - 1.0));
       if (percent > 0)
-        changes += ", " + name + " " + std::to_string(percent) + " % " + (ratio > 1.0 ? "higher" : "lower") + " with it";
+        changes += ", " + (trace.modulus_ratio.size() == 1 ? "E" : name) + " " + std::to_string(percent) + " % " +
+                   (ratio > 1.0 ? "higher" : "lower");
     }
     if (trace.probability < kTraced || changes.empty()) continue;
     list += (list.empty() ? "" : ", ") + effect_title(trace.effect) + " (" +
             std::to_string(std::lround(100.0 * trace.probability)) + " %" + changes + ")";
   }
   if (list.empty()) return "";
-  return " These may act without being missed: " + list + ". The interval of Young's modulus allows for them.";
+  return " E's interval allows for what may act unseen: " + list + ".";
 }
 
 // Returns why nothing is named.

@@ -159,6 +159,8 @@ TEST(DiagnosisHtml, ListsProbableEffectsAndFoldsTheOthers) {
 TEST(DiagnosisHtml, SaysWhichModulusIsWhich) {
   Diagnosis d = example_diagnosis();
   d.traces = {{"gravity", 0.3, {{"elasticity.young_modulus", 1.1}}}};
+  EXPECT_NE(diagnosis_sentence(d).find("E's interval allows for what may act unseen: gravity (30 %, E 10 % higher)."),
+            std::string::npos);
   EXPECT_NE(diagnosis_html(d, {}, {}).find("model_next.yaml, averaged over the effects that may also act."),
             std::string::npos);
   d.traces.clear();

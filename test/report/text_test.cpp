@@ -35,6 +35,8 @@ TEST(Text, NumbersForPeople) {
   EXPECT_EQ(shown_unit(5000.0, "m").name, "m");
   EXPECT_EQ(shown_unit(0.02, "1/s").name, "1/s");
   EXPECT_EQ(shown_unit(0.45, "-").name, "");
+  EXPECT_EQ(with_unit(-9.62e-5, "-"), "-0.00962 %");
+  EXPECT_EQ(with_unit(0.0, "-"), "0");
   EXPECT_EQ(shown_unit(1e-12, "m").name, "nm");
   EXPECT_EQ(with_unit(1.5147765e-8, "m^3/N"), "15.1 mm^3/N");
   EXPECT_EQ(with_unit(17018.0, "N/m^3"), "17.0 kN/m^3");

@@ -59,5 +59,5 @@ function startMotion() {
 function tellPoint(track) {
   if (!surfaceView) return;
   surfaceView.choose(track);
-  if (surfaceView.tracked.length) $("picked").textContent = "Plotted: " + player.replay.tracks[track].name + ". A click on the surface chooses another point.";
+  if (surfaceView.tracked.length) $("picked").textContent = "Plotted: " + player.replay.tracks[track].name + ". Click the surface for another point.";
 }

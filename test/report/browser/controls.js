@@ -120,6 +120,8 @@ async function pickPoint(page) {
   assert.ok((await page.textContent("#picked")).includes(await page.evaluate((i) => player.replay.tracks[surfaceView.tracked[i]].name, goal.i)));
 }
 
+const betweenSaves = 150;  // [ms]; Chromium drops the eleventh file that a page saves within a second (kBurstDownloadLimit)
+
 // Every canvas is that of a plot with two buttons, which save its numbers and its picture.
 export async function savePlots(page) {
   await page.evaluate(() => document.querySelectorAll("main details:not([open])").forEach((e) => { e.open = true; e.dataset.opened = "yes"; }));
@@ -133,6 +135,7 @@ export async function savePlots(page) {
       const [download] = await Promise.all([page.waitForEvent("download"), plot.locator(`button[name=save-${kind}]`).click()]);
       assert.ok(download.suggestedFilename().endsWith("." + kind));
       checkFile(readFileSync(await download.path()), kind, name);
+      await page.waitForTimeout(betweenSaves);
     }
   }
   await page.evaluate(() => document.querySelectorAll("[data-opened]").forEach((e) => { e.open = false; }));
