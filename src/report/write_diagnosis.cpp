@@ -42,9 +42,10 @@ std::string traces(const Diagnosis& d) {
     std::string changes;
     for (const auto& [name, ratio] : trace.modulus_ratio) {
       const long percent = std::lround(100.0 * std::abs(ratio - 1.0));
-      if (percent > 0)
+      if (percent > 0) {
         changes += ", " + (trace.modulus_ratio.size() == 1 ? "E" : name) + " " + std::to_string(percent) + " % " +
                    (ratio > 1.0 ? "higher" : "lower");
+      }
     }
     if (trace.probability < kTraced || changes.empty()) continue;
     list += (list.empty() ? "" : ", ") + effect_title(trace.effect) + " (" +
