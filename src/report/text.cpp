@@ -9,15 +9,10 @@
 #include <sstream>
 #include <vector>
 
+#include "types/plain_number.hpp"
+
 namespace tissue_stiffness {
 namespace {
-
-std::string fixed(double value, int decimals) {
-  std::ostringstream stream;
-  stream.imbue(std::locale::classic());
-  stream << std::fixed << std::setprecision(decimals) << value;
-  return stream.str();
-}
 
 double number(const std::string& text) {
   std::istringstream stream(text);
@@ -30,14 +25,6 @@ double number(const std::string& text) {
 /// Returns the position of the leading digit: 0 for 1 to 9.99.
 int magnitude(double value) {
   return static_cast<int>(std::floor(std::log10(std::abs(value))));
-}
-
-/// Returns the position of the leading digit once the value is rounded: 0 for 0.9996 with three digits.
-int magnitude(double value, int digits) {
-  std::ostringstream stream;
-  stream.imbue(std::locale::classic());
-  stream << std::scientific << std::setprecision(digits - 1) << value;
-  return std::stoi(stream.str().substr(stream.str().find('e') + 1));
 }
 
 /// The symbol that a unit begins with, and its power: {"m", 3} of "m^3/N". It is empty when it takes no prefix.
@@ -93,8 +80,8 @@ std::string exact_number(double value) {
 std::string short_number(double value, int digits) {
   if (!std::isfinite(value)) return "-";
   if (value == 0.0) return "0";
-  const int order = magnitude(value, digits);
-  if (order >= -4 && order < 6) return fixed(value, std::max(0, digits - 1 - order));
+  const int order = leading_place(value, digits);
+  if (order >= -4 && order < 6) return with_decimals(value, std::max(0, digits - 1 - order));
   std::ostringstream stream;
   stream.imbue(std::locale::classic());
   stream << std::setprecision(digits) << value;
@@ -103,8 +90,8 @@ std::string short_number(double value, int digits) {
 
 std::string fixed_number(double value, int decimals) {
   if (!std::isfinite(value)) return "-";
-  const std::string text = fixed(value, decimals);
-  return text.find_first_of("123456789") == std::string::npos ? fixed(0.0, decimals) : text;
+  const std::string text = with_decimals(value, decimals);
+  return text.find_first_of("123456789") == std::string::npos ? with_decimals(0.0, decimals) : text;
 }
 
 std::string millimetres(double metres) {
@@ -163,9 +150,9 @@ std::string rounded(double value, double uncertainty) {
   if (!std::isfinite(value) || !std::isfinite(uncertainty) || !(uncertainty > 0.0)) return short_number(value, 4);
   const int decimals = 1 - magnitude(uncertainty);
   if (decimals > 8 || decimals < -5) return short_number(value, 4);
-  if (decimals >= 0) return fixed(value, decimals);
+  if (decimals >= 0) return with_decimals(value, decimals);
   const double step = std::pow(10.0, -decimals);
-  return fixed(std::round(value / step) * step, 0);
+  return with_decimals(std::round(value / step) * step, 0);
 }
 
 ShownEstimate shown_estimate(const ParameterEstimate& p, double scale) {
