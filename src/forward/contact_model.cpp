@@ -67,7 +67,6 @@ std::unique_ptr<Trajectory> ContactModel::resume(const Eigen::VectorXd& theta, c
 }
 
 void ContactModel::restrict_output_to(const OutputNodes& nodes) {
-  forces_alone_ = nodes && nodes->empty();
   reduced_.restrict_output_to(nodes);
 }
 

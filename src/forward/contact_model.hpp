@@ -30,7 +30,7 @@ class ContactModel : public ForwardModel {
   std::string description() const override;
 
   /// Whether the output is restricted to the contacts' reactions, for which no body's motion is solved.
-  bool gives_forces_alone() const { return forces_alone_; }
+  bool gives_forces_alone() const { return reduced_.output_nodes() && reduced_.output_nodes()->empty(); }
 
   const Model& model() const { return reduced_.model(); }
   const ReducedModel& reduced() const { return reduced_; }
@@ -54,7 +54,6 @@ class ContactModel : public ForwardModel {
   ReducedModel reduced_;
   std::vector<int> nodes_, dofs_, places_;
   Eigen::MatrixXd basis_;
-  bool forces_alone_ = false;
   mutable std::mutex mutex_;
   mutable std::vector<std::shared_ptr<const NodalFlexibility>> known_;
 };

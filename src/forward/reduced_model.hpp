@@ -65,6 +65,7 @@ class ReducedModel : public ForwardModel {
   std::unique_ptr<ReducedModel> grown() const;
   void advance_through(Trajectory& run, const std::vector<double>& times, const Show& show) const override;
   void restrict_output_to(const OutputNodes& nodes) override;
+  const OutputNodes& output_nodes() const { return output_.nodes(); }
   std::string description() const override;
 
   const Model& model() const { return model_; }
