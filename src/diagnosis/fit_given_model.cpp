@@ -41,16 +41,14 @@ Eigen::VectorXd starting_point_of_finite(const RecordingFit& recording_fit) {
 
 // What the basis leaves out is no missing physics. A body that nothing damps rings in more modes than the usual basis
 // holds.
-FittedModel in_sufficient_basis(FittedModel fitted, const TetMesh& mesh) {
+FittedModel in_sufficient_basis(FittedModel fitted) {
   RecordingFit& known = *fitted.recording_fit;
-  const Model& model = known.model();
-  if (!known.linear() || model.starts_in_motion()) return fitted;
-  const BasisGrowth growth = grow_basis(*known.reduced(), false, known.whole(), fitted.fit.w, surface_nodes(mesh));
-  if (growth.growths == 0) return fitted;
-  BasisOptions larger = RecordingFit::keeping_root();
-  larger.growths = growth.growths;
-  auto grown = std::make_unique<RecordingFit>(model.settings(), mesh, known.recording(), larger);
-  return fit_recording(std::move(grown), fitted.fit.w, kSpread);
+  if (!known.linear() || known.model().starts_in_motion()) return fitted;
+  BasisGrowth growth =
+      grow_basis(*known.reduced(), false, known.whole(), fitted.fit.w, surface_nodes(known.model().mesh()));
+  if (!growth.larger) return fitted;
+  known.take_basis(std::move(growth.larger), growth.growths);
+  return fit_recording(std::move(fitted.recording_fit), fitted.fit.w, kSpread);
 }
 
 }  // namespace
@@ -60,7 +58,7 @@ FittedModel fit_given_model(const ModelSettings& settings, const TetMesh& mesh, 
   const Model& model = recording_fit->model();
   const Eigen::VectorXd start =
       why_not_hyper_reduced(model).empty() ? starting_point_of_finite(*recording_fit) : starting_point(*recording_fit);
-  return in_sufficient_basis(fit_recording(std::move(recording_fit), start, kSpread), mesh);
+  return in_sufficient_basis(fit_recording(std::move(recording_fit), start, kSpread));
 }
 
 }  // namespace tissue_stiffness

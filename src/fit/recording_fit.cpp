@@ -253,6 +253,11 @@ std::shared_ptr<const ReducedModel> RecordingFit::reduced() const {
   return std::make_shared<ReducedModel>(model_, BasisOptions().linear_form());
 }
 
+void RecordingFit::take_basis(std::shared_ptr<ReducedModel> larger, int growths) {
+  forward_ = std::move(larger);
+  growths_ += growths;
+}
+
 double RecordingFit::cost_in_full(const Eigen::VectorXd& w) const {
   try {
     return free_fit(problem(*forward_, training_), w).cost;

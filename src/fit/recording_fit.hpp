@@ -45,6 +45,8 @@ class RecordingFit {
 
   /// Returns how often the sizes of the basis have grown, which all that is made from this inherits (BasisOptions).
   int growths() const { return growths_; }
+  /// Runs linear() ones in `larger` from now on, which reduced() has grown into by so many growths.
+  void take_basis(std::shared_ptr<ReducedModel> larger, int growths);
 
   const Model& model() const { return model_; }
   const Recording& recording() const { return recording_; }
