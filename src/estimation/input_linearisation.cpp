@@ -5,12 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include "effects/registry.hpp"
-#include "estimation/basis_error.hpp"
 #include "fit/ensemble.hpp"
 #include "forward/load_error_response.hpp"
 #include "forward/reduced_trajectory.hpp"
-#include "meshing/surface.hpp"
 #include "types/least_squares.hpp"
 
 namespace tissue_stiffness {
@@ -20,38 +17,6 @@ constexpr std::size_t kMostFrames = 150;   // used of a long recording, evenly s
 constexpr double kConstantStep = 0.5;      // of a tolerance, for its central difference
 constexpr Eigen::Index kLowestModes = 6;   // modes along each of which the mesh's error is an unknown of its own
 constexpr double kWholeError = 4.0 / 3.0;  // of what a mesh refined once changes, at second order
-
-// A known Poisson's ratio is folded into one matrix; a model in which it is free keeps it apart.
-ModelSettings with_free_ratio(ModelSettings settings) {
-  for (EffectSettings& effect : settings.effects) {
-    if (effect.name != "elasticity") continue;
-    const Quantity ratio = read_parameters(effect)[1];
-    if (ratio.estimated() || !(ratio.tolerance > 0.0)) continue;
-    std::vector<std::pair<std::string, Value>> entries;
-    const std::string path = effect.arguments.path();
-    for (const std::string& key : effect.arguments.keys()) {
-      entries.emplace_back(key, key != "poisson_ratio" ? effect.arguments.at(key)
-                                                       : Value::map({{"mean", Value::number(ratio.value, path)},
-                                                                     {"std", Value::number(ratio.tolerance, path)}},
-                                                                    path));
-    }
-    effect.arguments = Value::map(std::move(entries), path);
-  }
-  return settings;
-}
-
-// Returns the rigid translations along, and rotations about, each axis through the body's middle, 3n x 6.
-Eigen::MatrixXd rigid_motions(const TetMesh& mesh) {
-  const Eigen::Vector3d middle = mesh.nodes.rowwise().mean();
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(mesh.nodes.size(), 6);
-  for (Eigen::Index a = 0; a < mesh.nodes.cols(); ++a) {
-    for (int i = 0; i < 3; ++i) {
-      out(3 * a + i, i) = 1.0;
-      out.block<3, 1>(3 * a, 3 + i) = Eigen::Vector3d::Unit(i).cross(mesh.nodes.col(a) - middle);
-    }
-  }
-  return out;
-}
 
 // Zeroes the rows for which the sensor or the model has no number.
 void clean(InputLinearisation::Row& row) {
@@ -75,24 +40,6 @@ Eigen::VectorXd along_modes(const Eigen::MatrixXd& modes, const Eigen::VectorXd&
 }
 
 }  // namespace
-
-InputModels::InputModels(const Model& model)
-    : base(model.settings(), model),
-      uncertain(with_free_ratio(model.settings()), model),
-      operators(make_observation_operators(base)),
-      constants(model.parameters().uncertain_constants()),
-      rigid(rigid_motions(base.mesh())) {
-  runs = make_study_model(uncertain);
-}
-
-void InputModels::grow_basis(const MeshError::Question& question) {
-  const auto* reduced = dynamic_cast<const ReducedModel*>(runs.get());
-  if (reduced == nullptr || !studied_in_full(base)) return;
-  const FitProblem problem{base, *reduced, operators, question.frames, {question.start}, question.checkpoint};
-  BasisGrowth growth = tissue_stiffness::grow_basis(*reduced, exhausted, problem, question.w, surface_nodes(base.mesh()));
-  exhausted = growth.exhausted;
-  if (growth.larger) runs = std::move(growth.larger);
-}
 
 InputLinearisation::InputLinearisation(const MeshError::Question& question, InputModels& models)
     : q_(question),
@@ -369,10 +316,10 @@ void InputLinearisation::each_row(const Eigen::VectorXd& z, Constants constants,
   }
 }
 
-NormalEquations InputLinearisation::at(const Eigen::VectorXd& z, Constants varied) {
+NormalEquations InputLinearisation::at(const Eigen::VectorXd& z, Constants constants) {
   NormalEquations out(size_, static_cast<Eigen::Index>(models_.constants.size()));
   const Eigen::Index l = load_columns(), c = size_ - p_ - l;
-  each_row(z, varied, [&](const Row& row, const Eigen::MatrixXd& amplitudes) {
+  each_row(z, constants, [&](const Row& row, const Eigen::MatrixXd& amplitudes) {
     Eigen::MatrixXd own(row.error.size(), p_ + c);
     own << row.parameters, row.direct;
     const Eigen::MatrixXd weighted = row.precision.asDiagonal() * own, seen = row.precision.asDiagonal() * row.modes;
@@ -390,10 +337,10 @@ NormalEquations InputLinearisation::at(const Eigen::VectorXd& z, Constants varie
     out.gradient.segment(p_, l) += amplitudes.transpose() * (seen.transpose() * row.error);
     out.cost += row.error.dot(row.precision.cwiseProduct(row.error));
     out.rows += static_cast<double>((row.precision.array() > 0.0).count());
-    if (varied == Constants::held) return;
-    const Eigen::MatrixXd constants = weighted.transpose() * row.constants;
-    out.constants.topRows(p_) += constants.topRows(p_);
-    out.constants.bottomRows(c) += constants.bottomRows(c);
+    if (constants == Constants::held) return;
+    const Eigen::MatrixXd across_constants = weighted.transpose() * row.constants;
+    out.constants.topRows(p_) += across_constants.topRows(p_);
+    out.constants.bottomRows(c) += across_constants.bottomRows(c);
     out.constants.middleRows(p_, l) += amplitudes.transpose() * (seen.transpose() * row.constants);
     const Eigen::MatrixXd weighted_constants = row.precision.asDiagonal() * row.constants;
     out.constants_information += weighted_constants.transpose() * row.constants;

@@ -9,30 +9,11 @@
 
 #include "effects/load_error.hpp"
 #include "estimation/force_noise.hpp"
+#include "estimation/input_models.hpp"
 #include "estimation/mesh_error.hpp"
 #include "estimation/normal_equations.hpp"
-#include "forward/study_model.hpp"
-#include "observation/observation_operator.hpp"
 
 namespace tissue_stiffness {
-
-/// These models are run by a study of the inputs, and kept from one study to the next.
-struct InputModels {
-  Model base;       ///< the estimator's, for its parameters
-  Model uncertain;  ///< keeps constants that have a tolerance apart
-  std::shared_ptr<ForwardModel> runs;
-  std::vector<std::unique_ptr<ObservationOperator>> operators;
-  std::vector<UncertainConstant> constants;
-  Eigen::MatrixXd rigid;  ///< translations and rotations of the body, 3n x 6
-
-  bool exhausted = false;  ///< more vectors do not make the basis of the runs better
-
-  explicit InputModels(const Model& model);
-  /// Lets the basis of the runs leave out no more than that of the estimator: what is known of its constants is apart
-  /// here, so it takes other vectors.
-  void grow_basis(const MeshError::Question& question);
-  const ReducedModel& linear_form() const { return linear_form_of(*runs); }
-};
 
 /// Columns of z that hold one kind of error of one input, in units of its tolerance.
 struct InputGroup {
