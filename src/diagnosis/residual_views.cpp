@@ -7,6 +7,8 @@
 #include <numeric>
 #include <vector>
 
+#include "types/plain_number.hpp"
+
 namespace tissue_stiffness {
 namespace {
 
@@ -64,7 +66,7 @@ std::string where_it_fails(const RecordingFit& recording_fit, const RecordingRow
   centre /= weight;
   double square = 0.0;
   for (const int node : worst) square += errors.at(node) / static_cast<double>(worst.size());
-  return format("around (%.3f, %.3f, %.3f) m", centre.x(), centre.y(), centre.z()) + region_around(recording_fit, worst) +
+  return "around " + position_in_millimetres(centre) + " mm" + region_around(recording_fit, worst) +
          format(": %.1f sigma rms there, %.1f over the body", std::sqrt(square), std::sqrt(mean));
 }
 

@@ -68,7 +68,7 @@ std::string modulus_remark(const Diagnosis& d) {
 
 std::string answer(const Diagnosis& d) {
   std::string text = interruption_notice(d.interrupted) + "<p>" + verdict_badge(d.verdict) + "</p><p class=\"verdict\">" +
-                     escape_html(positions_in_millimetres(diagnosis_sentence(d, d.candidates.empty()))) + "</p>";
+                     escape_html(diagnosis_sentence(d, d.candidates.empty())) + "</p>";
   if (d.steps.empty()) return section("answer", "", text);
   if (d.steps.size() == 1) {
     text += modulus_answer("Young's modulus of the given model", d);

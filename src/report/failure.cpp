@@ -5,6 +5,7 @@
 #include "report/effect_words.hpp"
 #include "report/page.hpp"
 #include "report/text.hpp"
+#include "types/plain_number.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -15,7 +16,7 @@ std::string part(const std::string& name, double metres, double sigmas) {
 }
 
 std::string paragraph(const std::string& title, const std::string& text) {
-  return "<p><b>" + title + ":</b> " + escape_html(positions_in_millimetres(text)) + ".</p>";
+  return "<p><b>" + title + ":</b> " + escape_html(text) + ".</p>";
 }
 
 std::string force_paragraph(const MissingForce& force) {
@@ -27,10 +28,7 @@ std::string force_paragraph(const MissingForce& force) {
 std::string belief_rows(const BeliefMap& b) {
   std::string rows;
   for (Eigen::Index p = 0; p < b.centres.cols(); ++p) {
-    rows += "<tr><td>(";
-    for (Eigen::Index axis = 0; axis < 3; ++axis)
-      rows += (axis == 0 ? "" : ", ") + fixed_number(1e3 * b.centres(axis, p), 0);
-    rows += ")</td>";
+    rows += "<tr><td>" + position_in_millimetres(b.centres.col(p)) + "</td>";
     for (Eigen::Index third = 0; third < 3; ++third) {
       const double valid = b.probability(p, third);
       rows += "<td class=\"n\" style=\"background:rgba(213,94,0," + short_number(0.6 * (1.0 - valid), 2) + ")\">" +

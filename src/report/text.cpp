@@ -14,14 +14,6 @@
 namespace tissue_stiffness {
 namespace {
 
-double number(const std::string& text) {
-  std::istringstream stream(text);
-  stream.imbue(std::locale::classic());
-  double value = 0.0;
-  stream >> value;
-  return value;
-}
-
 /// Returns the position of the leading digit: 0 for 1 to 9.99.
 int magnitude(double value) {
   return static_cast<int>(std::floor(std::log10(std::abs(value))));
@@ -88,12 +80,6 @@ std::string short_number(double value, int digits) {
   return stream.str();
 }
 
-std::string fixed_number(double value, int decimals) {
-  if (!std::isfinite(value)) return "-";
-  const std::string text = with_decimals(value, decimals);
-  return text.find_first_of("123456789") == std::string::npos ? with_decimals(0.0, decimals) : text;
-}
-
 std::string millimetres(double metres) {
   return std::isfinite(metres) ? short_number(1e3 * metres, 3) + " mm" : "-";
 }
@@ -107,18 +93,6 @@ std::string percentage(double share, int digits) {
 
 std::string test_statistic(double z) {
   return z > 100.0 ? "> 100" : short_number(z, 2);
-}
-
-std::string positions_in_millimetres(const std::string& text) {
-  static const std::regex position(R"(\((-?[\d.]+), (-?[\d.]+), (-?[\d.]+)\) m\b)");
-  std::string out, rest = text;
-  for (std::smatch found; std::regex_search(rest, found, position); rest = found.suffix()) {
-    out += found.prefix().str() + "(";
-    for (std::size_t axis = 1; axis <= 3; ++axis)
-      out += (axis == 1 ? "" : ", ") + fixed_number(1e3 * number(found.str(axis)), 0);
-    out += ") mm";
-  }
-  return out + rest;
 }
 
 ShownUnit shown_unit(double value, const std::string& unit) {

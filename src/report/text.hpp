@@ -20,9 +20,6 @@ std::string exact_number(double value);
 /// Writes a number for the reader: `digits` significant digits, no exponent between 1e-4 and 1e6; "-" when not finite.
 std::string short_number(double value, int digits);
 
-/// Writes a number with so many decimals and without the sign of a zero: "0.0" for -0.04; "-" when not finite.
-std::string fixed_number(double value, int decimals);
-
 /// Writes a length: "0.35 mm"; "-" when not finite.
 std::string millimetres(double metres);
 
@@ -32,12 +29,9 @@ std::string percentage(double share, int digits);
 /// Writes the statistic of a test, which says no more beyond "> 100"; "-" when not finite.
 std::string test_statistic(double z);
 
-/// Rewrites the positions in a text: "around (-0.003, 0.013, 0.041) m" -> "around (-3, 13, 41) mm".
-std::string positions_in_millimetres(const std::string& text);
-
 /// A unit with the SI prefix that suits `value`: 30e3 Pa -> {1e-3, "kPa"}. Units that begin with Pa, N, m, s or rad get a
-/// prefix, and kilograms become grams: 1.5e-8 m^3/N -> {1e9, "mm^3/N"}. Other units keep their name; "-" is shown as "", and as % below a
-/// thousandth.
+/// prefix, and kilograms become grams: 1.5e-8 m^3/N -> {1e9, "mm^3/N"}. Other units keep their name; "-" is shown as "",
+/// and as % below a thousandth.
 struct ShownUnit {
   double scale = 1.0;
   std::string name;

@@ -10,6 +10,7 @@
 #include "report/write_diagnosis.hpp"
 #include "tools/formatted.hpp"
 #include "tools/lengths.hpp"
+#include "types/plain_number.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -71,10 +72,9 @@ void print_diagnosis(const Diagnosis& d, const Paint& paint, std::ostream& out) 
     out << paint.warning("incomplete") << "    interrupted during: " << d.interrupted << "\n";
   }
   if (d.steps.empty()) return;
-  out << paint.bold(positions_in_millimetres(diagnosis_sentence(d))) << "\nwhere         "
-      << positions_in_millimetres(d.where) << "\nwhen          " << d.when << "\n";
+  out << paint.bold(diagnosis_sentence(d)) << "\nwhere         " << d.where << "\nwhen          " << d.when << "\n";
   print_error(d.metres, out);
-  if (!d.force.words.empty()) out << "missing force " << positions_in_millimetres(d.force.words) << "\n";
+  if (!d.force.words.empty()) out << "missing force " << d.force.words << "\n";
   print_candidates(d.candidates, paint, out);
   print_steps(d.steps, paint, out);
   out << "final         " << painted(d.final_verdict, paint) << "; " << std::lround(d.seconds) << " s\n";

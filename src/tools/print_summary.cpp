@@ -9,6 +9,7 @@
 #include "tools/estimate_recording.hpp"
 #include "tools/formatted.hpp"
 #include "tools/lengths.hpp"
+#include "types/plain_number.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -53,8 +54,7 @@ void print_map(const StiffnessMap& map, std::ostream& out) {
     const ShownUnit unit = shown_unit(patch.young_modulus, "Pa");
     const double spread = unit.scale * patch.std * patch.young_modulus;
     const auto shown = [&](double modulus) { return rounded(unit.scale * modulus, spread); };
-    const auto place = [&](Eigen::Index axis) { return fixed_number(1e3 * patch.center[axis], 0); };
-    print_line(out, "  at (%4s, %4s, %4s) mm  %s %s, 95 %%: %s .. %s", place(0).c_str(), place(1).c_str(), place(2).c_str(),
+    print_line(out, "  at %-21s  %s %s, 95 %%: %s .. %s", (position_in_millimetres(patch.center) + " mm").c_str(),
                shown(patch.young_modulus).c_str(), unit.name.c_str(), shown(patch.lower95).c_str(),
                shown(patch.upper95).c_str());
   }

@@ -28,7 +28,7 @@ Diagnosis example_diagnosis() {
   useless.effect = "<own>_effect";
   useless.explained = -0.01;
   d.candidates = {best, useless};
-  d.where = "around (-0.003, 0.013, 0.041) m";
+  d.where = "around (-3, 13, 41) mm";
   d.when = "early";
   d.next_experiment = "excite two modes";
   d.steps = {{{}, {{"elasticity.young_modulus", 19e3}}, 3e-4, 3.1e-4, 1e-4},
