@@ -39,11 +39,6 @@ find_path(TBB_INCLUDE_DIR tbb/parallel_for.h)
 find_library(TBB_LIBRARY tbb)
 tissue_stiffness_require(TBB_INCLUDE_DIR TBB_LIBRARY)
 
-if(NOT CLI11_FOUND)
-  find_path(CLI11_INCLUDE_DIR CLI/CLI.hpp)
-  tissue_stiffness_require(CLI11_INCLUDE_DIR)
-endif()
-
 # For those who link the core through catkin, which hands on files and no targets.
 find_library(YAML_CPP_LIBRARY yaml-cpp)
 tissue_stiffness_require(YAML_CPP_LIBRARY)

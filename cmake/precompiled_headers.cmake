@@ -8,7 +8,7 @@ set(tissue_stiffness_core_headers
 set(tissue_stiffness_ros_headers ${tissue_stiffness_core_headers}
   <ros/ros.h> <geometry_msgs/PoseStamped.h> <geometry_msgs/WrenchStamped.h> <sensor_msgs/CameraInfo.h> <sensor_msgs/Image.h>
   <sensor_msgs/PointCloud2.h>)
-set(tissue_stiffness_tool_headers ${tissue_stiffness_core_headers} <iostream> <ros/ros.h> <CLI/CLI.hpp>)
+set(tissue_stiffness_tool_headers ${tissue_stiffness_core_headers} <iostream> <ros/ros.h>)
 set(tissue_stiffness_test_headers ${tissue_stiffness_core_headers} <gtest/gtest.h>)
 
 # tissue_stiffness_precompile(TARGET core|ros|tool|test): the group's first target is its owner.

@@ -1,5 +1,4 @@
 // Prints the outlines that the package finds in a sequence of images: rows of image, u, v, sigma [pixel].
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
@@ -7,6 +6,7 @@
 
 #include "segmentation/overlay.hpp"
 #include "tissue_stiffness/segmentation/segmenter.hpp"
+#include "tools/run_tool.hpp"
 
 namespace ts = tissue_stiffness;
 
@@ -51,13 +51,10 @@ int print_outlines(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app("Outlines of a sequence of images, as CSV.");
-  app.add_option("kind", options.kind, "silhouette or cavity")
-      ->required()
-      ->check(CLI::IsMember(std::vector<std::string>{"silhouette", "cavity"}));
-  app.add_option("--seed", options.seed, "u v inside the body or the pool [pixel]")->expected(2);
-  app.add_option("--overlays", options.overlays, "folder for pictures with the outline");
-  app.add_option("--images", options.images, "in their order")->required();
-  CLI11_PARSE(app, argc, argv);
-  return print_outlines(options);
+  ts::CommandLine line("Outlines of a sequence of images, as CSV.", "outlines");
+  line.add_positional("KIND", options.kind, "what is outlined").required().one_of({"silhouette", "cavity"});
+  line.add_option("--seed", options.seed, "u v inside the body or the pool [pixel]").count(2, 2);
+  line.add_option("--overlays", options.overlays, "folder for pictures with the outline");
+  line.add_option("--images", options.images, "in their order").required();
+  return ts::run_tool(line, argc, argv, [&] { return print_outlines(options); });
 }

@@ -7,17 +7,18 @@
 
 int main(int argc, char** argv) {
   using namespace tissue_stiffness;
-  CLI::App app("Says what is wrong with a model file, and with a recording for it, before anything is estimated.", "check");
+  CommandLine line("Says what is wrong with a model file, and with a recording for it, before anything is estimated.",
+                   "check");
   ModelOption model;
   std::string recording;
   bool quiet = false;
-  model.add_to(app);
-  app.add_option("RECORDING", recording, "rosbag; without it the model file and the mesh are checked");
-  app.add_flag("--quiet", quiet, "nothing where nothing is wrong");
-  app.footer("Example: check model.yaml recording.bag");
+  model.add_to(line);
+  line.add_positional("RECORDING", recording, "rosbag; without it the model file and the mesh are checked");
+  line.add_flag("--quiet", quiet, "nothing where nothing is wrong");
+  line.footer("Example: check model.yaml recording.bag");
   std::size_t found = 0;
   accept_vtu_meshes();
-  const int code = run_tool(app, argc, argv, [&] {
+  const int code = run_tool(line, argc, argv, [&] {
     const SetupFindings findings = check_setup(model.load(), recording);
     for (const SetupFinding& finding : findings) std::cout << finding.sentence << "\n";
     if (findings.empty() && !quiet) std::cout << "nothing found\n";

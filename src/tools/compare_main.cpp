@@ -8,15 +8,15 @@
 
 int main(int argc, char** argv) {
   using namespace tissue_stiffness;
-  CLI::App app("Shows runs of `estimate` beside each other, on one page.", "compare");
+  CommandLine line("Shows runs of `estimate` beside each other, on one page.", "compare");
   std::vector<std::string> folders;
   std::string output;
   bool quiet = false;
-  app.add_option("RUNS", folders, "folders that `estimate` wrote, two or more")->required()->expected(2, 100);
-  app.add_option("-o,--output", output, "the page, an HTML file")->required();
-  app.add_flag("--quiet", quiet, "no word about what was written");
-  app.footer("Example: compare before after -o compare.html");
-  return run_tool(app, argc, argv, [&] {
+  line.add_positional("RUNS", folders, "folders that `estimate` wrote, two or more").required().count(2, 100);
+  line.add_option("-o,--output", output, "the page, an HTML file").required();
+  line.add_flag("--quiet", quiet, "no word about what was written");
+  line.footer("Example: compare before after -o compare.html");
+  return run_tool(line, argc, argv, [&] {
     std::vector<ComparedRun> runs;
     for (const std::string& folder : folders) runs.push_back(read_run(folder));
     write_text(output, comparison_html(runs, join_arguments("compare", argc, argv), versions()));

@@ -1,19 +1,16 @@
 #include "tools/data_option.hpp"
 
-#include <CLI/CLI.hpp>
-
 #include "tissue_stiffness/types/error.hpp"
+#include "tools/command_line.hpp"
 
 namespace tissue_stiffness {
 
-void DataOption::add_to(CLI::App& app, const std::string& intent) {
-  app.add_option("--data", data, intent + "TOPIC=FILE.csv for each topic of points and loads of the model")->take_all();
-  app.add_option("--video", films,
-                 intent + "a film, or images frames_%04d.png, for each contour and for tracks of the model")
-      ->take_all();
-  app.add_option("--camera", cameras, "calibration of each film's camera, with its pose (YAML)")->take_all();
-  app.add_option("--scale", scale, "what converts the lengths of --data to metres, such as 0.001")
-      ->check(CLI::PositiveNumber);
+void DataOption::add_to(CommandLine& line, const std::string& intent) {
+  line.add_option("--data", data, intent + "TOPIC=FILE.csv for each topic of points and loads of the model");
+  line.add_option("--video", films,
+                  intent + "a film, or images frames_%04d.png, for each contour and for tracks of the model");
+  line.add_option("--camera", cameras, "calibration of each film's camera, with its pose (YAML)");
+  line.add_option("--scale", scale, "what converts the lengths of --data to metres, such as 0.001").positive();
 }
 
 void DataOption::check_beside(const std::string& recording) const {

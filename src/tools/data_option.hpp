@@ -5,11 +5,9 @@
 
 #include "tools/pack_recording.hpp"
 
-namespace CLI {
-class App;
-}
-
 namespace tissue_stiffness {
+
+class CommandLine;
 
 /// The files of a recording that was made without ROS, on a command line.
 struct DataOption {
@@ -17,7 +15,7 @@ struct DataOption {
   double scale = 1.0;
 
   /// Adds --data, --video, --camera and --scale. `intent` precedes what they mean.
-  void add_to(CLI::App& app, const std::string& intent);
+  void add_to(CommandLine& line, const std::string& intent);
   bool empty() const { return data.empty() && films.empty() && cameras.empty(); }
   /// Throws InputError unless there is either a recording (empty: none) or a file of these options.
   void check_beside(const std::string& recording) const;

@@ -76,7 +76,7 @@ void run_once_more(Diagnosis& diagnosis, FittedModel& given, FittedModel& last, 
 
 int main(int argc, char** argv) {
   StopRequest& stop = stop_on_signals();
-  CLI::App app("Compares a model with a recording and says which physical effect it misses.", "diagnose");
+  CommandLine line("Compares a model with a recording and says which physical effect it misses.", "diagnose");
   ModelOption model;
   DataOption data;
   DiagnosisTexts texts;
@@ -84,22 +84,21 @@ int main(int argc, char** argv) {
   std::string output;
   double time_limit = 0.0;
   bool quiet = false, json = false;
-  model.add_to(app);
-  app.add_option("RECORDING", texts.recording, "rosbag");
-  data.add_to(app, "instead of a rosbag: ");
-  app.add_option("--output", output, "folder for diagnosis.json, model_next.yaml and report.html")->required();
-  app.add_option("--add", options.add, "add this effect and fit again (may be given several times)")->take_all();
-  app.add_option("--ignore", options.ignore, "do not search for this effect (may be given several times)")->take_all();
-  app.add_flag("--auto", options.automatic, "keep adding the most probable effect while the verdict is `missing`");
-  app.add_option("--time-limit", time_limit, "end after so many seconds with what is known then")
-      ->check(CLI::PositiveNumber);
-  app.add_flag("--quiet", quiet, "no progress and no table");
-  app.add_flag("--json", json, "print diagnosis.json instead of the table");
-  app.footer(std::string("Example: diagnose model.yaml recording.bag --output out --auto\n"
-                         "Without ROS: diagnose model.yaml --data /tissue/vertices=points.csv --output out --auto\n") +
-             exit_code_help);
+  model.add_to(line);
+  line.add_positional("RECORDING", texts.recording, "rosbag");
+  data.add_to(line, "instead of a rosbag: ");
+  line.add_option("--output", output, "folder for diagnosis.json, model_next.yaml and report.html").required();
+  line.add_option("--add", options.add, "add this effect and fit again (may be given several times)");
+  line.add_option("--ignore", options.ignore, "do not search for this effect (may be given several times)");
+  line.add_flag("--auto", options.automatic, "keep adding the most probable effect while the verdict is `missing`");
+  line.add_option("--time-limit", time_limit, "end after so many seconds with what is known then").positive();
+  line.add_flag("--quiet", quiet, "no progress and no table");
+  line.add_flag("--json", json, "print diagnosis.json instead of the table");
+  line.footer(std::string("Example: diagnose model.yaml recording.bag --output out --auto\n"
+                          "Without ROS: diagnose model.yaml --data /tissue/vertices=points.csv --output out --auto\n") +
+              exit_code_help);
   accept_vtu_meshes();
-  return run_tool(app, argc, argv, [&] {
+  return run_tool(line, argc, argv, [&] {
     if (time_limit > 0.0) stop.end_after(time_limit);
     Diagnosis diagnosis;  // as long as nothing is known
     diagnosis.interrupted = "reading the model and the recording";

@@ -3,13 +3,13 @@
 
 int main(int argc, char** argv) {
   using namespace tissue_stiffness;
-  CLI::App app("Prints the library of effects: name, formula, parameters with unit and bounds, source.", "effects");
+  CommandLine line("Prints the library of effects: name, formula, parameters with unit and bounds, source.", "effects");
   bool markdown = false, json = false, quiet = false;
-  app.add_flag("--markdown", markdown, "as a page of the documentation");
-  app.add_flag("--json", json, "as JSON");
-  app.add_flag("--quiet", quiet, "the names alone");
-  app.footer("Example: effects --quiet");
-  return run_tool(app, argc, argv, [&] {
+  line.add_flag("--markdown", markdown, "as a page of the documentation");
+  line.add_flag("--json", json, "as JSON");
+  line.add_flag("--quiet", quiet, "the names alone");
+  line.footer("Example: effects --quiet");
+  return run_tool(line, argc, argv, [&] {
     if (json) return print_effects_json(std::cout);
     if (markdown) return print_effects_markdown(std::cout);
     if (quiet) return print_effect_names(std::cout);

@@ -39,7 +39,7 @@ std::vector<RecordingFile> recordings_of(const ModelOption& model, const std::ve
 
 int main(int argc, char** argv) {
   StopRequest& stop = stop_on_signals();
-  CLI::App app("Estimates the unknown parameters of a model, Young's modulus first, from a recording.", "estimate");
+  CommandLine line("Estimates the unknown parameters of a model, Young's modulus first, from a recording.", "estimate");
   ModelOption model;
   std::string output;
   std::vector<std::string> files, predicted, own;
@@ -48,36 +48,37 @@ int main(int argc, char** argv) {
   double time_limit = 0.0;
   bool quiet = false, json = false;
   ManifestOption many;
-  model.add_to(app);
-  app.get_option("MODEL")->required(false);
-  app.add_option("RECORDING", files, "rosbag; several of one body are fitted together, each with the model file before it");
-  data.add_to(app, "instead of a rosbag: ");
-  app.add_option("--predict", predicted, "rosbags that the fit of the others foretells; MODEL RECORDING for another model")
-      ->take_all();
-  app.add_option("--own", own, "parameter, effect or topic that each of several recordings has for itself")->take_all();
-  app.add_option("--output", output, "folder for results.json, estimates.csv, report.html and map.vtk")->required();
-  app.add_option("--frames", frames, "stop after so many frames (default: all)")->check(CLI::PositiveNumber);
-  app.add_option("--time-limit", time_limit, "end after so many seconds with what is known then")
-      ->check(CLI::PositiveNumber);
-  app.add_flag("--quiet", quiet, "no progress and no table");
-  app.add_flag("--json", json, "print results.json instead of the table");
-  many.add_to(app);
-  app.footer(std::string(
-                 "Example: estimate model.yaml recording.bag --output out\n"
-                 "Without ROS: estimate model.yaml --data /tissue/vertices=points.csv /tool/wrench=force.csv --output out\n"
-                 "A film: estimate model.yaml --video film.mp4 --camera camera.yaml --output out\n"
-                 "Several recordings: estimate a.yaml 1.bag 2.bag b.yaml 3.bag --predict 4.bag --output out\n") +
-             exit_code_help);
+  model.add_to(line).required(false);
+  line.add_positional("RECORDING", files,
+                      "rosbag; several of one body are fitted together, each with the model file before it");
+  data.add_to(line, "instead of a rosbag: ");
+  line.add_option("--predict", predicted,
+                  "rosbags that the fit of the others foretells; MODEL RECORDING for another model");
+  line.add_option("--own", own, "parameter, effect or topic that each of several recordings has for itself");
+  line.add_option("--output", output, "folder for results.json, estimates.csv, report.html and map.vtk").required();
+  line.add_option("--frames", frames, "stop after so many frames (default: all)").positive();
+  line.add_option("--time-limit", time_limit, "end after so many seconds with what is known then").positive();
+  line.add_flag("--quiet", quiet, "no progress and no table");
+  line.add_flag("--json", json, "print results.json instead of the table");
+  many.add_to(line);
+  line.footer(
+      std::string(
+          "Example: estimate model.yaml recording.bag --output out\n"
+          "Without ROS: estimate model.yaml --data /tissue/vertices=points.csv /tool/wrench=force.csv --output out\n"
+          "A film: estimate model.yaml --video film.mp4 --camera camera.yaml --output out\n"
+          "Several recordings: estimate a.yaml 1.bag 2.bag b.yaml 3.bag --predict 4.bag --output out\n") +
+      exit_code_help);
   accept_vtu_meshes();
-  return run_tool(app, argc, argv, [&] {
+  return run_tool(line, argc, argv, [&] {
     if (time_limit > 0.0) stop.end_after(time_limit);
     if (!many.file.empty()) {
-      if (!model.file.empty()) throw CLI::ExcludesError("--manifest", "MODEL");
+      if (!model.file.empty())
+        throw UsageError("MODEL", model.file + " beside --manifest", "nothing, because the manifest names it");
       many.task.output = output;
       many.task.arguments = row_arguments(model, frames);
       return estimate_manifest(many, quiet, stop);
     }
-    if (model.file.empty()) throw CLI::RequiredError("MODEL");
+    if (model.file.empty()) throw UsageError("MODEL is required");
     data.check_beside(files.empty() ? "" : files.front());
     make_folder(output);
     if (!data.empty()) files.push_back(data.pack(model.load(), output));

@@ -57,25 +57,25 @@ std::string title_of(const EstimatedModel& estimated) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Writes the estimated model for another program, with its loads at one instant.", "export");
+  CommandLine line("Writes the estimated model for another program, with its loads at one instant.", "export");
   ModelOption given;
   std::string results, to, output, recording;
   std::optional<double> at;
   bool quiet = false;
   std::vector<std::string> names;
   for (const auto& [name, format] : formats()) names.push_back(name);
-  app.add_option("RESULTS", results, "results.json of `estimate`, or its folder")->required();
-  app.add_option("--to", to, "the format")->required()->check(CLI::IsMember(names));
-  app.add_option("-o,--output", output, "the file (default: model.ENDING beside results.json)");
-  app.add_option("--at", at, "time of the loads after the recording's first stamp [s] (default: of the largest load)");
-  app.add_option("--model", given.file, "the model file (default: as results.json says)");
-  app.add_option("--recording", recording, "the rosbag (default: as results.json says)");
-  given.add_flag_to(app);
-  app.add_flag("--quiet", quiet, "no word about what was written");
-  app.footer(
+  line.add_positional("RESULTS", results, "results.json of `estimate`, or its folder").required();
+  line.add_option("--to", to, "the format").required().one_of(names);
+  line.add_option("-o,--output", output, "the file (default: model.ENDING beside results.json)");
+  line.add_option("--at", at, "time of the loads after the recording's first stamp [s] (default: of the largest load)");
+  line.add_option("--model", given.file, "the model file (default: as results.json says)");
+  line.add_option("--recording", recording, "the rosbag (default: as results.json says)");
+  given.add_flag_to(line);
+  line.add_flag("--quiet", quiet, "no word about what was written");
+  line.footer(
       "Example: export out --to calculix -o liver.inp\nWhat the format cannot express is said on stderr and in the file.");
   accept_vtu_meshes();
-  return run_tool(app, argc, argv, [&] {
+  return run_tool(line, argc, argv, [&] {
     const EstimatedModel estimated = load_estimated_model(results, given, recording);
     const Format& format = formats().at(to);
     ExportedModel exported = export_model(*estimated.model, estimated.theta, time_of(estimated, at),

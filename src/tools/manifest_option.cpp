@@ -8,17 +8,17 @@
 
 namespace tissue_stiffness {
 
-void ManifestOption::add_to(CLI::App& app) {
-  CLI::Option* const manifest =
-      app.add_option("--manifest", file, "CSV file with the columns model and recording: estimate from each of its rows");
-  app.add_option("--shard", shard, "I/N: every N-th row of the manifest, beginning with the I-th (default: 1/1)")
-      ->needs(manifest);
-  app.add_option("--threads", task.processes, "rows of the manifest that are estimated at once (default: 1)")
-      ->needs(manifest)
-      ->check(CLI::Range(1, 1000));
-  app.add_flag("--resume", task.resume, "keep the rows of the manifest that are answered already")->needs(manifest);
-  app.add_option("--merge", merged, "estimate nothing; write this CSV file with a row for each row of the manifest")
-      ->needs(manifest);
+void ManifestOption::add_to(CommandLine& line) {
+  const CommandArgument& manifest =
+      line.add_option("--manifest", file, "CSV file with the columns model and recording: estimate from each of its rows");
+  line.add_option("--shard", shard, "I/N: every N-th row of the manifest, beginning with the I-th (default: 1/1)")
+      .needs(manifest);
+  line.add_option("--threads", task.processes, "rows of the manifest that are estimated at once (default: 1)")
+      .needs(manifest)
+      .between(1, 1000);
+  line.add_flag("--resume", task.resume, "keep the rows of the manifest that are answered already").needs(manifest);
+  line.add_option("--merge", merged, "estimate nothing; write this CSV file with a row for each row of the manifest")
+      .needs(manifest);
 }
 
 ExitCode estimate_manifest(ManifestOption& option, bool quiet, const StopRequest& stop) {

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
+#include "tools/command_line.hpp"
 #include "tools/run_manifest.hpp"
 #include "tools/run_tool.hpp"
 
@@ -13,7 +13,7 @@ struct ManifestOption {
   std::string file, shard = "1/1", merged;
   ManifestTask task;
 
-  void add_to(CLI::App& app);
+  void add_to(CommandLine& line);
 };
 
 /// Estimates from the rows of the manifest, or merges their results.

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "settings/inside_folder.hpp"
 #include "tissue_stiffness/settings/model_settings.hpp"
+#include "tools/command_line.hpp"
 
 namespace tissue_stiffness {
 
@@ -13,12 +13,14 @@ struct ModelOption {
   std::string file;
   bool allow_outside = false;
 
-  void add_to(CLI::App& app, const std::string& name = "MODEL", const std::string& what = "model file (YAML)") {
-    app.add_option(name, file, what)->required();
-    add_flag_to(app);
+  /// Adds both, and returns the argument of the file.
+  CommandArgument& add_to(CommandLine& line, const std::string& name = "MODEL",
+                          const std::string& what = "model file (YAML)") {
+    add_flag_to(line);
+    return line.add_positional(name, file, what).required();
   }
-  void add_flag_to(CLI::App& app) {
-    app.add_flag("--allow-outside", allow_outside, "let the model name files outside its own folder");
+  void add_flag_to(CommandLine& line) {
+    line.add_flag("--allow-outside", allow_outside, "let the model name files outside its own folder");
   }
 
   /// Throws InputError for a file outside the model's folder, unless that is allowed.

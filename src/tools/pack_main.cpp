@@ -5,14 +5,15 @@
 
 int main(int argc, char** argv) {
   using namespace tissue_stiffness;
-  CLI::App app("Packs CSV files and films into the rosbag that a model needs, for what was recorded without ROS.", "pack");
+  CommandLine line("Packs CSV files and films into the rosbag that a model needs, for what was recorded without ROS.",
+                   "pack");
   ModelOption model;
   std::string output;
   DataOption data;
-  model.add_to(app, "model");
-  data.add_to(app, "");
-  app.add_option("--output", output, "the bag")->required();
-  app.footer(
+  model.add_to(line, "model");
+  data.add_to(line, "");
+  line.add_option("--output", output, "the bag").required();
+  line.footer(
       "Rows of points: time, number, x, y, z (without the number for `points`); of a force: time, fx, fy, fz[, torque]; "
       "of\n"
       "a pressure: time, p; of a pose: time, x, y, z, qx, qy, qz, qw. All are in the model's frame, with SI units.\n"
@@ -20,7 +21,7 @@ int main(int argc, char** argv) {
       "doc/parameters.md.\n"
       "Example: pack model.yaml --data /tissue/vertices=points.csv /tool/wrench=force.csv --output recording.bag\n"
       "A film: pack model.yaml --video film.mp4 --camera camera.yaml --data /tool/wrench=force.csv --output recording.bag");
-  return run_tool(app, argc, argv, [&] {
+  return run_tool(line, argc, argv, [&] {
     for (const PackedSummary& topic : pack_recording(model.load(), data.files(), output)) {
       std::cout << topic.topic << ": " << topic.messages << " messages over " << topic.duration << " s\n";
     }

@@ -2,12 +2,12 @@
 #include "tools/run_tool.hpp"
 
 int main(int argc, char** argv) {
-  CLI::App app("Prints the keys of a model file and the nodes' parameters: unit, allowed values, default, meaning.",
-               "parameters");
+  tissue_stiffness::CommandLine line(
+      "Prints the keys of a model file and the nodes' parameters: unit, allowed values, default, meaning.", "parameters");
   bool markdown = false;
-  app.add_flag("--markdown", markdown, "as a page of the documentation");
-  app.footer("Example: parameters --markdown > doc/parameters.md");
-  return tissue_stiffness::run_tool(app, argc, argv, [&] {
+  line.add_flag("--markdown", markdown, "as a page of the documentation");
+  line.footer("Example: parameters --markdown > doc/parameters.md");
+  return tissue_stiffness::run_tool(line, argc, argv, [&] {
     markdown ? tissue_stiffness::print_keys_markdown(std::cout) : tissue_stiffness::print_keys(std::cout);
   });
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <algorithm>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "tissue_stiffness/types/error.hpp"
+#include "tools/command_line.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/versions.hpp"
 #include "types/freed_memory.hpp"
@@ -21,41 +22,39 @@ inline std::string join_arguments(const std::string& tool, int argc, char** argv
   return line;
 }
 
-/// Ends the parsing of a command line that asks for the versions alone.
-struct VersionWanted {};
-
-/// Parses the command line and runs a tool. With --version it prints the versions instead. The tool returns its exit code,
-/// or nothing if it always answers. Wrong arguments or input give one line and exit code 2, other failures one line and
-/// exit code 1.
+/// Parses the command line and runs a tool. With --help or --version it prints what they ask for instead. The tool returns
+/// its exit code, or nothing if it always answers. Wrong arguments or input give one line and exit code 2, other failures
+/// one line and exit code 1.
 template <typename Tool>
-int run_tool(CLI::App& app, int argc, char** argv, const Tool& tool) {
+int run_tool(CommandLine& line, int argc, char** argv, const Tool& tool) {
   keep_freed_memory();
-  app.add_flag_callback(
-      "--version", [] { throw VersionWanted(); }, "print the versions of the package and its libraries and exit");
   try {
-    app.parse(argc, argv);
+    const CommandLine::Wanted wanted = line.parse({argv + std::min(argc, 1), argv + argc});
+    if (wanted == CommandLine::Wanted::help) {
+      std::cout << line.help();
+      return static_cast<int>(ExitCode::answered);
+    }
+    if (wanted == CommandLine::Wanted::versions) {
+      for (const auto& [name, version] : versions()) std::cout << name << " " << version << "\n";
+      return static_cast<int>(ExitCode::answered);
+    }
     if constexpr (std::is_void_v<decltype(tool())>) {
       tool();
       return static_cast<int>(ExitCode::answered);
     } else {
       return static_cast<int>(tool());
     }
-  } catch (const VersionWanted&) {
-    for (const auto& [name, version] : versions()) std::cout << name << " " << version << "\n";
-    return static_cast<int>(ExitCode::answered);
-  } catch (const CLI::Success& help) {
-    return app.exit(help);
-  } catch (const CLI::ParseError& error) {
-    std::cerr << app.get_name() << ": " << error.what() << " (--help shows the arguments)\n";
+  } catch (const UsageError& error) {
+    std::cerr << line.tool() << ": " << error.what() << " (--help shows the arguments)\n";
     return static_cast<int>(ExitCode::wrong_input);
   } catch (const InputError& error) {
-    std::cerr << app.get_name() << ": " << error.what() << "\n";
+    std::cerr << line.tool() << ": " << error.what() << "\n";
     return static_cast<int>(ExitCode::wrong_input);
   } catch (const std::bad_alloc&) {
-    std::cerr << app.get_name() << ": the memory is too small for this model or recording\n";
+    std::cerr << line.tool() << ": the memory is too small for this model or recording\n";
     return static_cast<int>(ExitCode::failed);
   } catch (const std::exception& error) {
-    std::cerr << app.get_name() << ": " << error.what() << "\n";
+    std::cerr << line.tool() << ": " << error.what() << "\n";
     return static_cast<int>(ExitCode::failed);
   }
 }

@@ -10,19 +10,19 @@
 
 int main(int argc, char** argv) {
   using namespace tissue_stiffness;
-  CLI::App app("Makes a recording of a body whose properties are known: a model file with `simulation`.", "simulate");
+  CommandLine line("Makes a recording of a body whose properties are known: a model file with `simulation`.", "simulate");
   ModelOption option;
   std::string output, truth;
   bool quiet = false, json = false, force = false;
-  option.add_to(app, "SCENE", "scene file (YAML)");
-  app.add_option("--output", output, "rosbag to write")->required();
-  app.add_option("--truth", truth, "file for the scene's numbers (YAML)");
-  app.add_flag("--force", force, "simulate it however long that takes");
-  app.add_flag("--quiet", quiet, "no progress and no summary");
-  app.add_flag("--json", json, "print the summary as JSON");
-  app.footer("Example: simulate scene.yaml --output recording.bag --truth truth.yaml");
+  option.add_to(line, "SCENE", "scene file (YAML)");
+  line.add_option("--output", output, "rosbag to write").required();
+  line.add_option("--truth", truth, "file for the scene's numbers (YAML)");
+  line.add_flag("--force", force, "simulate it however long that takes");
+  line.add_flag("--quiet", quiet, "no progress and no summary");
+  line.add_flag("--json", json, "print the summary as JSON");
+  line.footer("Example: simulate scene.yaml --output recording.bag --truth truth.yaml");
   accept_vtu_meshes();
-  return run_tool(app, argc, argv, [&] {
+  return run_tool(line, argc, argv, [&] {
     option.check();
     const Scene scene = load_scene(option.file);
     if (!force) require_moderate(scene);

@@ -128,6 +128,12 @@ TEST_F(Executables, RefuseWrongArguments) {
   EXPECT_TRUE(refuses("estimate a.yaml b.bag --output " + path("out") + " --colour", {"--colour"}));
   EXPECT_TRUE(refuses("estimate a.yaml b.bag --output " + path("out") + " --frames -3", {"frames"}));
   EXPECT_TRUE(refuses("simulate", {"simulate:", "required"}));
+  const Outcome refused = call("estimate a.yaml b.bag --output " + path("out") + " --frames abc");
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_EQ(refused.text, "estimate: --frames: found abc; allowed: a positive whole number (--help shows the arguments)\n");
+  EXPECT_TRUE(refuses("estimate a.yaml --manifest l.csv --output " + path("out"), {"MODEL", "a.yaml", "--manifest"}));
+  EXPECT_TRUE(refuses("effects --json more", {"effects:", "more", "too many"}));
+  EXPECT_FALSE(std::filesystem::exists(path("out")));
 }
 
 TEST_F(Executables, NameFileKeyAndValueOfWrongInput) {
