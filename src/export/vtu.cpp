@@ -70,7 +70,7 @@ void add_motions(const ExportedModel& model, vtkFieldData& to) {
 
 ExportFile vtu_file(const ExportedModel& model) {
   vtkNew<vtkUnstructuredGrid> grid;
-  add_grid(model.mesh, *grid);
+  add_grid(model.mesh, *grid.GetPointer());
   add_flags("fixed", model.fixed, *grid->GetPointData());
   add_numbers("load", model.force(), *grid->GetPointData());
   add_numbers("weight", model.weight, *grid->GetPointData());
