@@ -1,5 +1,5 @@
 # Debian 12 with its own ROS packages.
-# No test builds this image.
+# scripts/test_suite_of_debian runs the same commands without docker.
 #   docker build -f docker/debian.Dockerfile -t tissue_stiffness .
 #   docker run --rm -v "$PWD:/data" tissue_stiffness estimate /data/model.yaml /data/recording.bag --output /data/out
 FROM debian:12-slim
