@@ -2,13 +2,13 @@
 import argparse
 import json
 import os
-import subprocess
 import sys
 import time
 
 import yaml
 
 import live_run
+from tool_runs import Failed, call
 
 MODULUS = 'elasticity.young_modulus'
 STAGES = ('segment', 'predict', 'observe', 'update', 'reprocess', 'studies')
@@ -40,22 +40,17 @@ def read_truth(shared, folder, name):
 
 
 def run(estimate, shared, folder, name, output):
-    """Results of one recording, or a text that says why there are none."""
+    """Results of one recording."""
     source = os.path.join(shared, folder, name)
     output = os.path.join(output, name)
     command = [estimate, os.path.join(source, 'model.yaml'), os.path.join(source, 'recording.bag'), '--output', output]
     start = time.monotonic()
-    try:
-        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=TIME_LIMIT)
-    except subprocess.TimeoutExpired:
-        return 'not done after %d s' % TIME_LIMIT
-    if done.returncode not in (0, 3):  # 3: answered, but not to be used
-        return 'exit code %d: %s' % (done.returncode, (done.stderr.strip().splitlines() or [''])[-1])
+    printed = call(command, TIME_LIMIT)
     with open(os.path.join(output, 'results.json')) as file:
         results = json.load(file)
     results['wall'] = time.monotonic() - start
     results['stages'] = {}
-    for line in done.stdout.splitlines():
+    for line in printed.splitlines():
         for stage in STAGES:
             if line.startswith(stage + ' '):
                 results['stages'][stage] = '%s/%s' % tuple(line[len(stage):].split()[:2])
@@ -150,10 +145,11 @@ def run_offline(options):
     for name in options.names or CASES:
         bounds = CASES[name]
         truth = read_truth(options.shared, bounds[0], name)
-        results = run(options.estimate, options.shared, bounds[0], name, options.output)
-        if isinstance(results, str):
+        try:
+            results = run(options.estimate, options.shared, bounds[0], name, options.output)
+        except Failed as error:
             failed += 1
-            print('%-24s FAIL: %s' % (name, results), flush=True)
+            print('%-24s FAIL: %s' % (name, error), flush=True)
             continue
         done[name] = results
         found = failures(results, truth, bounds)

@@ -3,11 +3,12 @@ import argparse
 import glob
 import json
 import os
-import subprocess
 import sys
 import time
 
 import yaml
+
+from tool_runs import Failed, call
 
 MODULUS = 'elasticity.young_modulus'
 TIME_LIMIT = 300      # s a case
@@ -24,12 +25,7 @@ def run(arguments, name):
     command = [arguments.diagnose, os.path.join(case, 'model.yaml'), os.path.join(case, 'recording.bag'), '--auto', '--quiet',
                '--output', output]
     begun = time.monotonic()
-    try:
-        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=TIME_LIMIT)
-    except subprocess.TimeoutExpired:
-        return 'not done after %d s' % TIME_LIMIT
-    if done.returncode not in (0, 3):  # 3: answered, but not to be used
-        return 'exit code %d: %s' % (done.returncode, (done.stderr.strip().splitlines() or [''])[-1])
+    call(command, TIME_LIMIT)
     with open(os.path.join(output, 'diagnosis.json')) as file:
         return dict(json.load(file), whole=time.monotonic() - begun)
 
@@ -74,9 +70,10 @@ def main():
     for name in names:
         with open(os.path.join(arguments.shared, 'cases_truth', name + '.yaml')) as file:
             truth = yaml.safe_load(file)
-        diagnosis = run(arguments, name)
-        if isinstance(diagnosis, str):
-            print('%-8s %-22s %s' % (name, truth['effect'], diagnosis), flush=True)
+        try:
+            diagnosis = run(arguments, name)
+        except Failed as error:
+            print('%-8s %-22s %s' % (name, truth['effect'], error), flush=True)
             continue
         right, error = score(diagnosis, truth)
         for key, value in right.items():

@@ -18,7 +18,8 @@ from figures import plt, save
 from foreign_draws import honest, ignored
 from foreign_truths import truth_list
 from study_arguments import study_arguments
-from study import MODULUS, VISIBLE, Failed, call, confusion_table, picture
+from study import MODULUS, TIME_LIMIT, VISIBLE, confusion_table, picture
+from tool_runs import Failed, call
 from trust_study import shown_share
 
 OFF = 0.03          # of E
@@ -70,12 +71,12 @@ def draw(task):
                    '--auto', '--quiet', '--allow-outside', '--output', folder]
         for effect in ignored(drawn):
             command += ['--ignore', effect]
-        call(command)
+        call(command, TIME_LIMIT)
         with open(os.path.join(folder, 'diagnosis.json')) as file:
             row.update(answer(json.load(file), truth))
         if row['class'] == 'two' and not both(row):
             row['second_gains'] = second_gains(arguments, row, folder)
-    except (Failed, OSError, subprocess.TimeoutExpired) as error:
+    except (Failed, OSError) as error:
         row['failed'] = str(error)
     row['whole'] = round(time.time() - begun, 1)
     if not arguments.keep:
@@ -88,7 +89,7 @@ def second_gains(arguments, row, folder):
     found = sorted(row['hidden'], key=lambda effect: effect not in row['final'])
     with tempfile.TemporaryDirectory() as output:
         call([arguments.diagnose, os.path.join(folder, 'model.yaml'), os.path.join(folder, 'recording.bag'), '--quiet',
-              '--allow-outside', '--output', output] + [word for effect in found for word in ('--add', effect)])
+              '--allow-outside', '--output', output] + [word for effect in found for word in ('--add', effect)], TIME_LIMIT)
         with open(os.path.join(output, 'diagnosis.json')) as file:
             return short(json.load(file)['steps'][-1]['log_bayes_factor'])
 

@@ -5,7 +5,6 @@ import json
 import multiprocessing
 import os
 import random
-import subprocess
 import sys
 import time
 
@@ -16,6 +15,7 @@ import yaml
 from figures import plt, save
 from organs import organs
 from scenes import STEP, TRIAL_STEP, scenes, step_of
+from tool_runs import Failed, call
 
 DURATION = 1.6    # s
 TOPIC = '/tissue/markers'
@@ -47,16 +47,6 @@ MOST_TRIALS = 5   # of a strength
 STRONGEST = 10.0
 
 
-class Failed(Exception):
-    pass
-
-
-def call(command):
-    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=TIME_LIMIT)
-    if done.returncode not in (0, 3):  # 3: answered, but not to be used
-        raise Failed((done.stderr.strip().splitlines() or ['exit code %d' % done.returncode])[-1])
-
-
 def write(folder, name, content):
     path = os.path.join(folder, name)
     with open(path, 'w') as file:
@@ -79,7 +69,7 @@ def simulate(arguments, folder, scene, modulus, hidden, strength, load=1.0, true
                               **({'loads': loads} if loads else {}),
                               'sensors': {TOPIC: {'noise': noise, 'memory': memory}}}}
     bag = os.path.join(folder, 'recording.bag')
-    call([arguments.simulate, write(folder, 'scene.yaml', content), '--output', bag, '--quiet'])
+    call([arguments.simulate, write(folder, 'scene.yaml', content), '--output', bag, '--quiet'], TIME_LIMIT)
     return bag
 
 
@@ -142,10 +132,10 @@ def draw(task):
             command.append('--auto')
         for name in sorted(like(hidden)) if absent and hidden != 'push' else []:
             command += ['--ignore', name]
-        call(command)
+        call(command, TIME_LIMIT)
         with open(os.path.join(folder, 'diagnosis.json')) as file:
             found = json.load(file)
-    except (Failed, subprocess.TimeoutExpired) as error:
+    except Failed as error:
         row['failed'] = str(error)
         return row
     first, last = found['steps'][0], found['steps'][-1]

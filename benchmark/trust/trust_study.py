@@ -19,7 +19,8 @@ import foreign
 from figures import plt, save
 from organs import organs
 from scenes import scenes
-from study import HIDDEN, ORGANS, MODULUS, Failed, load_for, observations, simulate
+from study import HIDDEN, ORGANS, MODULUS, load_for, observations, simulate
+from tool_runs import Failed, call
 
 LEVELS = (0.02, 0.05, 0.1, 0.2, 0.5)  # of the load
 BEYOND = {'density': 2.5}             # default tolerances that a constant is off, if it is not one; others: 5
@@ -141,12 +142,9 @@ def draw(task):
         prior = {'prior': float(modulus * rng.choice(STARTS)), 'factor': 3.0}
         errors.of_effect(model, 'elasticity')[0]['young_modulus'] = prior
         model_file = errors.write_yaml(os.path.join(folder, 'model.yaml'), model)
-        done = subprocess.run([arguments.estimate, model_file, recording, '--output', folder, '--quiet', '--allow-outside'], text=True,
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=TIME_LIMIT)
-        if done.returncode not in (0, 3):
-            raise Failed((done.stderr.strip().splitlines() or ['exit code %d' % done.returncode])[-1])
+        call([arguments.estimate, model_file, recording, '--output', folder, '--quiet', '--allow-outside'], TIME_LIMIT)
         row.update(published(os.path.join(folder, 'estimates.csv'), modulus))
-    except (Failed, subprocess.TimeoutExpired) as error:
+    except Failed as error:
         row['failed'] = str(error)
     if not arguments.keep:
         shutil.rmtree(folder)
@@ -261,7 +259,7 @@ def picture(rows, path):
 def simulate_own(task):
     try:
         own_truth(*task)
-    except (Failed, subprocess.TimeoutExpired) as error:
+    except Failed as error:
         print(task[1:], error)  # its draws fail and are counted
 
 
