@@ -137,11 +137,7 @@ Camera EstimatorInputs::camera_of(const std_msgs::Header& header, int width, int
   }
   if (!info) throw InputError(topic, "an image before any camera_info", "a message on " + settings.camera_info);
   Camera camera = to_camera(*info, settings, poses_.model_from(header, topic), settings.camera_info);
-  if (width != camera.width || height != camera.height) {
-    throw InputError(
-        topic, "an image of " + std::to_string(width) + " x " + std::to_string(height),
-        std::to_string(camera.width) + " x " + std::to_string(camera.height) + " as in " + settings.camera_info);
-  }
+  require_image_size({width, height}, {camera.width, camera.height}, topic, settings.camera_info);
   return camera;
 }
 

@@ -46,7 +46,7 @@ Observation to_observation(const sensor_msgs::PointCloud2& cloud, const Observat
 Camera to_camera(const sensor_msgs::CameraInfo& info, const ObservationSettings& settings,
                  const Eigen::Isometry3d& model_from_sensor, const std::string& topic);
 
-/// Throws InputError, naming both topics, for an image of another size than its camera's.
+/// Throws InputError, naming both topics or files, for an image or film of another size than its camera's.
 void require_image_size(const cv::Size& image, const cv::Size& camera, const std::string& topic,
                         const std::string& camera_info);
 

@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "nodes/estimator_inputs.hpp"
+#include "nodes/sensor_conversions.hpp"
 #include "tissue_stiffness/types/error.hpp"
 #include "tools/camera_file.hpp"
 #include "tools/film.hpp"
@@ -119,12 +120,7 @@ std::vector<const ObservationSettings*> contours_of(const ModelSettings& setting
 Messages read_film(const PackedFilm& packed, const ObservationSettings& sensor, const std::string& frame) {
   const FilmCamera camera = read_camera_file(packed.camera, sensor);
   auto film = std::make_shared<Film>(packed.film);
-  const cv::Size size = film->size();
-  if (size != cv::Size(camera.camera.width, camera.camera.height)) {
-    throw InputError(packed.film, std::to_string(size.width) + " x " + std::to_string(size.height) + " pixels",
-                     std::to_string(camera.camera.width) + " x " + std::to_string(camera.camera.height) + ", as " +
-                         packed.camera + " has it");
-  }
+  require_image_size(film->size(), {camera.camera.width, camera.camera.height}, packed.film, packed.camera);
   const double rate = camera.rate > 0.0 ? camera.rate : film->rate();
   if (!(rate > 0.0))
     throw InputError(packed.camera, "no key `rate`", "frames a second: " + packed.film + " does not say it");

@@ -104,6 +104,17 @@ TEST(CameraConversion, TakesPAndROfRectifiedImages) {
   expect_input_error([&] { rectified("/image_rect", true); }, {"/camera_info: P", "calibrate"});
 }
 
+TEST(CameraConversion, RefusesImagesOfAnotherSize) {
+  EXPECT_NO_THROW(require_image_size({640, 480}, {640, 480}, "/image", "/camera_info"));
+  for (const cv::Size& size : {cv::Size(640, 479), cv::Size(480, 640)}) {
+    expect_input_error(
+        [&] {
+          require_image_size(size, {640, 480}, "/image", "/camera_info");
+        },
+        {"/image", std::to_string(size.width) + " x " + std::to_string(size.height), "640 x 480 as in /camera_info"});
+  }
+}
+
 TEST(ImageConversion, GivesGreyOrBgr) {
   EXPECT_EQ(to_image(image("mono8", 1, 7), "/image").type(), CV_8UC1);
   EXPECT_EQ(to_image(image("8UC1", 1, 7), "/image").type(), CV_8UC1);
