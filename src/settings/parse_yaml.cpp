@@ -1,3 +1,4 @@
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <locale>
@@ -76,14 +77,49 @@ class Converter {
   int count_ = 0;
 };
 
+/// Notices where a document starts and whether it holds anything.
+class DocumentProbe : public YAML::EventHandler {
+ public:
+  YAML::Mark start = YAML::Mark::null_mark();
+  bool content = false;
+
+  void OnDocumentStart(const YAML::Mark& mark) override { start = mark; }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override { content = true; }
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override { content = true; }
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
+    content = true;
+  }
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
+    content = true;
+  }
+  void OnMapEnd() override {}
+};
+
+// YAML::LoadAll does not end where the parser stands still and finds one empty document after the other, as before ", a".
+int count_documents(const std::string& text) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  int count = 0;
+  for (int last = -1;;) {
+    DocumentProbe document;
+    if (!parser.HandleNextDocument(document)) return count;
+    if (document.start.pos <= last) throw YAML::ParserException(document.start, "a text that belongs to no value");
+    last = document.start.pos;
+    count += document.content ? 1 : 0;
+  }
+}
+
 }  // namespace
 
 Value parse_yaml(const std::string& text, const std::string& name) {
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.empty()) return Value::null(name);
-    if (documents.size() > 1) throw InputError(name, std::to_string(documents.size()) + " YAML documents", "one");
-    return Converter(name).convert(documents.front(), 0, "", 0);
+    const YAML::Node document = YAML::Load(text);
+    const int count = count_documents(text);
+    if (count > 1) throw InputError(name, std::to_string(count) + " YAML documents", "one");
+    return Converter(name).convert(document, 0, "", 0);
   } catch (const YAML::Exception& error) {
     throw InputError(name + ":" + std::to_string(error.mark.line + 1), error.msg, "YAML");
   }

@@ -152,6 +152,10 @@ TEST(Yaml, WrongTextIsRefusedWithItsLine) {
   expect_contains(parse("a: 1\nb: [1, 2\n"), {"m.yaml:", "allowed: YAML"});
   expect_contains(parse("a: *nowhere\n"), {"m.yaml:1", "allowed: YAML"});
   expect_contains(parse("a: 1\n---\nb: 1\n"), {"2 YAML documents"});
+  expect_contains(parse("a: 1\n---\n---\nb: 1\n"), {"2 YAML documents"});
+  EXPECT_EQ(parse("a: 1\n---\n"), "no error");
+  for (const char* text : {", a", ", a: 1}}\nb: 2\n"})  // where yaml-cpp's parser stands still
+    expect_contains(parse(text), {"m.yaml:1", "belongs to no value", "allowed: YAML"});
   expect_contains(parse("[1, 2]: 3\n"), {"a key that is not a plain word"});
   expect_contains(parse("a: &x [*x]\n"), {"less nesting"});
   std::string bomb = "a0: &a0 [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]\n";
