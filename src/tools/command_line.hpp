@@ -107,7 +107,7 @@ class CommandLine {
   const std::string& tool() const { return tool_; }
 
  private:
-  /// Of T, std::vector<T> and std::optional<T>.
+  /// Tells T, std::vector<T> and std::optional<T> apart.
   template <typename T>
   struct Values {
     using One = T;
