@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <set>
 
 #include "forward/reduced_trajectory.hpp"
 #include "meshing/farthest_nodes.hpp"
+#include "types/formatted.hpp"
 #include "types/plain_number.hpp"
 #include "types/two_digits.hpp"
 
@@ -63,14 +63,11 @@ std::string in_words(const MissingForce& force) {
   mean.normalize();
   const auto most = std::max_element(force.follows.begin(), force.follows.end(),
                                      [](const auto& a, const auto& b) { return a.second < b.second; });
-  char text[400];
-  std::snprintf(text, sizeof text,
-                "up to %s N/kg, around %s mm along (%.2f, %.2f, %.2f), %s N on the whole body, at %.2f s; "
-                "%.0f %% of it %s",
-                two_digits(size.maxCoeff()).c_str(), position_in_millimetres(centre).c_str(), mean.x(), mean.y(), mean.z(),
-                two_digits(force.total[worst].norm()).c_str(), force.time[worst], 100.0 * most->second,
-                most->first == "constant" ? "is constant" : ("follows the " + most->first).c_str());
-  return text;
+  return formatted(
+      "up to %s N/kg, around %s mm along (%.2f, %.2f, %.2f), %s N on the whole body, at %.2f s; %.0f %% of it %s",
+      two_digits(size.maxCoeff()).c_str(), position_in_millimetres(centre).c_str(), mean.x(), mean.y(), mean.z(),
+      two_digits(force.total[worst].norm()).c_str(), force.time[worst], 100.0 * most->second,
+      most->first == "constant" ? "is constant" : ("follows the " + most->first).c_str());
 }
 
 /// These are the body's lowest modes, and how the free run moves them.

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <numeric>
 #include <vector>
 
+#include "types/formatted.hpp"
 #include "types/plain_number.hpp"
 
 namespace tissue_stiffness {
@@ -16,12 +16,6 @@ constexpr double kLocal = 2.0;   // times the body's mean excess: a place that s
 constexpr double kAbove = 1.2;   // rms in sigmas above which an error is more than noise
 constexpr double kInside = 0.8;  // of the nodes that stand out: they lie in a region
 constexpr double kGrows = 0.5;   // correlation of error and motion over frames
-
-std::string format(const char* pattern, double a, double b = 0.0, double c = 0.0) {
-  char text[160];
-  std::snprintf(text, sizeof text, pattern, a, b, c);
-  return text;
-}
 
 // Returns the mean square error in sigmas of each mesh node that was seen.
 std::map<int, double> node_errors(const RecordingRows& rows) {
@@ -52,7 +46,7 @@ std::string where_it_fails(const RecordingFit& recording_fit, const RecordingRow
   const std::map<int, double> errors = node_errors(rows);
   double mean = 0.0;
   for (const auto& [node, error] : errors) mean += error / static_cast<double>(errors.size());
-  if (mean < kAbove * kAbove) return format("nowhere: %.2f sigma rms over the body", std::sqrt(mean));
+  if (mean < kAbove * kAbove) return formatted("nowhere: %.2f sigma rms over the body", std::sqrt(mean));
   std::vector<int> worst;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   double weight = 0.0;
@@ -62,12 +56,12 @@ std::string where_it_fails(const RecordingFit& recording_fit, const RecordingRow
     centre += (error - 1.0) * recording_fit.model().mesh().nodes.col(node);
     weight += error - 1.0;
   }
-  if (worst.empty()) return format("all over the body, %.1f sigma rms", std::sqrt(mean));
+  if (worst.empty()) return formatted("all over the body, %.1f sigma rms", std::sqrt(mean));
   centre /= weight;
   double square = 0.0;
   for (const int node : worst) square += errors.at(node) / static_cast<double>(worst.size());
   return "around " + position_in_millimetres(centre) + " mm" + region_around(recording_fit, worst) +
-         format(": %.1f sigma rms there, %.1f over the body", std::sqrt(square), std::sqrt(mean));
+         formatted(": %.1f sigma rms there, %.1f over the body", std::sqrt(square), std::sqrt(mean));
 }
 
 std::string when_it_fails(const RecordingFit& recording_fit, const RecordingRows& rows) {
@@ -87,10 +81,11 @@ std::string when_it_fails(const RecordingFit& recording_fit, const RecordingRows
     const Eigen::Index from = k * frames / 3, to = (k + 1) * frames / 3;
     return error.segment(from, to - from).sum() / error.sum();
   };
-  std::string text = format("%.0f, %.0f and %.0f %% of it in the first, second and last third", 100.0 * third(0),
-                            100.0 * third(1), 100.0 * third(2));
-  text += format("; largest at %.2f s (%.1f sigma)",
-                 recording_fit.recording().frames[static_cast<std::size_t>(worst)].time - start, std::sqrt(error[worst]));
+  std::string text = formatted("%.0f, %.0f and %.0f %% of it in the first, second and last third", 100.0 * third(0),
+                               100.0 * third(1), 100.0 * third(2));
+  text +=
+      formatted("; largest at %.2f s (%.1f sigma)",
+                recording_fit.recording().frames[static_cast<std::size_t>(worst)].time - start, std::sqrt(error[worst]));
   const Eigen::ArrayXd e = error.cwiseSqrt().array() - error.cwiseSqrt().mean(), m = motion.array() - motion.mean();
   const double correlation = (e * m).sum() / std::sqrt(e.square().sum() * m.square().sum());
   if (correlation > kGrows) text += "; grows with the displacement";

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
+#include "types/formatted.hpp"
 #include "types/two_digits.hpp"
 
 namespace tissue_stiffness {
@@ -46,12 +46,10 @@ StateJudgement by_size(const StateEvidence& e) {
 }  // namespace
 
 std::string misfit_text(const MisfitTest& test) {
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "along the body's lowest modes, and in forces, the misfit is %s times the noise's variance, %.1f standard "
-                "deviations beyond what passes",
-                two_digits(1.0 + test.excess()).c_str(), test.z());
-  return text;
+  return formatted(
+      "along the body's lowest modes, and in forces, the misfit is %s times the noise's variance, %.1f standard deviations "
+      "beyond what passes",
+      two_digits(1.0 + test.excess()).c_str(), test.z());
 }
 
 std::string unlearnt(const std::vector<FreeParameter>& free, const Eigen::MatrixXd& covariance, double widest,

@@ -2,19 +2,12 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdio>
 #include <ostream>
 #include <string>
 
-namespace tissue_stiffness {
+#include "types/formatted.hpp"
 
-/// Returns a line of at most 255 characters, by a pattern of std::snprintf.
-template <typename... Arguments>
-std::string formatted(const char* pattern, Arguments... arguments) {
-  char line[256];
-  std::snprintf(line, sizeof line, pattern, arguments...);
-  return line;
-}
+namespace tissue_stiffness {
 
 /// Puts blanks before a text until it has so many characters. A pattern would count the bytes of a µ.
 inline std::string right_aligned(const std::string& text, std::size_t width) {

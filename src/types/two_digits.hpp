@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 
+#include "types/formatted.hpp"
 #include "types/plain_number.hpp"
 
 namespace tissue_stiffness {
@@ -15,9 +15,7 @@ inline std::string two_digits(double value) {
   const int place = std::isfinite(value) && value != 0.0 ? leading_place(value, 2) : 0;
   if (std::isfinite(value) && value != 0.0 && place >= -4 && place <= 15)
     return with_decimals(value, std::max(0, 1 - place));
-  char text[40];
-  std::snprintf(text, sizeof text, "%.2g", value);
-  return text;
+  return formatted("%.2g", value);
 }
 
 }  // namespace tissue_stiffness
