@@ -32,8 +32,8 @@ std::map<int, double> node_errors(const RecordingRows& rows) {
 
 std::string region_around(const RecordingFit& recording_fit, const std::vector<int>& nodes) {
   for (const auto& [name, region] : recording_fit.model().body().regions) {
-    const auto inside = std::count_if(nodes.begin(), nodes.end(), [&](int node) {
-      return std::binary_search(region.nodes.begin(), region.nodes.end(), node);
+    const auto inside = std::count_if(nodes.begin(), nodes.end(), [&own = region.nodes](int node) {
+      return std::binary_search(own.begin(), own.end(), node);
     });
     if (static_cast<double>(inside) > kInside * static_cast<double>(nodes.size())) return ", in region " + name;
   }
