@@ -28,10 +28,19 @@ class EstimatorStatus:
 
     @classmethod
     def wait_for_waiting_frames(cls, seconds):
+        cls.wait_for_values({'frames waiting': '0'}, seconds)
+
+    @classmethod
+    def wait_for_reprocessing(cls, seconds):
+        cls.wait_for_values({'frames waiting': '0', 'reprocessing': 'no'}, seconds)
+
+    # The first two messages may have been made before the call.
+    @classmethod
+    def wait_for_values(cls, wanted, seconds):
         with cls.changed:
             heard = cls.heard
-            if not cls.changed.wait_for(lambda: cls.heard >= heard + 3 and cls.values.get('frames waiting') == '0', seconds):
-                raise AssertionError('frames still wait: %s' % cls.values)
+            if not cls.changed.wait_for(lambda: cls.heard >= heard + 3 and wanted.items() <= cls.values.items(), seconds):
+                raise AssertionError('%s is not yet true: %s' % (wanted, cls.values))
 
 
 class OwnEstimator(EstimatorStatus):
