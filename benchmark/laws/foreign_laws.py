@@ -16,10 +16,11 @@ LENGTH, WIDTH = 0.1, 0.02
 FORCE = np.array([1.6, 0.12, 0.08])  # [N] on the end face
 HOLD, STEPS = 2.0, 24                # [s] each, and how many
 NOISE = 1e-4                         # [m]
-POISSON_RATIO = {'nearly_incompressible': 0.499}  # of these; 0.45 of the others
+POISSON_RATIO = {'nearly_incompressible': 0.499, 'incompressible': 0.4999}  # of these; 0.45 of the others
 LAWS = {  # what the tool's model has beside neo-Hookean elasticity
     'neo_hookean': '',
     'nearly_incompressible': '',
+    'incompressible': '',
     'mooney_rivlin': 'mooney_rivlin: {share: 0.7}',
     'ogden': 'ogden: {exponent: -4}',
     'strain_stiffening': 'strain_stiffening: {exponent: 2}',
@@ -60,14 +61,14 @@ def energy(ufl, law, f):
 def elements(ufl, law, cell):
     """Displacements of second order, and for nearly incompressible tissue a pressure of first order (Taylor and Hood)."""
     displacement = ufl.VectorElement('CG', cell, 2)
-    if law != 'nearly_incompressible':
+    if law not in POISSON_RATIO:
         return displacement
     return ufl.MixedElement(displacement, ufl.FiniteElement('CG', cell, 1))
 
 
 def potential(ufl, law, state):
     """psi, and the displacement in it."""
-    if law != 'nearly_incompressible':
+    if law not in POISSON_RATIO:
         return energy(ufl, law, ufl.Identity(3) + ufl.grad(state)), state
     first_lame, shear = lame(law)
     u, pressure = ufl.split(state)
@@ -96,7 +97,7 @@ def solve(simulate, law, nodes):
     ds = ufl.Measure('ds', mesh, subdomain_data=tags)(1)
     dx = ufl.Measure('dx', mesh, metadata={'quadrature_degree': 4})
     held = dolfinx.mesh.locate_entities_boundary(mesh, 2, lambda x: np.abs(x[0]) < 1e-6)
-    if law == 'nearly_incompressible':
+    if law in POISSON_RATIO:
         own, dofs = space.sub(0).collapse()
         clamp = fem.dirichletbc(fem.Function(own), fem.locate_dofs_topological((space.sub(0), own), 2, held), space.sub(0))
     else:

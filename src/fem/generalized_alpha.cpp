@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <Eigen/IterativeLinearSolvers>
+#include <Eigen/LU>
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -20,7 +21,6 @@ constexpr int kPatience = 12;     // iterations of a step before the factor is r
 constexpr int kMostRenewals = 6;  // of the factor within a step
 constexpr double kGrowth = 2.0;   // of a correction, at which iterations are taken to diverge
 constexpr int kYoung = 4;         // steps that a factor's first iterations are counted over
-constexpr double kOlder = 0.2;    // share of the last step's acceleration in the first guess
 constexpr int kMaxHalvings = 10;
 constexpr int kMostCuts = 6;              // of a correction that turns an element inside out
 constexpr double kSameStep = 0.02;        // relative change of the step that a factor survives
@@ -34,12 +34,13 @@ void zero_fixed(Eigen::VectorXd& x, const std::vector<char>& fixed) {
   }
 }
 
-void turn_nodes(const Eigen::Matrix3Xd& turn, bool back, Eigen::Ref<Eigen::VectorXd> x) {
-  for (Eigen::Index i = 0; i < turn.cols(); i += 3) {
-    const Eigen::Matrix3d r = turn.middleCols<3>(i);
-    const Eigen::Vector3d turned =
-        back ? Eigen::Vector3d(r.transpose() * x.segment<3>(i)) : Eigen::Vector3d(r * x.segment<3>(i));
-    x.segment<3>(i) = turned;
+// Multiplies each node's part of x by its matrix, or by the transposed one.
+void multiply_nodes(const Eigen::Matrix3Xd& matrices, bool transposed, Eigen::Ref<Eigen::VectorXd> x) {
+  for (Eigen::Index i = 0; i < matrices.cols(); i += 3) {
+    const Eigen::Matrix3d m = matrices.middleCols<3>(i);
+    const Eigen::Vector3d product =
+        transposed ? Eigen::Vector3d(m.transpose() * x.segment<3>(i)) : Eigen::Vector3d(m * x.segment<3>(i));
+    x.segment<3>(i) = product;
   }
 }
 
@@ -181,8 +182,11 @@ void GeneralizedAlpha::factorize(const Column& c) {
     column.updates.clear();
     column.last = kInfinity;
   }
-  c.system->find_rotations(c.middle.displacement, factored_rotations_);
-  turned_ = false;
+  c.system->find_deformation(c.middle.displacement, factored_inverse_);
+  for (Eigen::Index i = 0; i < factored_inverse_.cols(); i += 3) {
+    factored_inverse_.middleCols<3>(i) = factored_inverse_.middleCols<3>(i).inverse().eval();
+  }
+  push_forward();
   factored_step_ = h;
   young_before_ = young_;
   young_ = excess_ = 0.0;
@@ -190,26 +194,33 @@ void GeneralizedAlpha::factorize(const Column& c) {
   ++factorisations_;
 }
 
-// Finds the rotation of the material since the factor was made, because the factor's stiffness rotates with it.
-void GeneralizedAlpha::turn() {
-  const Column& c = columns_.front();
-  c.system->find_rotations(c.middle.displacement, turn_);
-  for (Eigen::Index i = 0; i < turn_.cols(); i += 3) {
-    const Eigen::Matrix3d now = turn_.middleCols<3>(i);
-    turn_.middleCols<3>(i) = now * factored_rotations_.middleCols<3>(i).transpose();
-  }
-  turned_ = true;
+// Finds each column's deformation since the factor was made, because the factor's stiffness moves with the material.
+void GeneralizedAlpha::push_forward() {
+  tbb::parallel_for(std::size_t{0}, columns_.size(), [&](std::size_t k) {
+    Column& c = columns_[k];
+    if (c.done) return;
+    c.system->find_deformation(c.middle.displacement, c.deformation);
+    for (Eigen::Index i = 0; i < c.deformation.cols(); i += 3) {
+      c.deformation.middleCols<3>(i) *= factored_inverse_.middleCols<3>(i);
+    }
+  });
 }
 
-// Extrapolates from displacement, velocity and acceleration. The acceleration oscillates in modes that the steps do not
-// resolve, and a part of the previous one improves the guess.
+// Extrapolates the mean velocities of the last two steps. They hold nothing of the accelerations of modes that the steps
+// do not resolve, which oscillate, or which a sudden load starts with. The first steps keep the velocity.
 bool GeneralizedAlpha::start() {
   std::atomic<bool> fine{true};
   tbb::parallel_for(std::size_t{0}, columns_.size(), [&](std::size_t i) {
     Column& c = columns_[i];
     const DynamicState& s = *c.before;
-    c.increment = c.step * s.velocity + 0.5 * c.step * c.step * s.acceleration;
-    if (c.reached == s.time) c.increment -= 0.5 * kOlder * c.step * c.step * (s.acceleration - c.earlier_acceleration);
+    if (c.reached != s.time) c.last_step = c.earlier_step = 0.0;
+    if (c.earlier_step > 0.0) {
+      const double trend = (c.last_step + c.step) / (c.last_step + c.earlier_step);
+      c.increment =
+          (1.0 + trend) * c.step / c.last_step * c.last_increment - trend * c.step / c.earlier_step * c.earlier_increment;
+    } else {
+      c.increment = c.step * s.velocity;
+    }
     c.last = kInfinity;
     c.rate = 1.0;
     c.done = false;
@@ -230,13 +241,13 @@ void GeneralizedAlpha::find_directions() {
     auto d = directions_.col(static_cast<Eigen::Index>(k));
     d = active_[k]->residual;
     active_[k]->updates.before(d);
-    if (turned_) turn_nodes(turn_, true, d);
+    multiply_nodes(active_[k]->deformation, true, d);
   });
   solver_.solve_roughly_in_place(directions_.leftCols(static_cast<Eigen::Index>(active_.size())));
   tbb::parallel_for(std::size_t{0}, active_.size(), [&](std::size_t k) {
     Column& c = *active_[k];
     c.direction = directions_.col(static_cast<Eigen::Index>(k));
-    if (turned_) turn_nodes(turn_, false, c.direction);
+    multiply_nodes(c.deformation, false, c.direction);
     c.updates.after(c.direction);
   });
 }
@@ -318,7 +329,7 @@ bool GeneralizedAlpha::try_step(std::vector<DynamicState>& states, const std::ve
     if (!solver_.ready() || other_step || excess_ > kWorthIterations * worth_ * solver_.cost()) {
       factorize(columns_.front());
     } else {
-      turn();
+      push_forward();
     }
     const int iterations = iterate();
     if (iterations == 0) return false;
@@ -351,8 +362,10 @@ void GeneralizedAlpha::accept(Column& c, DynamicState& state) const {
     relax(branches, c.step, c.strain_before, c.strain, state.relaxed);
   }
   state.displacement.swap(u);
-  c.earlier_acceleration.swap(state.acceleration);
   state.acceleration.swap(a);
+  c.earlier_increment.swap(c.last_increment);
+  c.last_increment.swap(c.increment);
+  c.earlier_step = std::exchange(c.last_step, c.step);
   state.time += c.step;
   c.reached = state.time;
 }

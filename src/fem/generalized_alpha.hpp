@@ -35,9 +35,9 @@ class DynamicSystem {
   /// Subtracts the branches' force at displacement u, where `stretch` is sum modulus (strain - z).
   virtual void subtract_relaxing_force(const Eigen::VectorXd& u, const Eigen::VectorXd& stretch,
                                        Eigen::VectorXd& force) const;
-  /// Finds the rotation of the material at each node, 3 x 3n, if the stiffness rotates with it. Otherwise `rotations` is
-  /// empty.
-  virtual void find_rotations(const Eigen::VectorXd&, Eigen::Matrix3Xd& rotations) const { rotations.resize(3, 0); }
+  /// Finds the deformation gradient of the material at each node, 3 x 3n, if the stiffness moves with the material.
+  /// Otherwise `gradients` is empty.
+  virtual void find_deformation(const Eigen::VectorXd&, Eigen::Matrix3Xd& gradients) const { gradients.resize(3, 0); }
 };
 
 /// Coefficients of the generalised-alpha family (Chung & Hulbert 1993, eq. 17, 18, 25).
@@ -61,9 +61,11 @@ void start_relaxed(const DynamicSystem& system, DynamicState& state);
 /// unconditionally stable. Spectral radius 1 here means Newmark's average acceleration (beta = 1/4, gamma = 1/2), which
 /// conserves the energy of a linear system.
 ///
-/// The balance is solved by quasi-Newton iterations (BFGS: Matthies & Strang 1979) with the Jacobian of an earlier instant,
-/// which is rotated with the material. The factor is renewed when its age has cost more iterations than a factorisation is
-/// worth, or when the iterations diverge. A step that still fails is cut in halves.
+/// The balance is solved by quasi-Newton iterations (BFGS: Matthies & Strang 1979) with the Jacobian J of an earlier
+/// instant, which is pushed forward with the material: its inverse becomes F J^-1 F^T, where F is the deformation gradient
+/// since that instant at each node. This keeps the divergence of a displacement (Piola's transformation, Marsden & Hughes
+/// 1983, theorem 1.7.20), so that it serves nearly incompressible tissue, too. The factor is renewed when its age has cost
+/// more iterations than a factorisation is worth, or when the iterations diverge. A step that still fails is cut in halves.
 ///
 /// Similar systems of one size, such as a model at several parameters, are stepped together. The first one's factor serves
 /// all of them, and each solution with it covers all their columns. A step that keeps the factor and is not cut allocates
@@ -104,7 +106,9 @@ class GeneralizedAlpha {
     double last = 0.0;  ///< size of the last correction
     double rate = 1.0;  ///< ratio of the last two corrections
     bool done = false;
-    Eigen::VectorXd earlier_acceleration;                       ///< acceleration before the last step
+    Eigen::Matrix3Xd deformation;                               ///< of each node since the factor was made, or empty
+    Eigen::VectorXd last_increment, earlier_increment;          ///< of the last two steps
+    double last_step = 0.0, earlier_step = 0.0;                 ///< their lengths [s]; 0: no such step
     double reached = std::numeric_limits<double>::quiet_NaN();  ///< time after the last step [s]
   };
   enum class Progress { going, done, slow, failed };
@@ -120,7 +124,7 @@ class GeneralizedAlpha {
   bool move();
   bool move(Column& column) const;
   void factorize(const Column& column);
-  void turn();
+  void push_forward();
   void note_age(int iterations);
   void find_acceleration(const Column& column, const Eigen::VectorXd& increment, Eigen::VectorXd& acceleration) const;
   void find_residual(Column& column, const Eigen::VectorXd& increment, Eigen::VectorXd& residual) const;
@@ -132,8 +136,7 @@ class GeneralizedAlpha {
   std::vector<Column*> active_;  ///< columns that are not done
   Eigen::MatrixXd directions_;   ///< of the active columns, in its first columns
   SparseSolver solver_;
-  Eigen::Matrix3Xd factored_rotations_, turn_;  ///< of each node: when the factor was made, and since then
-  bool turned_ = false;                         ///< turn_ holds a rotation
+  Eigen::Matrix3Xd factored_inverse_;  ///< inverse of each node's deformation gradient when the factor was made
   double factored_step_ = 0.0;
   /// Mean iterations of the first steps with this factor and with the last one, and the sum of later iterations beyond
   /// them.

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fem/generalized_alpha.hpp"
-#include "fem/nodal_rotation.hpp"
+#include "fem/nodal_deformation.hpp"
 #include "forward/forward_model.hpp"
 
 namespace tissue_stiffness {
@@ -70,7 +70,7 @@ class ModelSystem : public DynamicSystem {
   SparseMatrix friction(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const override;
   /// Returns whether the mass can be lumped, and no force changes faster with the velocity than explicit steps can follow.
   bool supports_explicit_steps() const { return explicit_steps_; }
-  void find_rotations(const Eigen::VectorXd& u, Eigen::Matrix3Xd& rotations) const override;
+  void find_deformation(const Eigen::VectorXd& u, Eigen::Matrix3Xd& gradients) const override;
   /// Returns the forces of the springs that impose motions, and of tools [N], see Model::find_reactions.
   Eigen::VectorXd reactions(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const;
   /// Returns kinetic and stored energy less the work of gravity [J].
@@ -83,7 +83,7 @@ class ModelSystem : public DynamicSystem {
   std::vector<char> fixed_;
   std::vector<Relaxation> relaxations_;
   Eigen::VectorXd gravity_;
-  std::optional<NodalRotations> rotations_;  ///< if the whole stiffness rotates with the material
+  std::optional<NodalDeformation> deformation_;  ///< if the whole stiffness moves with the material
   bool damped_ = false, linear_part_ = false, velocity_tangent_ = false, explicit_steps_ = true, strains_relax_ = false;
 };
 

@@ -1,4 +1,4 @@
-#include "fem/nodal_rotation.hpp"
+#include "fem/nodal_deformation.hpp"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -9,27 +9,12 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr int kGrain = 64;  // nodes that are worth a task
-constexpr int kMostIterations = 20;
-constexpr double kPrecision = 1e-6;
-constexpr double kFlat = 0.05;  // determinant below which a rotation says nothing
-
-// Uses Newton's iteration for the polar decomposition (Higham 1986).
-Eigen::Matrix3d rotation(const Eigen::Matrix3d& f) {
-  if (!(f.determinant() > kFlat)) return Eigen::Matrix3d::Identity();
-  Eigen::Matrix3d r = f;
-  for (int k = 0; k < kMostIterations; ++k) {
-    const Eigen::Matrix3d next = 0.5 * (r + r.inverse().transpose());
-    const bool settled = (next - r).cwiseAbs().maxCoeff() < kPrecision;
-    r = next;
-    if (settled) break;
-  }
-  return r;
-}
+constexpr int kGrain = 64;      // nodes that are worth a task
+constexpr double kFlat = 0.05;  // determinant below which the gradient has no use
 
 }  // namespace
 
-NodalRotations::NodalRotations(const Discretisation& fem) : fem_(fem) {
+NodalDeformation::NodalDeformation(const Discretisation& fem) : fem_(fem) {
   const auto nodes = static_cast<std::size_t>(fem.node_count());
   std::vector<std::map<int, Eigen::Vector3d>> sums(nodes);
   std::vector<double> volume(nodes, 0.0);
@@ -60,8 +45,8 @@ NodalRotations::NodalRotations(const Discretisation& fem) : fem_(fem) {
   }
 }
 
-void NodalRotations::find(const Eigen::VectorXd& u, Eigen::Matrix3Xd& rotations) const {
-  rotations.resize(3, fem_.dof_count());
+void NodalDeformation::find(const Eigen::VectorXd& u, Eigen::Matrix3Xd& gradients) const {
+  gradients.resize(3, fem_.dof_count());
   tbb::parallel_for(tbb::blocked_range<int>(0, fem_.node_count(), kGrain), [&](const tbb::blocked_range<int>& part) {
     for (int node = part.begin(); node < part.end(); ++node) {
       Eigen::Matrix3d f = Eigen::Matrix3d::Identity();
@@ -69,7 +54,8 @@ void NodalRotations::find(const Eigen::VectorXd& u, Eigen::Matrix3Xd& rotations)
       for (int k = first_[at]; k < first_[at + 1]; ++k) {
         f.noalias() += u.segment<3>(3 * neighbours_[static_cast<std::size_t>(k)]) * gradients_.col(k).transpose();
       }
-      rotations.middleCols<3>(3 * node) = rotation(f);
+      if (!(f.determinant() > kFlat)) f.setIdentity();
+      gradients.middleCols<3>(3 * node) = f;
     }
   });
 }
