@@ -78,7 +78,7 @@ class Reducer {
         reduced_ = std::move(next);
       }
       if (helps) continue;
-      accepted = kAgain * error;
+      accepted = std::min(kAgain * error, kMostLeft);  // before it is given up, it is trained again
       break;
     }
     if (!(error < kMostLeft)) return {in_full(forward_), std::nullopt, {}, 0.0, 0.0};

@@ -3,13 +3,13 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "estimation/fit_alone.hpp"
 #include "estimation/joint_rows.hpp"
 #include "fit/ensemble.hpp"
 #include "forward/study_model.hpp"
+#include "types/formatted.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -248,10 +248,9 @@ class InputFit {
     if (variances <= std::max(1.0, known + kPlausible * std::sqrt(2.0 * known))) return;
     posterior_.set_nuisance_std(first, count, std::sqrt(square / std::max(1.0, known)));
     if (!answer.implausible.empty()) return;
-    char text[200];
-    std::snprintf(text, sizeof text, "the %s of %s would have to be %.3g %s, %.1f times its tolerance", group.error.c_str(),
+    answer.implausible =
+        formatted("the %s of %s would have to be %.3g %s, %.1f times its tolerance", group.error.c_str(),
                   group.input.c_str(), group.tolerance * std::sqrt(square / n), group.unit.c_str(), std::sqrt(square / n));
-    answer.implausible = text;
   }
 
   const JointRows& rows_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <limits>
 #include <utility>
@@ -17,6 +16,7 @@
 #include "tissue_stiffness/meshing/build_mesh.hpp"
 #include "tissue_stiffness/types/error.hpp"
 #include "tissue_stiffness/types/estimate.hpp"
+#include "types/formatted.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -183,10 +183,7 @@ std::string MeshError::why_not(const TetMesh& mesh) {
   if (mesh.node_count() > kMostNodes) return "the mesh has more than " + std::to_string(kMostNodes) + " nodes";
   const double needed = kMemory * mesh.node_count(), available = available_memory();
   if (needed < kMostMemory * available) return "";
-  char text[100];
-  std::snprintf(text, sizeof text, "it needs %.1f GB of memory, more than half of the %.1f GB that are free", needed,
-                available);
-  return text;
+  return formatted("it needs %.1f GB of memory, more than half of the %.1f GB that are free", needed, available);
 }
 
 std::string MeshError::why_not(const Model& model) {

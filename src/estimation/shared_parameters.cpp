@@ -1,10 +1,10 @@
 #include "estimation/shared_parameters.hpp"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "effects/registry.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "types/formatted.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -23,10 +23,8 @@ bool same_prior(const Quantity& a, const Quantity& b) {
 }
 
 std::string prior_text(const FreeParameter& free) {
-  char text[100];
-  std::snprintf(text, sizeof text, "%g %s, %s %g", free.prior.value, free.unit.c_str(),
-                free.prior.kind == Quantity::Kind::log_normal ? "factor" : "std", free.prior.spread);
-  return text;
+  return formatted("%g %s, %s %g", free.prior.value, free.unit.c_str(),
+                   free.prior.kind == Quantity::Kind::log_normal ? "factor" : "std", free.prior.spread);
 }
 
 // Throws InputError where a name of `own` is neither a parameter, an effect nor a topic of any recording.

@@ -3,7 +3,8 @@
 #include <ros/ros.h>
 
 #include <algorithm>
-#include <cstdio>
+
+#include "types/formatted.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -75,9 +76,7 @@ void Diagnostics::add_inputs(Status& status) const {
     const double age = (ros::WallTime::now() - input.last).toSec();
     status.addf("age of " + topic + " [s]", input.heard ? "%.1f" : "nothing for %.1f", age);
     if (!(age > longest_silence_) || status.level > Status::WARN) continue;
-    char text[64];
-    std::snprintf(text, sizeof text, " for %.0f s", age);
-    status.summary(Status::WARN, status.message + "; no message on " + topic + text);
+    status.summary(Status::WARN, status.message + "; no message on " + topic + formatted(" for %.0f s", age));
   }
 }
 

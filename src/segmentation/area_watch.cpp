@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "segmentation/outline.hpp"
+#include "types/formatted.hpp"
 #include "types/median.hpp"
 
 namespace tissue_stiffness {
@@ -41,9 +41,7 @@ Segmentation AreaWatch::segment(const cv::Mat& image, double stamp) {
     return found;
   }
   inner_->reset();
-  char reason[100];
-  std::snprintf(reason, sizeof(reason), "the outline's area jumps to %.2f times that of the frames before", area / before);
-  return {{}, reason};
+  return {{}, formatted("the outline's area jumps to %.2f times that of the frames before", area / before)};
 }
 
 void AreaWatch::reset() {

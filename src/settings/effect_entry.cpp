@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstdio>
 #include <cstdlib>
+
+#include "types/formatted.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
 std::string shown(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
+  return formatted("%.6g", value);
 }
 
 std::string shown(const Eigen::Vector3d& v) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -12,6 +11,7 @@
 #include "tools/read_text.hpp"
 #include "tools/versions.hpp"
 #include "types/csv.hpp"
+#include "types/formatted.hpp"
 #include "types/read_file.hpp"
 
 namespace tissue_stiffness {
@@ -41,11 +41,7 @@ class Hash {
       add(block.data(), static_cast<std::size_t>(stream.gcount()));
     }
   }
-  std::string text() const {
-    char out[17];
-    std::snprintf(out, sizeof out, "%016llx", static_cast<unsigned long long>(value_));
-    return out;
-  }
+  std::string text() const { return formatted("%016llx", static_cast<unsigned long long>(value_)); }
 
  private:
   std::uint64_t value_ = 0xcbf29ce484222325u;

@@ -3,9 +3,10 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <ostream>
 #include <utility>
+
+#include "types/formatted.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -37,8 +38,7 @@ void Progress::show(std::size_t done, std::size_t total) {
 void Progress::draw(std::size_t done, std::size_t total, double elapsed) {
   const double rate = elapsed > 0.0 ? static_cast<double>(done) / elapsed : 0.0;
   const double left = rate > 0.0 ? static_cast<double>(total - std::min(done, total)) / rate : 0.0;
-  char numbers[96];
-  std::snprintf(numbers, sizeof numbers, "%zu/%zu, %.3g/s, %.0f s left", done, total, rate, left);
+  const std::string numbers = formatted("%zu/%zu, %.3g/s, %.0f s left", done, total, rate, left);
   if (style_ == Style::lines) {
     out_ << what_ << ": " << numbers << std::endl;
     return;
@@ -70,15 +70,15 @@ void StepProgress::show(const std::string& step, std::size_t done, std::size_t t
   last_step_ = step;
   if (done == 0) counted_since_ = elapsed;
   if (!goes_on) ++steps_;
-  char head[64], count[64] = "";
-  std::snprintf(head, sizeof head, "%s [step %d, %.1f s", what_.c_str(), steps_, elapsed);
+  const std::string head = formatted("%s [step %d, %.1f s", what_.c_str(), steps_, elapsed);
+  std::string count;
   if (done > 0 && done * kTelling < total) {
-    std::snprintf(count, sizeof count, "; %zu of %zu done", done, total);
+    count = formatted("; %zu of %zu done", done, total);
   } else if (done > 0) {
     const double left = (elapsed - counted_since_) / static_cast<double>(done) * static_cast<double>(total - done);
-    std::snprintf(count, sizeof count, "; %zu of %zu done, %.0f s left", done, total, left);
+    count = formatted("; %zu of %zu done, %.0f s left", done, total, left);
   } else if (total > 0) {
-    std::snprintf(count, sizeof count, "; 0 of %zu done", total);
+    count = formatted("; 0 of %zu done", total);
   }
   const bool bar = style_ == Progress::Style::bar;
   out_ << (bar ? "\r" : "") << head << count << "] " << step << (bar ? "\033[K" : "\n") << std::flush;
