@@ -48,12 +48,23 @@ void describe_residual(const FittedModel& model, Diagnosis& out) {
   out.metres = {total, sigma, unknown, std::sqrt(std::max(0.0, total * total - sigma * sigma))};
 }
 
-BestExplanation best_explanation(const FittedModel& model, const Finding& finding) {
-  if (finding.refits.empty()) return {};
-  const auto named = [&](const Refit& r) { return !finding.set.empty() && r.effect == finding.set.front(); };
-  const auto at = std::find_if(finding.refits.begin(), finding.refits.end(), named);
-  const Refit& best = at == finding.refits.end() ? finding.refits.front() : *at;
-  return {{best.effect}, 1.0 - best.cost / model.rows.error.squaredNorm(), best.held_out_rms};
+BestExplanation best_explanation(const FittedModel& model, const Comparison& comparison) {
+  const std::vector<Hypothesis> named = named_hypotheses(comparison);
+  if (named.empty()) return {};
+  const Hypothesis& best = named.front();
+  RecordingRows compared = model.rows;
+  compared.error = best.explained->error;
+  return {best.effects, 1.0 - compared.error.squaredNorm() / model.rows.error.squaredNorm(),
+          rms_error(compared, model.recording_fit->recording(), true)};
+}
+
+std::vector<std::string> indistinguishable(const BestExplanation& best, const std::vector<std::string>& set) {
+  std::vector<std::string> out;
+  for (const std::string& effect : set) {
+    if (std::count(best.effects.begin(), best.effects.end(), effect) == 0) out.push_back(effect);
+  }
+  if (!out.empty() && !best.effects.empty()) out.insert(out.begin(), best.effects.front());
+  return out;
 }
 
 std::vector<RivalExplanation> rivals_of(const Finding& finding, const Refit& added) {

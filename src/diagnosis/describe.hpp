@@ -14,8 +14,12 @@ DiagnosisStep describe_step(const FittedModel& model, const Explained& explained
 /// Writes where and when the model's residual is large, and its parts. What the mesh changes is not known yet.
 void describe_residual(const FittedModel& model, Diagnosis& out);
 
-/// Returns what the best refit of the set explains of the model's residual, or else the best refit.
-BestExplanation best_explanation(const FittedModel& model, const Finding& finding);
+/// Returns what the most probable hypothesis that names any effect explains of the model's residual.
+BestExplanation best_explanation(const FittedModel& model, const Comparison& comparison);
+
+/// Returns the effects that the data cannot distinguish: the first one of the best explanation, and those of the set that
+/// are no part of it. Without any of these it is empty.
+std::vector<std::string> indistinguishable(const BestExplanation& best, const std::vector<std::string>& set);
 
 /// Returns the other explanations of the set, by their shares of its probability.
 std::vector<RivalExplanation> rivals_of(const Finding& finding, const Refit& added);

@@ -103,11 +103,9 @@ class ModelSearch {
     out_.none_of_these = finding_.comparison.none_of_these();
     out_.z = finding_.comparison.given().test.z;
     out_.set = finding_.set;
-    const bool several = grown_ && finding_.comparison.best().effects.size() > 1;
-    out_.best = best_explanation(model_, several ? *grown_ : finding_);
-    if (several) out_.best.effects.insert(out_.best.effects.begin(), finding_.set.front());
+    out_.best = best_explanation(model_, finding_.comparison);
     out_.candidates = finding_.effects;
-    out_.next_experiment = next_experiment(finding_.set);
+    out_.next_experiment = next_experiment(indistinguishable(out_.best, out_.set));
     out_.valid_given = out_.valid_final = validity();
     out_.sigmas.numerical = finding_.discretisation_error;
     out_.metres.numerical = finding_.discretisation_error * out_.metres.noise;

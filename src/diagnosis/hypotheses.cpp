@@ -172,7 +172,7 @@ Verdict judge(const Comparison& c) {
   return named && best.test.passes() ? Verdict::missing : Verdict::unexplained;
 }
 
-std::vector<std::string> believed_effects(const Comparison& comparison) {
+std::vector<Hypothesis> named_hypotheses(const Comparison& comparison) {
   std::vector<Hypothesis> named;
   for (const Hypothesis& h : comparison.hypotheses) {
     if (!h.effects.empty() && !h.superfluous) named.push_back(h);
@@ -180,9 +180,13 @@ std::vector<std::string> believed_effects(const Comparison& comparison) {
   find_probabilities_of(named);
   std::stable_sort(named.begin(), named.end(),
                    [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
+  return named;
+}
+
+std::vector<std::string> believed_effects(const Comparison& comparison) {
   std::vector<std::string> out;
   double held = 0.0;
-  for (const Hypothesis& h : named) {
+  for (const Hypothesis& h : named_hypotheses(comparison)) {
     if (held > kComparison.believed) break;
     held += h.probability;
     for (const std::string& effect : h.effects) {

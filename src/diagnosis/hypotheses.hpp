@@ -72,6 +72,9 @@ struct Comparison {
 /// `unexplained`.
 Verdict judge(const Comparison& comparison);
 
+/// Returns the hypotheses that name any effect, with their probabilities among each other, most probable first.
+std::vector<Hypothesis> named_hypotheses(const Comparison& comparison);
+
 /// Returns the effects of the fewest hypotheses that hold the believed part of the probability of all that name any effect,
 /// most probable first.
 std::vector<std::string> believed_effects(const Comparison& comparison);
