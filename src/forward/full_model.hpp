@@ -21,7 +21,9 @@ class FullModel : public ForwardModel {
     double step = 0.0;             ///< [s]; 0: a fraction of the time span of advance()
     int steps_per_frame = 4;       ///< used when step is 0
     double spectral_radius = 0.9;  ///< of generalised-alpha at infinite frequency; 1 is Newmark's average acceleration
-    double tolerance = 3e-6;  ///< neglected corrections over the body's size; small, as the filter uses differences of runs
+    /// Neglected corrections over the body's size: small, as the filter uses differences of runs. Under finite strain they
+    /// are smaller by the ratio of the moduli lambda and mu over 9, where that is above 1.
+    double tolerance = 3e-6;
     /// Called after every step with the states of all runs that are stepped together; null: not.
     std::function<void(const std::vector<DynamicState>&)> after_step = nullptr;
   };
