@@ -245,6 +245,7 @@ std::unique_ptr<Trajectories> FullModel::resume_all(const std::vector<Eigen::Vec
 std::unique_ptr<Trajectories> FullModel::start_all(const std::vector<Eigen::VectorXd>& thetas, double start) const {
   if (!hold_the_same(thetas)) return ForwardModel::start_all(thetas, start);
   std::vector<DynamicState> states;
+  states.reserve(thetas.size());
   for (const Eigen::VectorXd& theta : thetas) states.push_back(at_start(model_, theta, start, linear_form_.get()));
   return std::make_unique<FullTrajectories>(model_, thetas, std::move(states), options_);
 }

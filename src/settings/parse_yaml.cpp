@@ -51,18 +51,20 @@ class Converter {
       const std::string name = entry.first.Scalar();
       const std::string key = prefix.empty() ? name : prefix + "." + name;
       const int line = entry.first.Mark().line;
-      if (!seen.insert(name).second) {
-        throw InputError(name_ + ":" + std::to_string(line + 1) + ": " + key, "the key `" + name + "` twice",
-                         "one entry a key");
-      }
+      if (!seen.insert(name).second) refuse_second(name, key, line);
       entries.emplace_back(name, convert(entry.second, line, key, depth + 1));
     }
     return Value::map(std::move(entries), path);
   }
 
+  void refuse_second(const std::string& name, const std::string& key, int line) const {
+    throw InputError(name_ + ":" + std::to_string(line + 1) + ": " + key, "the key `" + name + "` twice",
+                     "one entry a key");
+  }
+
   static Value scalar(const YAML::Node& node, const std::string& path) {
     static const std::regex number(R"([-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?)");
-    const std::string text = node.Scalar();
+    const std::string& text = node.Scalar();
     if (node.Tag() == "!") return Value::text(text, path);  // quoted
     if (text == "true" || text == "false") return Value::boolean(text == "true", path);
     if (text.size() > 64 || !std::regex_match(text, number)) return Value::text(text, path);
