@@ -20,6 +20,13 @@ std::map<std::string, double> modulus_ratios(const std::map<std::string, double>
   return out;
 }
 
+// Returns the rows with the residual that is compared.
+RecordingRows rows_as_compared(const FittedModel& model, const Explained& explained) {
+  RecordingRows out = model.rows;
+  out.error = explained.error;
+  return out;
+}
+
 }  // namespace
 
 DiagnosisStep describe_step(const FittedModel& model, const Explained& explained, const std::vector<std::string>& effects) {
@@ -27,8 +34,7 @@ DiagnosisStep describe_step(const FittedModel& model, const Explained& explained
   DiagnosisStep step;
   step.effects = effects;
   step.parameters = model.recording_fit->model().parameters().values(model.fit.w);
-  RecordingRows compared = model.rows;
-  compared.error = explained.error;
+  const RecordingRows compared = rows_as_compared(model, explained);
   step.train_rms = rms_error(compared, recording, false);
   step.held_out_rms = rms_error(compared, recording, true);
   step.noise_floor = noise_floor(model.rows);
@@ -52,19 +58,9 @@ BestExplanation best_explanation(const FittedModel& model, const Comparison& com
   const std::vector<Hypothesis> named = named_hypotheses(comparison);
   if (named.empty()) return {};
   const Hypothesis& best = named.front();
-  RecordingRows compared = model.rows;
-  compared.error = best.explained->error;
+  const RecordingRows compared = rows_as_compared(model, *best.explained);
   return {best.effects, 1.0 - compared.error.squaredNorm() / model.rows.error.squaredNorm(),
           rms_error(compared, model.recording_fit->recording(), true)};
-}
-
-std::vector<std::string> indistinguishable(const BestExplanation& best, const std::vector<std::string>& set) {
-  std::vector<std::string> out;
-  for (const std::string& effect : set) {
-    if (std::count(best.effects.begin(), best.effects.end(), effect) == 0) out.push_back(effect);
-  }
-  if (!out.empty() && !best.effects.empty()) out.insert(out.begin(), best.effects.front());
-  return out;
 }
 
 std::vector<RivalExplanation> rivals_of(const Finding& finding, const Refit& added) {

@@ -17,10 +17,6 @@ void describe_residual(const FittedModel& model, Diagnosis& out);
 /// Returns what the most probable hypothesis that names any effect explains of the model's residual.
 BestExplanation best_explanation(const FittedModel& model, const Comparison& comparison);
 
-/// Returns the effects that the data cannot distinguish: the first one of the best explanation, and those of the set that
-/// are no part of it. Without any of these it is empty.
-std::vector<std::string> indistinguishable(const BestExplanation& best, const std::vector<std::string>& set);
-
 /// Returns the other explanations of the set, by their shares of its probability.
 std::vector<RivalExplanation> rivals_of(const Finding& finding, const Refit& added);
 

@@ -105,7 +105,7 @@ class ModelSearch {
     out_.set = finding_.set;
     out_.best = best_explanation(model_, finding_.comparison);
     out_.candidates = finding_.effects;
-    out_.next_experiment = next_experiment(indistinguishable(out_.best, out_.set));
+    out_.next_experiment = next_experiment(out_.set, out_.best);
     out_.valid_given = out_.valid_final = validity();
     out_.sigmas.numerical = finding_.discretisation_error;
     out_.metres.numerical = finding_.discretisation_error * out_.metres.noise;

@@ -92,8 +92,10 @@ std::string when_it_fails(const RecordingFit& recording_fit, const RecordingRows
   return text;
 }
 
-std::string next_experiment(const std::vector<std::string>& set) {
-  if (set.size() < 2) return "";
+std::string next_experiment(const std::vector<std::string>& set, const BestExplanation& best) {
+  std::vector<std::string> alike = others_in_set(set, best);
+  if (alike.empty() || best.effects.empty()) return "";
+  alike.insert(alike.begin(), best.effects.front());
   struct Hint {
     const char *a, *b, *experiment;
   };
@@ -110,12 +112,12 @@ std::string next_experiment(const std::vector<std::string>& set) {
       {"geometric_nonlinearity", "strain_stiffening", "a load twice as large: stiffening grows faster"},
   };
   for (const Hint& hint : hints) {
-    const bool has_a = std::find(set.begin(), set.end(), hint.a) != set.end();
-    const bool has_b = std::find(set.begin(), set.end(), hint.b) != set.end();
+    const bool has_a = std::find(alike.begin(), alike.end(), hint.a) != alike.end();
+    const bool has_b = std::find(alike.begin(), alike.end(), hint.b) != alike.end();
     if (has_a && has_b) return hint.experiment;
   }
   return "another load: a second direction, or half and twice the force, with points tracked near supports and loads; " +
-         set[0] + " and " + set[1] + " scale differently with it";
+         alike[0] + " and " + alike[1] + " scale differently with it";
 }
 
 }  // namespace tissue_stiffness

@@ -17,7 +17,7 @@ std::string where_it_fails(const RecordingFit& recording_fit, const RecordingRow
 /// Says in which part of the recording the error lies, and whether it grows with the motion.
 std::string when_it_fails(const RecordingFit& recording_fit, const RecordingRows& rows);
 
-/// Returns the recording that would tell the effects of a set apart; empty for a set of one.
-std::string next_experiment(const std::vector<std::string>& set);
+/// Returns the recording that would tell the best explanation from the others of the set; empty where there are no others.
+std::string next_experiment(const std::vector<std::string>& set, const BestExplanation& best);
 
 }  // namespace tissue_stiffness

@@ -22,29 +22,12 @@ constexpr double kMostForTools = 0.3;      // likewise
 constexpr double kExplicitSteps =
     250;  // explicit steps that one call of advance() may take before implicit ones are cheaper
 
-// Returns the largest ratio of the moduli lambda and mu of a law of finite strain in the body.
-double largest_lame_ratio(const Model& model, const Eigen::VectorXd& theta) {
-  const Model::Point at = model.point(theta);
-  double largest = 0.0;
-  for (int e = 0; e < model.fem().element_count(); ++e) {
-    Lame sum{0.0, 0.0};
-    for (std::size_t i = 0; i < model.parts().size(); ++i) {
-      const FiniteStrainForm* form = model.parts()[i].effect->finite_strain();
-      if (form == nullptr || form->point_form() == nullptr) continue;
-      const Lame own = form->point_form()->rest_moduli(e, 0, at.parts[i].parameters);
-      sum = {sum.lambda + own.lambda, sum.mu + own.mu};
-    }
-    if (sum.mu > 0.0) largest = std::max(largest, sum.lambda / sum.mu);
-  }
-  return largest;
-}
-
 // Returns the largest error of a displacement [m]. The springs of a moved region turn it into an error of its reaction. In
 // nearly incompressible tissue it becomes an error of the pressure, lambda / mu times that of the shear stress. Such a
 // pressure rings from step to step, and makes the tangent indefinite where it reaches mu.
-double tolerance_of(const Model& model, const Eigen::VectorXd& theta, double share) {
+double tolerance_of(const Model& model, const ModelSystem& system, double share) {
   if (!model.reactions().empty()) share *= kForReactions;
-  if (model.may_be_finite()) share /= std::max(1.0, largest_lame_ratio(model, theta) / kCompressible);
+  if (model.may_be_finite()) share /= std::max(1.0, system.largest_lame_ratio() / kCompressible);
   return share * body_size(model.mesh().nodes);
 }
 
@@ -81,7 +64,7 @@ class FullTrajectories : public Trajectories {
       : options_(options),
         systems_(make_systems(model, thetas)),
         stepper_(views(systems_), radius_of(model, options.spectral_radius),
-                 tolerance_of(model, thetas.front(), options.tolerance)),
+                 tolerance_of(model, *systems_.front(), options.tolerance)),
         states_(std::move(states)),
         reactions_(states_.size(), Eigen::MatrixXd(model.output_size() - model.fem().dof_count(), 2)) {}
 
@@ -321,6 +304,21 @@ SparseMatrix ModelSystem::friction(double time, const Eigen::VectorXd& u, const 
 
 void ModelSystem::find_deformation(const Eigen::VectorXd& u, Eigen::Matrix3Xd& gradients) const {
   deformation_ ? deformation_->find(u, gradients) : DynamicSystem::find_deformation(u, gradients);
+}
+
+double ModelSystem::largest_lame_ratio() const {
+  double largest = 0.0;
+  for (int e = 0; e < model_.fem().element_count(); ++e) {
+    Lame sum{0.0, 0.0};
+    for (std::size_t i = 0; i < model_.parts().size(); ++i) {
+      const FiniteStrainForm* form = model_.parts()[i].effect->finite_strain();
+      if (form == nullptr || form->point_form() == nullptr) continue;
+      const Lame own = form->point_form()->rest_moduli(e, 0, point_.parts[i].parameters);
+      sum = {sum.lambda + own.lambda, sum.mu + own.mu};
+    }
+    if (sum.mu > 0.0) largest = std::max(largest, sum.lambda / sum.mu);
+  }
+  return largest;
 }
 
 Eigen::VectorXd ModelSystem::reactions(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const {

@@ -72,6 +72,8 @@ class ModelSystem : public DynamicSystem {
   SparseMatrix friction(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const override;
   /// Returns whether the mass can be lumped, and no force changes faster with the velocity than explicit steps can follow.
   bool supports_explicit_steps() const { return explicit_steps_; }
+  /// Returns the largest ratio of the moduli lambda and mu of a law of finite strain in the body.
+  double largest_lame_ratio() const;
   void find_deformation(const Eigen::VectorXd& u, Eigen::Matrix3Xd& gradients) const override;
   /// Returns the forces of the springs that impose motions, and of tools [N], see Model::find_reactions.
   Eigen::VectorXd reactions(double time, const Eigen::VectorXd& u, const Eigen::VectorXd& v) const;

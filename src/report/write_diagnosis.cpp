@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -79,9 +78,7 @@ std::string verdict_sentence(const Diagnosis& d, bool with_probabilities) {
           millimetres(d.best.held_out_rms) + ").";
   if (with_probabilities) text += probabilities(d);
   if (d.verdict == Verdict::unexplained) text += rejection(d);
-  std::vector<std::string> others;
-  std::copy_if(d.set.begin(), d.set.end(), std::back_inserter(others),
-               [&](const std::string& effect) { return std::count(found.begin(), found.end(), effect) == 0; });
+  const std::vector<std::string> others = others_in_set(d.set, d.best);
   if (!others.empty()) {
     text += " These data fit as well: " + effect_list(others) + ".";
     const auto rivalled = [](const std::vector<RivalExplanation>& rivals) { return !rivals.empty(); };

@@ -1,11 +1,11 @@
 #include "tissue_stiffness/settings/value.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <cstdlib>
 
 #include "settings/suggestion.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "types/formatted.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -19,10 +19,10 @@ std::string shortened(std::string text) {
 
 /// Writes the fewest digits that read back as the same number.
 std::string shown_number(double value) {
-  char text[32];
+  std::string text;
   for (int digits = 6; digits <= 17; ++digits) {
-    std::snprintf(text, sizeof text, "%.*g", digits, value);
-    if (std::strtod(text, nullptr) == value) break;
+    text = formatted("%.*g", digits, value);
+    if (std::strtod(text.c_str(), nullptr) == value) break;
   }
   return text;
 }

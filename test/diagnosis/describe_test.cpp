@@ -39,7 +39,7 @@ TEST_F(Described, APairIsTheBestExplanationAsAWhole) {
   RecordingRows left = base_.rows;
   left.error -= slow();
   EXPECT_DOUBLE_EQ(best.held_out_rms, rms_error(left, base_.recording_fit->recording(), true));
-  EXPECT_TRUE(indistinguishable(best, believed_effects(c)).empty()) << "two effects that act together";
+  EXPECT_TRUE(others_in_set(believed_effects(c), best).empty()) << "two effects that act together";
 }
 
 TEST_F(Described, NothingIsNearestWhereNothingWasFitted) {
@@ -49,12 +49,15 @@ TEST_F(Described, NothingIsNearestWhereNothingWasFitted) {
   EXPECT_TRUE(best_explanation(base_, c).effects.empty());
 }
 
-TEST(Indistinguishable, AreTheEffectsBesideTheBestExplanation) {
+TEST(NextExperiment, TellsTheBestExplanationFromTheOthers) {
   const BestExplanation one{{"gravity"}, 0.9, 1e-4}, two{{"gravity", "added_mass"}, 0.9, 1e-4};
-  EXPECT_EQ(indistinguishable(one, {"gravity", "rigid_drift"}), (Names{"gravity", "rigid_drift"}));
-  EXPECT_EQ(indistinguishable(two, {"gravity", "added_mass", "rigid_drift"}), (Names{"gravity", "rigid_drift"}));
-  EXPECT_TRUE(indistinguishable(two, {"gravity", "added_mass"}).empty());
-  EXPECT_EQ(next_experiment(indistinguishable(two, {"gravity", "added_mass"})), "");
+  EXPECT_EQ(others_in_set({"gravity", "rigid_drift"}, one), Names{"rigid_drift"});
+  EXPECT_EQ(others_in_set({"gravity", "added_mass", "rigid_drift"}, two), Names{"rigid_drift"});
+  EXPECT_EQ(next_experiment({"gravity", "added_mass", "rigid_drift"}, two),
+            next_experiment({"gravity", "rigid_drift"}, one));
+  EXPECT_EQ(next_experiment({"gravity", "rigid_drift"}, one), "turn the body, or keep the sensor still on a fixed target");
+  EXPECT_TRUE(others_in_set({"gravity", "added_mass"}, two).empty());
+  EXPECT_EQ(next_experiment({"gravity", "added_mass"}, two), "");
 }
 
 }  // namespace

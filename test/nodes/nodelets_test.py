@@ -31,9 +31,8 @@ class Replay(EstimatorStatus):
     def __init__(self, bag, nodelets):
         self.estimates, self.listeners = [], set()
         with rosbag.Bag(bag) as recording:
-            last = max(message.header.stamp for _, message, _ in recording.read_messages('/camera/image_raw'))
+            self.last_stamp = max(message.header.stamp for _, message, _ in recording.read_messages('/camera/image_raw'))
         self.all_came = threading.Event()
-        self.last_stamp = last
         status = self.watch_status()
         subscriber = rospy.Subscriber('/stiffness', StiffnessEstimate, self.on_estimate, queue_size=100)
         launch = subprocess.Popen(

@@ -88,6 +88,9 @@ struct BestExplanation {
   double held_out_rms = std::numeric_limits<double>::quiet_NaN();  ///< [m]
 };
 
+/// Returns the effects of the `set` that are no part of the best explanation, and that fit as well.
+std::vector<std::string> others_in_set(const std::vector<std::string>& set, const BestExplanation& best);
+
 /// An explanation that the data cannot distinguish from the one that was added.
 struct RivalExplanation {
   std::string effect;
