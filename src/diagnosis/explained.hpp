@@ -39,6 +39,7 @@ struct MeshAllowance {
   Eigen::MatrixXd columns;    ///< D
   Eigen::MatrixXd basis;      ///< B, frame under frame
   Eigen::MatrixXd variances;  ///< L, one column a frame
+  Eigen::MatrixXd of_frame;   ///< mean square in one frame: L over the number of frames that count as one
 };
 
 /// This is a fitted model as it is compared: its residual and the rows about it.

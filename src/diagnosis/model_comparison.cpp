@@ -66,11 +66,6 @@ Parted parted(const Eigen::VectorXd& change, const Eigen::MatrixXd& along, const
   return out;
 }
 
-// Returns the sum of squares of what such parts have along the modes.
-double along_modes(const Eigen::MatrixXd& parts) {
-  return parts.cols() > 0 ? parts.leftCols(parts.cols() - 1).rowwise().sum().squaredNorm() : 0.0;
-}
-
 // Returns how many frames count as one, by the autocorrelation of a course (Bartlett 1946).
 double repeated(const Eigen::VectorXd& course) {
   const double square = course.squaredNorm();
@@ -97,6 +92,30 @@ Eigen::MatrixXd whitened_by(const MeshAllowance& mesh, double s, const std::vect
   }
   return out;
 }
+
+/// What the mesh's error may explain of a residual's sum of squares along the mesh's directions.
+class AlongMesh {
+ public:
+  AlongMesh(const MeshAllowance& mesh, const std::vector<Eigen::Index>& offsets, const Eigen::VectorXd& left)
+      : squares_(Eigen::ArrayXXd::Zero(mesh.of_frame.rows(), mesh.of_frame.cols())),
+        variances_(mesh.of_frame.array()),
+        repeated_((variances_ > 0.0).select(mesh.variances.array() / variances_, 1.0)) {
+    for (Eigen::Index k = 0; k < squares_.cols(); ++k) {
+      const Eigen::Index from = offsets[static_cast<std::size_t>(k)],
+                         size = offsets[static_cast<std::size_t>(k) + 1] - from;
+      squares_.col(k) = (mesh.basis.middleRows(from, size).transpose() * left.segment(from, size)).array().square();
+    }
+  }
+
+  // Takes off what an error that is r times as large explains beside noise of the level v.
+  void explain(double v, double r, MisfitTest& test) const {
+    const Eigen::ArrayXXd share = r * r * variances_ / (v + r * r * variances_);
+    test.set_explained((squares_ * share).sum(), 2.0 * v * v * (share.square() * repeated_).sum());
+  }
+
+ private:
+  Eigen::ArrayXXd squares_, variances_, repeated_;  ///< directions x frames
+};
 
 // Returns the widths of the amplitudes' priors over the stated width.
 std::vector<double> scales_of(const Linearisation& model) {
@@ -128,7 +147,7 @@ void ModelComparison::allow_for_mesh(const Eigen::VectorXd& change) {
 
 MeshAllowance ModelComparison::allowance(const Eigen::VectorXd& change) const {
   Parted parts = parted(kComparison.whole_mesh * change, along_, offsets_);
-  MeshAllowance out{std::move(parts.columns), {}, {}};
+  MeshAllowance out{std::move(parts.columns), {}, {}, {}};
   const Eigen::Index modes = out.columns.cols() - 1, frames = static_cast<Eigen::Index>(offsets_.size()) - 1;
   // The mesh's error has the mean square of that part of D, and D's memory. Amplitudes that are independent from frame to
   // frame say as much of it if they have its spectral density.
@@ -140,6 +159,7 @@ MeshAllowance ModelComparison::allowance(const Eigen::VectorXd& change) const {
   const Eigen::VectorXd std = square.cwiseProduct(memory).cwiseQuotient(size.cwiseMax(kTiny * kTiny)).cwiseSqrt();
   out.basis = Eigen::MatrixXd::Zero(along_.rows(), modes);
   out.variances = Eigen::MatrixXd::Zero(modes, frames);
+  out.of_frame = Eigen::MatrixXd::Zero(modes, frames);
   for (Eigen::Index k = 0; k < frames; ++k) {
     const Eigen::Index from = offsets_[static_cast<std::size_t>(k)],
                        rows = offsets_[static_cast<std::size_t>(k) + 1] - from;
@@ -150,6 +170,8 @@ MeshAllowance ModelComparison::allowance(const Eigen::VectorXd& change) const {
       if (!(variance > kTiny)) continue;
       out.basis.block(from, i, rows, 1) = root * eigen.eigenvectors().col(i) / std::sqrt(variance);
       out.variances(i, k) = variance;
+      const Eigen::VectorXd own = root.transpose() * out.basis.block(from, i, rows, 1);
+      out.of_frame(i, k) = own.cwiseQuotient(memory.cwiseSqrt()).squaredNorm();
     }
   }
   return out;
@@ -230,11 +252,11 @@ Assessment ModelComparison::assess(const Explained& explained, const MeshAllowan
 
 void ModelComparison::test_left(double fitted, const MeshAllowance& mesh, Assessment& out) const {
   MisfitTest test = test_of(out.left, fitted);
-  const double along = along_modes(mesh.columns);
+  const AlongMesh along(mesh, offsets_, out.left);
   const double across = mesh.columns.cols() > 0 ? mesh.columns.rightCols(1).squaredNorm() : 0.0;
   const auto z_at = [&, rows = used_.sum()](double size) {
-    const double square = std::pow(size / kComparison.whole_mesh, 2) / rows;
-    test.set_numerics(square * along, square * across);
+    along.explain(noise_level_, size / kComparison.least_of_mesh, test);
+    test.set_numerics(0.0, std::pow(size / kComparison.whole_mesh, 2) * across / rows);
     return test.z();
   };
   constexpr double least = kComparison.least_of_mesh, ratio = kComparison.whole_mesh / kComparison.least_of_mesh;

@@ -35,8 +35,9 @@ struct Assessment {
 /// the differences between neighbouring points, which missing physics hardly moves, and m is their memory from frame to
 /// frame. Both are those of the model that leaves least there. B_k L_k B_k^T, of frame k, is a displacement along the
 /// lowest modes, because the mesh's error has directions that D does not hold. Its mean square is that of `least_of_mesh`
-/// times what a refinement changes along each mode. The test averages its p-value over all sizes of that error up to
-/// `whole_mesh`, evenly by their logarithm.
+/// times what a refinement changes along each mode. The test weighs each direction i by its own error, which is r times as
+/// large: the square b_i^2 of the residual counts b_i^2 v / (v + r^2 M_i). Here M is L over the number of frames that
+/// count as one. The test averages its p-value over all sizes up to `whole_mesh`, evenly by their logarithm.
 /// No coefficient of the numerics is believed beyond the standard deviations at which a test fails. The evidence is
 /// Laplace's approximation (MacKay 2003, eq. 28.10) with the numerics as further unknowns. An added amplitude's prior is an
 /// even mixture of normal ones from its stated width down to `smallest` of it. So an effect pays for the order of its size

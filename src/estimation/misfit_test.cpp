@@ -62,7 +62,7 @@ double MisfitTest::noise_level() const {
 
 double MisfitTest::excess() const {
   const double dof = std::max(1.0, along_dof_ - fitted_);
-  return along_ / dof - noise_level() - numerics_ * rows_ / std::max(1.0, along_dof_);
+  return std::max(0.0, along_ - explained_) / dof - noise_level() - numerics_ * rows_ / std::max(1.0, along_dof_);
 }
 
 double MisfitTest::lag1_autocorrelation() const {
@@ -71,7 +71,8 @@ double MisfitTest::lag1_autocorrelation() const {
 }
 
 double MisfitTest::deviation() const {
-  return noise_level() * std::sqrt(2.0 * repeated() / std::max(1.0, along_dof_ - fitted_));
+  const double dof = std::max(1.0, along_dof_ - fitted_);
+  return std::sqrt(2.0 * repeated() * dof * noise_level() * noise_level() + variance_) / dof;
 }
 
 double MisfitTest::z() const {

@@ -24,6 +24,9 @@ class MisfitTest {
   /// Sets the mean square that mesh and basis leave of each row, along the modes and across them, in units of the noise's
   /// variance.
   void set_numerics(double along, double across = 0.0) { numerics_ = along, numerics_across_ = across; }
+  /// Takes this off the sum of squares along the modes: what an error of known covariance explains of it. The sum's own
+  /// variance under that error adds to the square of deviation(), times the squared degrees of freedom.
+  void set_explained(double sum_of_squares, double variance) { explained_ = sum_of_squares, variance_ = variance; }
   /// Tolerates nothing of the numerics along the modes beyond what set_numerics() says, because all of it is known.
   void tolerate_no_more() { tolerated_ = 0.0; }
 
@@ -31,10 +34,10 @@ class MisfitTest {
   /// cannot hold more noise, so they are tested too.
   void set_noise(double level) { known_noise_ = level; }
 
-  /// Returns the mean square along the modes a degree of freedom, less noise_level() and what the numerics leave [stated
-  /// noise variances].
+  /// Returns the mean square along the modes a degree of freedom, of what is not explained, less noise_level() and what the
+  /// numerics leave [stated noise variances].
   double excess() const;
-  /// Returns the standard deviation of `excess` under noise alone.
+  /// Returns the standard deviation of `excess` under noise and that error alone.
   double deviation() const;
   /// Returns (excess - max(t v, shared_noise)) / deviation with v = noise_level() and t = `tolerated`, or 0 after
   /// tolerate_no_more(). Where the noise is known from differences or by set_noise(), it returns the larger one of this and
@@ -77,8 +80,8 @@ class MisfitTest {
   double z_across() const;
   double repeated() const;  ///< frames that count as one, by the noise's autocorrelation
 
-  double fitted_ = 0.0, tolerated_ = tolerated, numerics_ = 0.0, numerics_across_ = 0.0, known_noise_ = most_noise,
-         rows_ = 0.0;
+  double fitted_ = 0.0, explained_ = 0.0, variance_ = 0.0, tolerated_ = tolerated, numerics_ = 0.0, numerics_across_ = 0.0,
+         known_noise_ = most_noise, rows_ = 0.0;
   int frames_ = 0;
 };
 

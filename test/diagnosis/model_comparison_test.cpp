@@ -149,29 +149,62 @@ TEST_F(CleanBar, AllowsForMeshErrorsThatARefinementDoesNotShow) {
   EXPECT_NEAR(loss(12.0), 144.0 * expected, 0.2 * 144.0 * expected);
   EXPECT_TRUE(models.assess(rigid(base_.rows.error + share * reversed)).test.passes());
   EXPECT_FALSE(models.assess(rigid(base_.rows.error + 12.0 * share * reversed)).test.passes());
-  // What is between the smallest and the largest error of the mesh fails the strict test alone.
-  const double between = 0.5 * (kComparison.least_of_mesh + kComparison.whole_mesh);
-  const Assessment assessment = models.assess(rigid(base_.rows.error + between * reversed));
+  // Such an error is seen few times, so its mean square may be above its variance. Only the strict test refuses it.
+  const Assessment assessment = models.assess(rigid(base_.rows.error + 1.5 * kComparison.whole_mesh * reversed));
   EXPECT_FALSE(assessment.strict_test.passes());
   EXPECT_TRUE(assessment.test.passes());
   EXPECT_TRUE(models.assess(rigid(base_.rows.error + share * reversed)).strict_test.passes());
 }
 
-// A residual of the size s has the p-value 1 where the mesh's error is larger, and 0 where it is smaller. So the mean over
-// sizes is the share of the sizes between s and the largest one, by their logarithm.
+// Each direction is tested against its own error, so a large error along one mode hides nothing along another.
+TEST_F(CleanBar, TestsEachModeAgainstTheMeshsErrorThere) {
+  const Eigen::MatrixXd parts = ModelComparison(base_, slow()).mesh_directions();
+  Eigen::Index other = 1;
+  parts.middleCols(1, parts.cols() - 2).colwise().norm().maxCoeff(&other);
+  const auto part = [&](Eigen::Index mode) { return Eigen::VectorXd(15.0 * parts.col(mode).normalized()); };
+  const ModelComparison models(base_, 10.0 * part(0));
+  EXPECT_TRUE(models.assess(rigid(base_.rows.error + part(0))).test.passes());
+  EXPECT_FALSE(models.assess(rigid(base_.rows.error + part(other + 1))).test.passes());
+}
+
+// With errors of the mesh that are r times as large as M allows, the sum of squares b^2 along them counts b^2 v / (v + r^2
+// M), and its variance is 2 v^2 w^2 a frame, times the frames that count as one. The test averages the p-value over r.
 TEST_F(CleanBar, AveragesTheTestOverTheSizesOfTheMeshsError) {
   const Eigen::VectorXd change = 30.0 * ModelComparison(base_, slow()).mesh_directions().col(0) / kComparison.whole_mesh;
   const ModelComparison models(base_, change);
+  const std::vector<Eigen::Index>& offsets = base_.rows.offsets;
+  const std::size_t frames = offsets.size() - 1;
+  const auto in_frame = [&](const Eigen::VectorXd& rows, std::size_t k) {
+    return Eigen::VectorXd(rows.segment(offsets[k], offsets[k + 1] - offsets[k]));
+  };
   Eigen::VectorXd alternating = change;  // a course in time that the change does not have
-  for (std::size_t k = 0; k + 1 < base_.rows.offsets.size(); k += 2) {
-    alternating.segment(base_.rows.offsets[k], base_.rows.offsets[k + 1] - base_.rows.offsets[k]) *= -1.0;
+  for (std::size_t k = 0; k < frames; k += 2) alternating.segment(offsets[k], offsets[k + 1] - offsets[k]) *= -1.0;
+  const double repeated = repeated_frames(change, offsets), square = change.squaredNorm() / static_cast<double>(frames);
+  const auto p_value = [&](const Assessment& assessment) {
+    MisfitTest plain = models.test_of(assessment.left, 0.0);
+    const double v = plain.noise_level(), dof = plain.structured_dof();
+    constexpr int sizes = 1000;
+    double out = 0.0;
+    for (int i = 0; i < sizes; ++i) {
+      const double r =
+          kComparison.least_of_mesh * std::pow(kComparison.whole_mesh / kComparison.least_of_mesh, (i + 0.5) / sizes);
+      const double share = r * r * square / (v + r * r * square);
+      double explained = 0.0;
+      for (std::size_t k = 0; k < frames; ++k)
+        explained += share * std::pow(in_frame(change, k).normalized().dot(in_frame(assessment.left, k)), 2);
+      const double variance = 2.0 * v * v * share * share * repeated * static_cast<double>(frames);
+      const double deviation = std::sqrt(std::pow(plain.deviation() * dof, 2) + variance) / dof;
+      out += normal_cdf(-(plain.excess() - explained / dof - plain.shared_noise()) / deviation) / sizes;
+    }
+    return out;
+  };
+  for (const double size : {0.5, 1.0, 1.5, 2.5}) {
+    const Assessment assessment = models.assess(rigid(base_.rows.error + size * alternating));
+    EXPECT_NEAR(std::log(normal_cdf(-assessment.test.z) / p_value(assessment)), 0.0, 0.05) << size;
   }
-  const double least = kComparison.least_of_mesh, most = kComparison.whole_mesh;
   const auto z = [&](double size) { return models.assess(rigid(base_.rows.error + size * alternating)).test.z; };
-  for (const double share : {0.1, 0.2, 0.3})
-    EXPECT_NEAR(std::log(normal_cdf(-z(most * std::pow(least / most, share))) / share), 0.0, 0.3) << share;
-  EXPECT_LT(z(0.9 * least), -3.0);
-  EXPECT_GT(z(1.05 * most), 5.0);
+  EXPECT_LT(z(kComparison.least_of_mesh), 1.0);
+  EXPECT_GT(z(4.0 * kComparison.whole_mesh), 5.0);
 }
 
 TEST(ComparisonNumbers, AreThoseOfTheMethodsTable) {

@@ -147,7 +147,7 @@ Diagnosis diagnose_springs_on_coarse_mesh(const std::string& stiffness) {
 
 // Fibres imitate the mesh's error as well.
 TEST(Diagnose, NamesAnEffectBesideTheErrorOfTheMesh) {
-  const Diagnosis d = diagnose_springs_on_coarse_mesh("1200");
+  const Diagnosis d = diagnose_springs_on_coarse_mesh("400");
   EXPECT_EQ(d.verdict, Verdict::missing);
   ASSERT_FALSE(d.set.empty());
   EXPECT_EQ(d.set.front(), "foundation");
@@ -155,7 +155,7 @@ TEST(Diagnose, NamesAnEffectBesideTheErrorOfTheMesh) {
 
 // Weak springs are less than what another mesh would change. So nothing is named, and E's interval tells of them.
 TEST(Diagnose, NamesNothingThatTheLargestErrorOfTheMeshMayBe) {
-  const Diagnosis d = diagnose_springs_on_coarse_mesh("400");
+  const Diagnosis d = diagnose_springs_on_coarse_mesh("300");
   EXPECT_EQ(d.verdict, Verdict::numerics);
   EXPECT_LT(d.z, MisfitTest::bound);
   const ParameterEstimate& modulus = d.estimate.parameters.front();

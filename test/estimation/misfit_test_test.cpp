@@ -56,6 +56,18 @@ TEST(MisfitTest, ToleratesNothingWhereAllOfTheNumericsIsKnown) {
   EXPECT_TRUE(test.passes());
 }
 
+// Noise of the variance 1.7 exceeds the others' by an error of the variance 0.7. The error explains the excess, and its own
+// variance widens the test.
+TEST(MisfitTest, TakesOffWhatAnErrorExplains) {
+  MisfitTest test = test_of(1.7, 1.0);
+  test.tolerate_no_more();
+  const double excess = test.excess(), deviation = test.deviation(), dof = test.structured_dof();
+  test.set_explained(0.7 * dof, 9.0 * deviation * deviation * dof * dof);
+  EXPECT_NEAR(test.excess(), excess - 0.7, 1e-9);
+  EXPECT_NEAR(test.deviation(), std::sqrt(10.0) * deviation, 1e-9);
+  EXPECT_TRUE(test.passes());
+}
+
 // Noise that another model has shown not to be there is a misfit, both where the modes see it and where they do not.
 TEST(MisfitTest, KnowsTheNoiseFromAnotherModel) {
   MisfitTest test = test_of(1.0, 4.0);
