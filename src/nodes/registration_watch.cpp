@@ -13,11 +13,13 @@ constexpr double kPeriod = 5.0;  // [s]
 RegistrationWatch::RegistrationWatch(ros::NodeHandle node)
     : timer_(node.createWallTimer(ros::WallDuration(kPeriod), [this](const ros::WallTimerEvent&) { check(); })) {}
 
-// One answer is not enough, because a node registers one topic after the other.
+// A topic or service that the node registers later makes its name known to the new master. So the watch asks for the
+// service that roscpp registers once, when the node starts. One answer is not enough, because that takes a moment.
 void RegistrationWatch::check() {
   XmlRpc::XmlRpcValue request, response, payload;
-  request[0] = request[1] = ros::this_node::getName();
-  const bool unknown = ros::master::check() && !ros::master::execute("lookupNode", request, response, payload, false);
+  request[0] = ros::this_node::getName();
+  request[1] = ros::this_node::getName() + "/get_loggers";
+  const bool unknown = ros::master::check() && !ros::master::execute("lookupService", request, response, payload, false);
   lost_ = unknown && unknown_;
   unknown_ = unknown;
   if (!lost_) return;
