@@ -20,6 +20,18 @@ constexpr double kNarrower = 0.25;  // ratio of the widths of successive priors 
 constexpr int kSizes = 32;          // of the mesh's error, over which a test is averaged
 constexpr double kTiny = 1e-12;     // [sigma^2]: a direction that no row sees
 
+/// Where the rows of a frame begin, and how many they are.
+struct FrameRows {
+  Eigen::Index from, size;
+
+  FrameRows(const std::vector<Eigen::Index>& offsets, Eigen::Index frame)
+      : from(offsets[static_cast<std::size_t>(frame)]), size(offsets[static_cast<std::size_t>(frame) + 1] - from) {}
+};
+
+Eigen::Index frame_count(const std::vector<Eigen::Index>& offsets) {
+  return static_cast<Eigen::Index>(offsets.size()) - 1;
+}
+
 double log_determinant(const Eigen::LDLT<Eigen::MatrixXd>& factor) {
   return factor.vectorD().array().max(std::numeric_limits<double>::min()).log().sum();
 }
@@ -35,8 +47,8 @@ Eigen::MatrixXd lowest_modes(const FittedModel& fitted) {
 
 std::vector<SparseMatrix> differences_of(const RecordingRows& rows) {
   std::vector<SparseMatrix> out;
-  for (std::size_t k = 0; k + 1 < rows.offsets.size(); ++k) {
-    const Eigen::Index from = rows.offsets[k], size = rows.offsets[k + 1] - from;
+  for (Eigen::Index k = 0; k < frame_count(rows.offsets); ++k) {
+    const auto [from, size] = FrameRows(rows.offsets, k);
     Eigen::VectorXd used = rows.used.segment(from, size);
     used = (rows.nodes.segment(from, size).array() == kForceRow).select(0.0, used);
     out.push_back(neighbour_differences(rows.places.middleCols(from, size), rows.sigma.segment(from, size), used));
@@ -52,16 +64,15 @@ struct Parted {
 
 Parted parted(const Eigen::VectorXd& change, const Eigen::MatrixXd& along, const std::vector<Eigen::Index>& offsets) {
   const Eigen::Index modes = std::min<Eigen::Index>(kComparison.modes, along.cols());
-  Parted out{Eigen::MatrixXd::Zero(change.size(), modes + 1),
-             Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(offsets.size()) - 1, modes)};
-  for (std::size_t k = 0; k + 1 < offsets.size(); ++k) {
-    const Eigen::Index from = offsets[k], size = offsets[k + 1] - from;
+  Parted out{Eigen::MatrixXd::Zero(change.size(), modes + 1), Eigen::MatrixXd::Zero(frame_count(offsets), modes)};
+  for (Eigen::Index k = 0; k < frame_count(offsets); ++k) {
+    const auto [from, size] = FrameRows(offsets, k);
     if (size == 0) continue;
     const Eigen::MatrixXd lowest = along.block(from, 0, size, modes);
     const Eigen::VectorXd own = change.segment(from, size), share = least_squares(lowest, own);
     out.columns.block(from, 0, size, modes) = lowest * share.asDiagonal();
     out.columns.block(from, modes, size, 1) = own - lowest * share;
-    out.shares.row(static_cast<Eigen::Index>(k)) = share.transpose();
+    out.shares.row(k) = share.transpose();
   }
   return out;
 }
@@ -82,11 +93,11 @@ double repeated(const Eigen::VectorXd& course) {
 Eigen::MatrixXd whitened_by(const MeshAllowance& mesh, double s, const std::vector<Eigen::Index>& offsets,
                             const Eigen::MatrixXd& rows) {
   Eigen::MatrixXd out = rows;
-  for (std::size_t k = 0; k + 1 < offsets.size(); ++k) {
-    const Eigen::Index from = offsets[k], size = offsets[k + 1] - from;
+  for (Eigen::Index k = 0; k < frame_count(offsets); ++k) {
+    const auto [from, size] = FrameRows(offsets, k);
     if (size == 0 || mesh.variances.size() == 0) continue;
     const auto basis = mesh.basis.middleRows(from, size);
-    const Eigen::ArrayXd shrink = 1.0 - (s / (s + mesh.variances.col(static_cast<Eigen::Index>(k)).array())).sqrt();
+    const Eigen::ArrayXd shrink = 1.0 - (s / (s + mesh.variances.col(k).array())).sqrt();
     out.middleRows(from, size) -=
         basis * (shrink.matrix().asDiagonal() * (basis.transpose() * rows.middleRows(from, size)));
   }
@@ -101,8 +112,7 @@ class AlongMesh {
         variances_(mesh.of_frame.array()),
         repeated_((variances_ > 0.0).select(mesh.variances.array() / variances_, 1.0)) {
     for (Eigen::Index k = 0; k < squares_.cols(); ++k) {
-      const Eigen::Index from = offsets[static_cast<std::size_t>(k)],
-                         size = offsets[static_cast<std::size_t>(k) + 1] - from;
+      const auto [from, size] = FrameRows(offsets, k);
       squares_.col(k) = (mesh.basis.middleRows(from, size).transpose() * left.segment(from, size)).array().square();
     }
   }
@@ -148,7 +158,7 @@ void ModelComparison::allow_for_mesh(const Eigen::VectorXd& change) {
 MeshAllowance ModelComparison::allowance(const Eigen::VectorXd& change) const {
   Parted parts = parted(kComparison.whole_mesh * change, along_, offsets_);
   MeshAllowance out{std::move(parts.columns), {}, {}, {}};
-  const Eigen::Index modes = out.columns.cols() - 1, frames = static_cast<Eigen::Index>(offsets_.size()) - 1;
+  const Eigen::Index modes = out.columns.cols() - 1, frames = frame_count(offsets_);
   // The mesh's error has the mean square of that part of D, and D's memory. Amplitudes that are independent from frame to
   // frame say as much of it if they have its spectral density.
   constexpr double part = kComparison.least_of_mesh / kComparison.whole_mesh;
@@ -161,8 +171,7 @@ MeshAllowance ModelComparison::allowance(const Eigen::VectorXd& change) const {
   out.variances = Eigen::MatrixXd::Zero(modes, frames);
   out.of_frame = Eigen::MatrixXd::Zero(modes, frames);
   for (Eigen::Index k = 0; k < frames; ++k) {
-    const Eigen::Index from = offsets_[static_cast<std::size_t>(k)],
-                       rows = offsets_[static_cast<std::size_t>(k) + 1] - from;
+    const auto [from, rows] = FrameRows(offsets_, k);
     const Eigen::MatrixXd root = along_.block(from, 0, rows, modes) * std.asDiagonal();
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(root.transpose() * root);
     for (Eigen::Index i = 0; i < modes; ++i) {
@@ -268,10 +277,11 @@ void ModelComparison::test_left(double fitted, const MeshAllowance& mesh, Assess
 }
 
 MisfitTest ModelComparison::test_of(const Eigen::VectorXd& error, double fitted) const {
-  const auto frames = static_cast<Eigen::Index>(offsets_.size()) - 1;
-  MisfitTest out = test_where(error, 0, frames, [](Eigen::Index) { return true; });
-  for (std::size_t k = 0; k < differences_.size(); ++k)
-    out.add_differences(differences_[k] * error.segment(offsets_[k], offsets_[k + 1] - offsets_[k]));
+  MisfitTest out = test_where(error, 0, frame_count(offsets_), [](Eigen::Index) { return true; });
+  for (std::size_t k = 0; k < differences_.size(); ++k) {
+    const auto [from, size] = FrameRows(offsets_, static_cast<Eigen::Index>(k));
+    out.add_differences(differences_[k] * error.segment(from, size));
+  }
   out.set_fitted(fitted);
   out.tolerate_no_more();
   return out;
