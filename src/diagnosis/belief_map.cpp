@@ -68,7 +68,7 @@ BeliefMap belief_map(const FittedModel& model, const Eigen::VectorXd& left, cons
   if (out.nodes.empty()) return out;
   const Eigen::VectorXd white = comparison.whitened(left);
   const MisfitTest whole = comparison.test_of(white, 0.0);
-  const auto frames = static_cast<Eigen::Index>(rows.offsets.size()) - 1;
+  const Eigen::Index frames = rows.frames.count();
   out.probability.resize(out.centres.cols(), 3);
   for (Eigen::Index part = 0; part < out.probability.rows(); ++part) {
     const auto inside = [&](Eigen::Index row) { return seen[static_cast<std::size_t>(row)] == part; };

@@ -119,11 +119,11 @@ double squares(const FrameEvidence& e, const Eigen::VectorXd& q) {
 }
 
 // `along` holds the rows per displacement of each mode.
-std::vector<FrameEvidence> evidence_of(const Eigen::VectorXd& error, const Eigen::MatrixXd& along,
-                                       const std::vector<Eigen::Index>& offsets, double variance) {
+std::vector<FrameEvidence> evidence_of(const Eigen::VectorXd& error, const Eigen::MatrixXd& along, const FrameRows& frames,
+                                       double variance) {
   std::vector<FrameEvidence> out;
-  for (std::size_t k = 0; k + 1 < offsets.size(); ++k) {
-    const Eigen::Index from = offsets[k], size = offsets[k + 1] - from;
+  for (Eigen::Index k = 0; k < frames.count(); ++k) {
+    const auto [from, size] = frames[k];
     const auto h = along.middleRows(from, size);
     const auto e = error.segment(from, size);
     out.push_back({h.transpose() * h / variance, h.transpose() * e / variance, e.squaredNorm() / variance});
@@ -139,7 +139,7 @@ MissingForce missing_force(const RecordingFit& recording_fit, const Eigen::Vecto
   const Modes modes = modes_of(recording_fit, w);
   const RecordingRows rows = recording_fit.rows(w);
   const std::vector<FrameEvidence> evidence =
-      evidence_of(rows.error, recording_fit.rows_along(w, modes.shapes, rows), rows.offsets, 1.0);
+      evidence_of(rows.error, recording_fit.rows_along(w, modes.shapes, rows), rows.frames, 1.0);
   const ForcePrior prior = likeliest_force_prior(modes.transitions, evidence, modes.scale());
   const SmoothedForce best = smooth_force(modes.transitions, evidence, prior);
   const double without = rows.error.squaredNorm();
@@ -179,7 +179,7 @@ MissingForce missing_force(const RecordingFit& recording_fit, const Eigen::Vecto
   return out;
 }
 
-RandomForce::RandomForce(const FittedModel& model) : offsets(model.rows.offsets) {
+RandomForce::RandomForce(const FittedModel& model) : frames(model.rows.frames) {
   const Modes modes = modes_of(*model.recording_fit, model.fit.w);
   transitions = modes.transitions;
   along = model.recording_fit->rows_along(model.fit.w, modes.shapes, model.rows);
@@ -189,7 +189,7 @@ RandomForce::RandomForce(const FittedModel& model) : offsets(model.rows.offsets)
 double log_evidence_gained(const RandomForce& force, const Assessment& alone, const ModelComparison& comparison) {
   const double s = comparison.noise_variance();
   const Eigen::VectorXd error = comparison.whitened(alone.left);
-  const std::vector<FrameEvidence> evidence = evidence_of(error, comparison.whitened(force.along), force.offsets, s);
+  const std::vector<FrameEvidence> evidence = evidence_of(error, comparison.whitened(force.along), force.frames, s);
   const ForcePrior prior = likeliest_force_prior(force.transitions, evidence, force.scale);
   const double gain = 0.5 * (error.squaredNorm() / s - smooth_force(force.transitions, evidence, prior).deviance);
   return gain - log_of_tried_priors(force.along.cols());

@@ -24,7 +24,7 @@ struct RandomForce {
 
   std::vector<ModalTransition> transitions;  ///< to each frame
   Eigen::MatrixXd along;                     ///< rows / displacement of each mode [sigma/(m kg^1/2)]
-  std::vector<Eigen::Index> offsets;         ///< see RecordingRows
+  FrameRows frames;                          ///< of the rows
   double scale = 0.0;                        ///< rms of the forces that move the modes
 };
 /// Returns the log evidence that what a model leaves is the work of such a force, beyond that of noise and the mesh's

@@ -20,18 +20,6 @@ constexpr double kNarrower = 0.25;  // ratio of the widths of successive priors 
 constexpr int kSizes = 32;          // of the mesh's error, over which a test is averaged
 constexpr double kTiny = 1e-12;     // [sigma^2]: a direction that no row sees
 
-/// Where the rows of a frame begin, and how many they are.
-struct FrameRows {
-  Eigen::Index from, size;
-
-  FrameRows(const std::vector<Eigen::Index>& offsets, Eigen::Index frame)
-      : from(offsets[static_cast<std::size_t>(frame)]), size(offsets[static_cast<std::size_t>(frame) + 1] - from) {}
-};
-
-Eigen::Index frame_count(const std::vector<Eigen::Index>& offsets) {
-  return static_cast<Eigen::Index>(offsets.size()) - 1;
-}
-
 double log_determinant(const Eigen::LDLT<Eigen::MatrixXd>& factor) {
   return factor.vectorD().array().max(std::numeric_limits<double>::min()).log().sum();
 }
@@ -47,8 +35,8 @@ Eigen::MatrixXd lowest_modes(const FittedModel& fitted) {
 
 std::vector<SparseMatrix> differences_of(const RecordingRows& rows) {
   std::vector<SparseMatrix> out;
-  for (Eigen::Index k = 0; k < frame_count(rows.offsets); ++k) {
-    const auto [from, size] = FrameRows(rows.offsets, k);
+  for (Eigen::Index k = 0; k < rows.frames.count(); ++k) {
+    const auto [from, size] = rows.frames[k];
     Eigen::VectorXd used = rows.used.segment(from, size);
     used = (rows.nodes.segment(from, size).array() == kForceRow).select(0.0, used);
     out.push_back(neighbour_differences(rows.places.middleCols(from, size), rows.sigma.segment(from, size), used));
@@ -62,11 +50,11 @@ struct Parted {
   Eigen::MatrixXd shares;   ///< frames x modes, in units of the mode's rows in that frame
 };
 
-Parted parted(const Eigen::VectorXd& change, const Eigen::MatrixXd& along, const std::vector<Eigen::Index>& offsets) {
+Parted parted(const Eigen::VectorXd& change, const Eigen::MatrixXd& along, const FrameRows& frames) {
   const Eigen::Index modes = std::min<Eigen::Index>(kComparison.modes, along.cols());
-  Parted out{Eigen::MatrixXd::Zero(change.size(), modes + 1), Eigen::MatrixXd::Zero(frame_count(offsets), modes)};
-  for (Eigen::Index k = 0; k < frame_count(offsets); ++k) {
-    const auto [from, size] = FrameRows(offsets, k);
+  Parted out{Eigen::MatrixXd::Zero(change.size(), modes + 1), Eigen::MatrixXd::Zero(frames.count(), modes)};
+  for (Eigen::Index k = 0; k < frames.count(); ++k) {
+    const auto [from, size] = frames[k];
     if (size == 0) continue;
     const Eigen::MatrixXd lowest = along.block(from, 0, size, modes);
     const Eigen::VectorXd own = change.segment(from, size), share = least_squares(lowest, own);
@@ -90,11 +78,10 @@ double repeated(const Eigen::VectorXd& course) {
   return out;
 }
 
-Eigen::MatrixXd whitened_by(const MeshAllowance& mesh, double s, const std::vector<Eigen::Index>& offsets,
-                            const Eigen::MatrixXd& rows) {
+Eigen::MatrixXd whitened_by(const MeshAllowance& mesh, double s, const FrameRows& frames, const Eigen::MatrixXd& rows) {
   Eigen::MatrixXd out = rows;
-  for (Eigen::Index k = 0; k < frame_count(offsets); ++k) {
-    const auto [from, size] = FrameRows(offsets, k);
+  for (Eigen::Index k = 0; k < frames.count(); ++k) {
+    const auto [from, size] = frames[k];
     if (size == 0 || mesh.variances.size() == 0) continue;
     const auto basis = mesh.basis.middleRows(from, size);
     const Eigen::ArrayXd shrink = 1.0 - (s / (s + mesh.variances.col(k).array())).sqrt();
@@ -107,12 +94,12 @@ Eigen::MatrixXd whitened_by(const MeshAllowance& mesh, double s, const std::vect
 /// What the mesh's error may explain of a residual's sum of squares along the mesh's directions.
 class AlongMesh {
  public:
-  AlongMesh(const MeshAllowance& mesh, const std::vector<Eigen::Index>& offsets, const Eigen::VectorXd& left)
+  AlongMesh(const MeshAllowance& mesh, const FrameRows& frames, const Eigen::VectorXd& left)
       : squares_(Eigen::ArrayXXd::Zero(mesh.of_frame.rows(), mesh.of_frame.cols())),
         variances_(mesh.of_frame.array()),
         repeated_((variances_ > 0.0).select(mesh.variances.array() / variances_, 1.0)) {
     for (Eigen::Index k = 0; k < squares_.cols(); ++k) {
-      const auto [from, size] = FrameRows(offsets, k);
+      const auto [from, size] = frames[k];
       squares_.col(k) = (mesh.basis.middleRows(from, size).transpose() * left.segment(from, size)).array().square();
     }
   }
@@ -143,7 +130,7 @@ std::vector<double> scales_of(const Linearisation& model) {
 ModelComparison::ModelComparison(const FittedModel& base, const Eigen::VectorXd& mesh_change)
     : used_((base.rows.used.array() > 0.0).cast<double>()),
       nodes_(base.rows.nodes),
-      offsets_(base.rows.offsets),
+      frames_(base.rows.frames),
       differences_(differences_of(base.rows)),
       along_(lowest_modes(base)),
       base_cost_(base.rows.error.squaredNorm()) {
@@ -156,9 +143,9 @@ void ModelComparison::allow_for_mesh(const Eigen::VectorXd& change) {
 }
 
 MeshAllowance ModelComparison::allowance(const Eigen::VectorXd& change) const {
-  Parted parts = parted(kComparison.whole_mesh * change, along_, offsets_);
+  Parted parts = parted(kComparison.whole_mesh * change, along_, frames_);
   MeshAllowance out{std::move(parts.columns), {}, {}, {}};
-  const Eigen::Index modes = out.columns.cols() - 1, frames = frame_count(offsets_);
+  const Eigen::Index modes = out.columns.cols() - 1, frames = frames_.count();
   // The mesh's error has the mean square of that part of D, and D's memory. Amplitudes that are independent from frame to
   // frame say as much of it if they have its spectral density.
   constexpr double part = kComparison.least_of_mesh / kComparison.whole_mesh;
@@ -171,7 +158,7 @@ MeshAllowance ModelComparison::allowance(const Eigen::VectorXd& change) const {
   out.variances = Eigen::MatrixXd::Zero(modes, frames);
   out.of_frame = Eigen::MatrixXd::Zero(modes, frames);
   for (Eigen::Index k = 0; k < frames; ++k) {
-    const auto [from, rows] = FrameRows(offsets_, k);
+    const auto [from, rows] = frames_[k];
     const Eigen::MatrixXd root = along_.block(from, 0, rows, modes) * std.asDiagonal();
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(root.transpose() * root);
     for (Eigen::Index i = 0; i < modes; ++i) {
@@ -193,7 +180,7 @@ void ModelComparison::move_base(const Eigen::VectorXd& error, const Eigen::Vecto
 }
 
 Eigen::MatrixXd ModelComparison::whitened(const Eigen::MatrixXd& rows) const {
-  return whitened_by(mesh_, noise_variance_, offsets_, rows);
+  return whitened_by(mesh_, noise_variance_, frames_, rows);
 }
 
 void ModelComparison::note(const Eigen::VectorXd& error) {
@@ -224,8 +211,8 @@ Assessment ModelComparison::assess(const Explained& explained, const MeshAllowan
   const double s = noise_variance_;
   Eigen::MatrixXd j(explained.error.size(), model.columns.cols() + mesh.columns.cols());
   j << model.columns, mesh.columns;
-  const Eigen::MatrixXd white = whitened_by(mesh, s, offsets_, j);
-  const Eigen::VectorXd error = whitened_by(mesh, s, offsets_, explained.error);
+  const Eigen::MatrixXd white = whitened_by(mesh, s, frames_, j);
+  const Eigen::VectorXd error = whitened_by(mesh, s, frames_, explained.error);
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(j.cols());
   mean.head(model.prior.size()) = model.prior;
   const Eigen::MatrixXd gram = white.transpose() * white / s;
@@ -261,7 +248,7 @@ Assessment ModelComparison::assess(const Explained& explained, const MeshAllowan
 
 void ModelComparison::test_left(double fitted, const MeshAllowance& mesh, Assessment& out) const {
   MisfitTest test = test_of(out.left, fitted);
-  const AlongMesh along(mesh, offsets_, out.left);
+  const AlongMesh along(mesh, frames_, out.left);
   const double across = mesh.columns.cols() > 0 ? mesh.columns.rightCols(1).squaredNorm() : 0.0;
   const auto z_at = [&, rows = used_.sum()](double size) {
     along.explain(noise_level_, size / kComparison.least_of_mesh, test);
@@ -277,9 +264,9 @@ void ModelComparison::test_left(double fitted, const MeshAllowance& mesh, Assess
 }
 
 MisfitTest ModelComparison::test_of(const Eigen::VectorXd& error, double fitted) const {
-  MisfitTest out = test_where(error, 0, frame_count(offsets_), [](Eigen::Index) { return true; });
+  MisfitTest out = test_where(error, 0, frames_.count(), [](Eigen::Index) { return true; });
   for (std::size_t k = 0; k < differences_.size(); ++k) {
-    const auto [from, size] = FrameRows(offsets_, static_cast<Eigen::Index>(k));
+    const auto [from, size] = frames_[static_cast<Eigen::Index>(k)];
     out.add_differences(differences_[k] * error.segment(from, size));
   }
   out.set_fitted(fitted);
@@ -293,7 +280,8 @@ MisfitTest ModelComparison::test_where(const Eigen::VectorXd& error, Eigen::Inde
   out.set_noise(noise_level_);
   for (Eigen::Index k = first; k < last; ++k) {
     std::vector<Eigen::Index> rows;
-    for (Eigen::Index r = offsets_[static_cast<std::size_t>(k)]; r < offsets_[static_cast<std::size_t>(k) + 1]; ++r) {
+    const auto range = frames_[k];
+    for (Eigen::Index r = range.from; r < range.end(); ++r) {
       if (inside(r)) rows.push_back(r);
     }
     if (rows.empty()) continue;

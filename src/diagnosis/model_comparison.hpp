@@ -79,7 +79,7 @@ class ModelComparison {
 
   Eigen::VectorXd used_;   ///< 1 where a row says something, else 0
   Eigen::VectorXi nodes_;  ///< of each row, or kForceRow
-  std::vector<Eigen::Index> offsets_;
+  FrameRows frames_;
   std::vector<SparseMatrix> differences_;  ///< between neighbouring points, of each frame
   Eigen::MatrixXd along_;                  ///< rows / amplitude of each mode
   MeshAllowance mesh_;                     ///< of the base

@@ -274,8 +274,8 @@ std::vector<RefitSearch::Start> RefitSearch::best_of(std::vector<Start> starts, 
 // Returns the evidence of each linear candidate's tangent in the initial segment.
 const std::map<const Candidate*, double>& RefitSearch::initial_evidence() {
   if (!initial_evidence_.empty()) return initial_evidence_;
-  const std::vector<Eigen::Index>& offsets = screening_.base.rows.offsets;
-  const Eigen::Index rows = offsets[static_cast<std::size_t>(kInitialSegment * static_cast<double>(offsets.size() - 1))];
+  const FrameRows& frames = screening_.base.rows.frames;
+  const Eigen::Index rows = frames.before(static_cast<Eigen::Index>(kInitialSegment * static_cast<double>(frames.count())));
   const Scorer scorer(screening_.error.head(rows), screening_.nuisance_tangents.topRows(rows),
                       screening_.comparison.noise_variance());
   for (const Candidate& candidate : screening_.candidates) {

@@ -19,17 +19,17 @@ struct Frames {
 };
 
 Frames by_frame(const RecordingFit& recording_fit, const RecordingRows& rows) {
-  const auto n = static_cast<Eigen::Index>(rows.offsets.size()) - 1;
+  const Eigen::Index n = rows.frames.count();
   Frames out{Eigen::VectorXd(n), Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n), Eigen::VectorXd(n)};
-  const Eigen::Index first = rows.offsets[1];
+  const Eigen::Index first = rows.frames.before(1);
   Eigen::VectorXd metres = rows.predicted.cwiseProduct(rows.sigma);
   for (Eigen::Index r = 0; r < metres.size(); ++r) {
     if (!rows.tells_length(r)) metres[r] = 0.0;
   }
   for (Eigen::Index t = 0; t < n; ++t) {
-    const auto k = static_cast<std::size_t>(t);
-    const Eigen::Index from = rows.offsets[k], size = rows.offsets[k + 1] - from;
-    out.time[t] = recording_fit.recording().frames[k].time - recording_fit.recording().first_stamp;
+    const auto [from, size] = rows.frames[t];
+    const Recording& recording = recording_fit.recording();
+    out.time[t] = recording.frames[static_cast<std::size_t>(t)].time - recording.first_stamp;
     out.square[t] = rows.error.segment(from, size).squaredNorm();
     out.count[t] = static_cast<double>((rows.used.segment(from, size).array() > 0.0).count());
     out.motion[t] = size == first && first > 0
@@ -73,11 +73,11 @@ void amplitudes(const Frames& frames, ResidualViews& out) {
 // Returns the sum over rows of |Fourier transform|^2 at each frequency, of the rows' deviations from their means.
 Eigen::VectorXd spectrum(const Eigen::VectorXd& values, const RecordingRows& rows, const Eigen::VectorXd& time,
                          const std::vector<double>& frequency) {
-  const Eigen::Index n = time.size(), size = rows.offsets[1], stride = std::max<Eigen::Index>(1, size / kMostRows);
+  const Eigen::Index n = time.size(), size = rows.frames.before(1), stride = std::max<Eigen::Index>(1, size / kMostRows);
   const Eigen::Index kept = (size + stride - 1) / stride;
   Eigen::MatrixXd series(n, kept);
   for (Eigen::Index t = 0; t < n; ++t) {
-    for (Eigen::Index r = 0; r < kept; ++r) series(t, r) = values[rows.offsets[static_cast<std::size_t>(t)] + r * stride];
+    for (Eigen::Index r = 0; r < kept; ++r) series(t, r) = values[rows.frames.before(t) + r * stride];
   }
   series.rowwise() -= series.colwise().mean().eval();
   Eigen::VectorXd power(static_cast<Eigen::Index>(frequency.size()));

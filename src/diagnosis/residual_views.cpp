@@ -65,12 +65,11 @@ std::string where_it_fails(const RecordingFit& recording_fit, const RecordingRow
 }
 
 std::string when_it_fails(const RecordingFit& recording_fit, const RecordingRows& rows) {
-  const auto frames = static_cast<Eigen::Index>(rows.offsets.size()) - 1;
+  const Eigen::Index frames = rows.frames.count();
   Eigen::VectorXd error(frames), motion(frames);
   for (Eigen::Index t = 0; t < frames; ++t) {
-    const Eigen::Index from = rows.offsets[static_cast<std::size_t>(t)],
-                       count = rows.offsets[static_cast<std::size_t>(t) + 1] - from;
-    const Eigen::Index first = std::min(rows.offsets[1], count);
+    const auto [from, count] = rows.frames[t];
+    const Eigen::Index first = std::min(rows.frames.before(1), count);
     error[t] = rows.error.segment(from, count).squaredNorm() / static_cast<double>(std::max<Eigen::Index>(count, 1));
     motion[t] = (rows.predicted.segment(from, first) - rows.predicted.head(first)).norm();
   }

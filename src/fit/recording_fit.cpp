@@ -235,8 +235,8 @@ Eigen::MatrixXd RecordingFit::rows_along(const Eigen::VectorXd& w, const Eigen::
     recording_.checkpoint();
     run->advance(all.frames[k].time);
     const Eigen::VectorXd u = run->output();
-    out.middleRows(rows.offsets[k], rows.offsets[k + 1] - rows.offsets[k]) =
-        predict_along(model_, operators_, all.frames[k], theta, u, shapes);
+    const auto [from, size] = rows.frames[static_cast<Eigen::Index>(k)];
+    out.middleRows(from, size) = predict_along(model_, operators_, all.frames[k], theta, u, shapes);
   }
   for (Eigen::Index r = 0; r < out.rows(); ++r) {
     if (rows.used[r] > 0.0 && out.row(r).allFinite()) {

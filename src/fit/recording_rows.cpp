@@ -10,9 +10,10 @@ namespace {
 template <typename Counts, typename Value>
 double rms_of_lengths(const RecordingRows& rows, const Counts& counts, const Value& value) {
   double sum = 0.0, count = 0.0;
-  for (std::size_t k = 0; k + 1 < rows.offsets.size(); ++k) {
-    if (!counts(k)) continue;
-    for (Eigen::Index r = rows.offsets[k]; r < rows.offsets[k + 1]; ++r) {
+  for (Eigen::Index k = 0; k < rows.frames.count(); ++k) {
+    if (!counts(static_cast<std::size_t>(k))) continue;
+    const auto range = rows.frames[k];
+    for (Eigen::Index r = range.from; r < range.end(); ++r) {
       if (!rows.tells_length(r)) continue;
       sum += std::pow(value(r), 2);
       count += 1.0;
@@ -25,18 +26,18 @@ double rms_of_lengths(const RecordingRows& rows, const Counts& counts, const Val
 
 RecordingRows recording_rows(const std::vector<Prediction>& predictions) {
   RecordingRows out;
-  out.offsets.push_back(0);
-  for (const Prediction& p : predictions) out.offsets.push_back(out.offsets.back() + p.measured.size());
-  for (Eigen::VectorXd* v : {&out.error, &out.predicted, &out.used, &out.sigma})
-    *v = Eigen::VectorXd::Zero(out.offsets.back());
-  out.nodes = Eigen::VectorXi::Zero(out.offsets.back());
-  out.places = Eigen::Matrix3Xd::Zero(3, out.offsets.back());
+  for (const Prediction& p : predictions) out.frames.append(p.measured.size());
+  const Eigen::Index count = out.frames.total();
+  for (Eigen::VectorXd* v : {&out.error, &out.predicted, &out.used, &out.sigma}) *v = Eigen::VectorXd::Zero(count);
+  out.nodes = Eigen::VectorXi::Zero(count);
+  out.places = Eigen::Matrix3Xd::Zero(3, count);
   for (std::size_t k = 0; k < predictions.size(); ++k) {
     const Prediction& p = predictions[k];
     const Eigen::VectorXd weight = row_weights(p);
-    out.places.middleCols(out.offsets[k], p.places.cols()) = p.places;
+    const Eigen::Index from = out.frames.before(static_cast<Eigen::Index>(k));
+    out.places.middleCols(from, p.places.cols()) = p.places;
     for (Eigen::Index i = 0; i < p.measured.size(); ++i) {
-      const Eigen::Index row = out.offsets[k] + i;
+      const Eigen::Index row = from + i;
       if (!(weight[i] > 0.0) || !std::isfinite(p.sigma[i])) continue;
       out.sigma[row] = p.sigma[i];
       out.nodes[row] = p.nodes[i];
@@ -50,9 +51,9 @@ RecordingRows recording_rows(const std::vector<Prediction>& predictions) {
 
 Eigen::VectorXd motion_of(const RecordingRows& rows) {
   Eigen::VectorXd out = Eigen::VectorXd::Zero(rows.predicted.size());
-  const Eigen::Index first = rows.offsets[1];
-  for (std::size_t k = 0; k + 1 < rows.offsets.size(); ++k) {
-    const Eigen::Index from = rows.offsets[k], size = rows.offsets[k + 1] - from;
+  const Eigen::Index first = rows.frames.before(1);
+  for (Eigen::Index k = 0; k < rows.frames.count(); ++k) {
+    const auto [from, size] = rows.frames[k];
     if (size == first) out.segment(from, size) = rows.predicted.segment(from, size) - rows.predicted.head(first);
   }
   return out;

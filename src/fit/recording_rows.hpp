@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "fit/frame_rows.hpp"
 #include "observation/frame_misfit.hpp"
 #include "tissue_stiffness/fit/recording.hpp"
 
@@ -14,10 +15,10 @@ struct RecordingRows {
   Eigen::VectorXd error;      ///< (measured - predicted) / sigma, times used
   Eigen::VectorXd predicted;  ///< predicted / sigma
   Eigen::VectorXd used;
-  Eigen::VectorXd sigma;              ///< [m], or [N] of a force
-  Eigen::VectorXi nodes;              ///< nearest mesh node, or kForceRow
-  Eigen::Matrix3Xd places;            ///< where each row was measured [m]
-  std::vector<Eigen::Index> offsets;  ///< first row of each frame, and the number of rows at the end
+  Eigen::VectorXd sigma;    ///< [m], or [N] of a force
+  Eigen::VectorXi nodes;    ///< nearest mesh node, or kForceRow
+  Eigen::Matrix3Xd places;  ///< where each row was measured [m]
+  FrameRows frames;
 
   /// Returns the number of rows that say something.
   double count() const { return static_cast<double>((used.array() > 0.0).count()); }

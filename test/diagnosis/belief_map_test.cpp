@@ -36,7 +36,7 @@ TEST(BeliefMap, ShowsWhereAndWhenAModelFails) {
   EXPECT_GT(clean.probability.mean(), 0.7);
 
   Eigen::VectorXd wrong = model.rows.error;
-  const auto from = model.rows.offsets[20];  // the last of three thirds
+  const auto from = model.rows.frames.before(20);  // the last of three thirds
   for (Eigen::Index r = from; r < wrong.size(); ++r) {
     if (body.mesh().nodes(0, model.rows.nodes[r]) > 0.08) wrong[r] += 3.0;  // sigmas, alike everywhere: a displacement
   }

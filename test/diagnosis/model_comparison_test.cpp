@@ -107,15 +107,17 @@ TEST_F(CleanBar, SumsTheRootsOfItsRobustWeights) {
   EXPECT_NEAR(log_root_weights(base_.rows), 10.0 * std::log(0.5), 2.0);
 }
 
+auto in_frame(const Eigen::VectorXd& rows, FrameRows::Range range) {
+  return rows.segment(range.from, range.size);
+}
+
 // Returns how many frames of such rows count as one (Bartlett 1946).
-double repeated_frames(const Eigen::VectorXd& rows, const std::vector<Eigen::Index>& offsets) {
-  const std::size_t frames = offsets.size() - 1;
-  const Eigen::Index size = offsets[1] - offsets[0];
+double repeated_frames(const Eigen::VectorXd& rows, const FrameRows& frames) {
   double out = 1.0;
-  for (std::size_t lag = 1; lag < frames; ++lag) {
+  for (Eigen::Index lag = 1; lag < frames.count(); ++lag) {
     double product = 0.0;
-    for (std::size_t k = lag; k < frames; ++k)
-      product += rows.segment(offsets[k], size).dot(rows.segment(offsets[k - lag], size));
+    for (Eigen::Index k = lag; k < frames.count(); ++k)
+      product += in_frame(rows, frames[k]).dot(in_frame(rows, frames[k - lag]));
     out += 2.0 * std::pow(product / rows.squaredNorm(), 2);
   }
   return out;
@@ -128,17 +130,16 @@ TEST_F(CleanBar, AllowsForMeshErrorsThatARefinementDoesNotShow) {
       ModelComparison(base_, slow()).mesh_directions().col(0) / kComparison.whole_mesh;  // along the lowest mode
   const ModelComparison models(base_, change);
   Eigen::VectorXd reversed = change;
-  const std::vector<Eigen::Index>& offsets = base_.rows.offsets;
-  const std::size_t frames = offsets.size() - 1;
-  for (std::size_t k = 0; k < frames; ++k) {
-    const Eigen::Index size = offsets[k + 1] - offsets[k];
-    reversed.segment(offsets[k], size) = change.segment(offsets[frames - 1 - k], size);
+  const FrameRows& frames = base_.rows.frames;
+  for (Eigen::Index k = 0; k < frames.count(); ++k) {
+    const auto [from, size] = frames[k];
+    reversed.segment(from, size) = in_frame(change, frames[frames.count() - 1 - k]);
   }
   // Here C = s I + b R^2 P, where R^2 is the mean square of a frame, and b such frames count as one. For x along the modes,
   // x^T C^-1 x = |x|^2 / (s + b R^2).
-  const double s = models.noise_variance(), share = kComparison.least_of_mesh, repeated = repeated_frames(change, offsets);
+  const double s = models.noise_variance(), share = kComparison.least_of_mesh, repeated = repeated_frames(change, frames);
   EXPECT_GT(repeated, 3.0);
-  const double room = repeated * share * share * change.squaredNorm() / static_cast<double>(frames);
+  const double room = repeated * share * share * change.squaredNorm() / static_cast<double>(frames.count());
   EXPECT_NEAR(models.whitened(reversed).squaredNorm() / s, reversed.squaredNorm() / (s + room),
               0.1 * reversed.squaredNorm() / (s + room));
   const auto loss = [&, before = models.assess(rigid(base_.rows.error)).log_evidence](double times) {
@@ -172,14 +173,11 @@ TEST_F(CleanBar, TestsEachModeAgainstTheMeshsErrorThere) {
 TEST_F(CleanBar, AveragesTheTestOverTheSizesOfTheMeshsError) {
   const Eigen::VectorXd change = 30.0 * ModelComparison(base_, slow()).mesh_directions().col(0) / kComparison.whole_mesh;
   const ModelComparison models(base_, change);
-  const std::vector<Eigen::Index>& offsets = base_.rows.offsets;
-  const std::size_t frames = offsets.size() - 1;
-  const auto in_frame = [&](const Eigen::VectorXd& rows, std::size_t k) {
-    return Eigen::VectorXd(rows.segment(offsets[k], offsets[k + 1] - offsets[k]));
-  };
+  const FrameRows& frames = base_.rows.frames;
   Eigen::VectorXd alternating = change;  // a course in time that the change does not have
-  for (std::size_t k = 0; k < frames; k += 2) alternating.segment(offsets[k], offsets[k + 1] - offsets[k]) *= -1.0;
-  const double repeated = repeated_frames(change, offsets), square = change.squaredNorm() / static_cast<double>(frames);
+  for (Eigen::Index k = 0; k < frames.count(); k += 2) alternating.segment(frames[k].from, frames[k].size) *= -1.0;
+  const double repeated = repeated_frames(change, frames),
+               square = change.squaredNorm() / static_cast<double>(frames.count());
   const auto p_value = [&](const Assessment& assessment) {
     MisfitTest plain = models.test_of(assessment.left, 0.0);
     const double v = plain.noise_level(), dof = plain.structured_dof();
@@ -190,9 +188,11 @@ TEST_F(CleanBar, AveragesTheTestOverTheSizesOfTheMeshsError) {
           kComparison.least_of_mesh * std::pow(kComparison.whole_mesh / kComparison.least_of_mesh, (i + 0.5) / sizes);
       const double share = r * r * square / (v + r * r * square);
       double explained = 0.0;
-      for (std::size_t k = 0; k < frames; ++k)
-        explained += share * std::pow(in_frame(change, k).normalized().dot(in_frame(assessment.left, k)), 2);
-      const double variance = 2.0 * v * v * share * share * repeated * static_cast<double>(frames);
+      for (Eigen::Index k = 0; k < frames.count(); ++k) {
+        const Eigen::VectorXd direction = in_frame(change, frames[k]).normalized();
+        explained += share * std::pow(direction.dot(in_frame(assessment.left, frames[k])), 2);
+      }
+      const double variance = 2.0 * v * v * share * share * repeated * static_cast<double>(frames.count());
       const double deviation = std::sqrt(std::pow(plain.deviation() * dof, 2) + variance) / dof;
       out += normal_cdf(-(plain.excess() - explained / dof - plain.shared_noise()) / deviation) / sizes;
     }

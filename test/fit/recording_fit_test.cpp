@@ -36,8 +36,8 @@ TEST_F(RecordingFitTest, HasRowsOfTheNoiseAtTheTruth) {
   const Recording recording = film({}, kNoise);
   const RecordingFit fit(model(), bar_mesh(), recording);
   const RecordingRows rows = fit.rows(at(kTruth));
-  EXPECT_EQ(rows.offsets.size(), static_cast<std::size_t>(kFrames + 1));
-  EXPECT_EQ(rows.offsets.back(), rows.error.size());
+  EXPECT_EQ(rows.frames.count(), kFrames);
+  EXPECT_EQ(rows.frames.total(), rows.error.size());
   EXPECT_EQ(rows.count(), static_cast<double>(rows.error.size()));
   EXPECT_NEAR(rms_error(rows) / kNoise, 1.0, 0.05);
   EXPECT_NEAR(noise_floor(rows) / kNoise, 1.0, 1e-12);

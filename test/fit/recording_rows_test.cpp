@@ -11,13 +11,26 @@ namespace {
 // Five frames of two rows each, of which the last has three; two rows say nothing, one is of a force.
 RecordingRows some_rows() {
   RecordingRows rows;
-  rows.offsets = {0, 2, 4, 6, 8, 11};
+  rows.frames = {2, 2, 2, 2, 3};
   rows.error = (Eigen::VectorXd(11) << 1, 2, 3, 4, 0, 6, 7, 8, 9, 10, 11).finished();
   rows.predicted = (Eigen::VectorXd(11) << 1, 1, 2, 3, 5, 8, 13, 21, 34, 55, 89).finished();
   rows.used = (Eigen::VectorXd(11) << 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 0).finished();
   rows.sigma = (Eigen::VectorXd(11) << 2, 2, 2, 2, 0, 1, 1, 1, 1, 1, 0).finished();
   rows.nodes = (Eigen::VectorXi(11) << 0, 1, 2, 3, 0, kForceRow, 4, 5, 6, 7, 0).finished();
   return rows;
+}
+
+TEST(FrameRows, LieOneFrameAfterTheOther) {
+  const FrameRows frames = {2, 0, 3};
+  EXPECT_EQ(frames.count(), 3);
+  EXPECT_EQ(frames.total(), 5);
+  EXPECT_EQ(frames.before(2), 2);
+  EXPECT_EQ(frames.before(3), 5);
+  EXPECT_EQ(frames[1].from, 2);
+  EXPECT_EQ(frames[1].size, 0);
+  EXPECT_EQ(frames[2].size, 3);
+  EXPECT_EQ(frames[2].end(), 5);
+  EXPECT_EQ(FrameRows().total(), 0);
 }
 
 TEST(RecordingRows, AreCountedWhereTheySaySomething) {
