@@ -77,14 +77,14 @@ def recorded(args, kind, seed, folder):
     if os.path.exists(os.path.join(folder, 'truth.json')):
         return
     os.makedirs(folder, exist_ok=True)
-    truth, nodes, tets, surface, positions, forces = truths.draw(args.simulator, kind, seed)
+    truth, nodes, tets, surface, positions, wrenches = truths.draw(args.simulator, kind, seed)
     rng = truth.rng
     meshes.write_vtk(os.path.join(folder, 'mesh.vtk'), nodes, tets)
     noise = 0.0
     with rosbag.Bag(os.path.join(folder, 'recording.bag'), 'w') as bag:
         write_pose(bag, truth, rng)
         if kind != 'shaken base':
-            noise = write_force(bag, forces, truths.FPS, truths.FORCE_NOISE, rng)
+            noise = write_force(bag, wrenches[:, :3], truths.FPS, truths.FORCE_NOISE, rng)
         if kind != 'indentation':
             write_points(bag, positions, surface, rng)
     prior = truth.modulus * float(rng.choice(FAR_PRIOR))
@@ -93,7 +93,7 @@ def recorded(args, kind, seed, folder):
             yaml.safe_dump(model_of(truth, case, prior, noise), file, default_flow_style=None, sort_keys=False)
     with open(os.path.join(folder, 'truth.json'), 'w') as file:
         json.dump({'modulus': truth.modulus, 'ratio': truth.ratio, 'body': truth.body,
-                   'force': float(np.abs(forces).max())}, file)
+                   'force': float(np.abs(wrenches[:, :3]).max())}, file)
 
 
 def estimated_case(args, case, folder):

@@ -16,15 +16,22 @@ def stamp(t):
     return genpy.Time.from_sec(START + t)
 
 
-def write_force(bag, forces, rate, share, rng):
-    """Writes forces [N] at a rate [Hz], with noise that is a share of the largest one. Returns the noise [N]."""
-    noise = share * np.abs(forces).max()
-    for k, force in enumerate(forces):
+def write_wrench(bag, wrenches, rate, share, rng):
+    """Writes forces [N], and torques [N m] where a row has six numbers, at a rate [Hz]. Their noise is a share of the
+    largest one of each. Returns the noise of each."""
+    parts = np.asarray(wrenches).reshape(len(wrenches), -1, 3)
+    noise = share * np.abs(parts).max(axis=(0, 2))
+    for k, vectors in enumerate(parts):
         message = WrenchStamped(header=simulate_header(k, stamp(k / rate)))
-        f = message.wrench.force
-        f.x, f.y, f.z = force + noise * rng.standard_normal(3)
+        for part, vector, std in zip((message.wrench.force, message.wrench.torque), vectors, noise):
+            part.x, part.y, part.z = vector + std * rng.standard_normal(3)
         bag.write('/tool/wrench', message, message.header.stamp)
-    return float(noise)
+    return [float(std) for std in noise]
+
+
+def write_force(bag, forces, rate, share, rng):
+    """Does so with forces alone. Returns their noise [N]."""
+    return write_wrench(bag, forces, rate, share, rng)[0]
 
 
 def estimated(program, model, recording, out):

@@ -41,7 +41,7 @@ def recorded(args, kind, seed, folder):
     if os.path.exists(os.path.join(folder, 'truth.json')):
         return
     os.makedirs(folder, exist_ok=True)
-    truth, nodes, tets, _, _, forces = truths.draw(args.simulator, kind, seed, one_modulus=True)
+    truth, nodes, tets, _, _, wrenches = truths.draw(args.simulator, kind, seed, one_modulus=True)
     import render  # beside the simulator
     import simulate
     meshes.write_vtk(os.path.join(folder, 'mesh.vtk'), nodes, tets)
@@ -51,7 +51,7 @@ def recorded(args, kind, seed, folder):
         track_film.write(bag, folder)
         write_pose(bag, truth, truth.rng)
         if kind != 'shaken base':
-            force_noise = write_force(bag, forces, truths.FPS, truths.FORCE_NOISE, truth.rng)
+            force_noise = write_force(bag, wrenches[:, :3], truths.FPS, truths.FORCE_NOISE, truth.rng)
     prior = truth.modulus * float(truth.rng.choice(FAR_PRIOR))
     with open(os.path.join(folder, 'model.yaml'), 'w') as file:
         yaml.safe_dump(model_of(truth, prior, force_noise), file, default_flow_style=None, sort_keys=False)

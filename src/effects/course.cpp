@@ -42,6 +42,7 @@ Course& Course::operator=(const Course& other) {
   kind_ = other.kind_;
   components_ = other.components_;
   from_file_ = other.from_file_;
+  torque_ = other.torque_;
   offset_ = other.offset_;
   path_ = other.path_;
   times_ = other.times_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <optional>
@@ -40,8 +41,11 @@ class Course {
   /// Subtracts the error that `basis` and its coefficients describe from every sample, including future ones. The estimated
   /// load is measured - B(t) coefficients. Without coefficients the load is as measured.
   void correct(const LoadErrorBasis& basis, const Eigen::VectorXd& coefficients);
-  /// Returns the number of components whose errors are estimated: 3 of a wrench and of a pose, 1 of a pressure.
-  int acting() const { return components_ < 3 ? components_ : 3; }
+  /// Returns the number of components that act, whose errors are estimated: 1 of a pressure, 3 of a wrench whose torque
+  /// does not act and of a pose, and 6 of a wrench whose torque does.
+  int acting() const { return torque_ ? components_ : std::min(components_, 3); }
+  /// Lets the torque of a wrench act.
+  void use_torque() { torque_ = true; }
   const LoadTolerance& tolerance() const { return tolerance_; }
   void set_tolerance(const LoadTolerance& tolerance) { tolerance_ = tolerance; }
   /// Returns the time of the last sample [s]; empty before the first.
@@ -73,7 +77,7 @@ class Course {
   mutable std::shared_mutex mutex_;  ///< protects everything below
   LoadInput::Kind kind_;
   int components_;
-  bool from_file_ = false;
+  bool from_file_ = false, torque_ = false;
   double offset_ = 0.0;
   std::vector<double> times_;
   std::vector<Eigen::VectorXd> values_;     ///< as measured

@@ -5,24 +5,13 @@
 
 namespace tissue_stiffness {
 
-std::shared_ptr<Course> load_csv(const Value& course, LoadInput::Kind kind, const EffectContext& context) {
-  std::string file = course.at("file").as_text();
-  if (!file.empty() && file[0] != '/') file = context.settings.directory + "/" + file;
-  return std::make_shared<Course>(Course::from_csv(file, kind));
-}
+namespace {
 
-std::shared_ptr<Course> load_course(const Value& arguments, LoadInput::Kind kind, const EffectContext& context) {
-  if (arguments.has("topic") == arguments.has("course")) {
-    throw InputError(arguments.path(), arguments.has("topic") ? "topic and course" : "neither topic nor course",
-                     "one of the two");
-  }
-  const LoadTolerance tolerance = kind == LoadInput::Kind::pose
-                                      ? read_motion_tolerance(arguments)
-                                      : read_load_tolerance(arguments, kind == LoadInput::Kind::wrench);
+// Effects of one model share the course of a file or topic.
+std::shared_ptr<Course> course_of(const Value& arguments, LoadInput::Kind kind, const EffectContext& context) {
   if (arguments.has("course")) {
     auto& course = context.courses["file:" + arguments.at("course").at("file").as_text()];
     if (course == nullptr || course->kind() != kind) course = load_csv(arguments.at("course"), kind, context);
-    course->set_tolerance(tolerance);
     return course;
   }
   const std::string topic = arguments.at("topic").as_text();
@@ -34,8 +23,28 @@ std::shared_ptr<Course> load_course(const Value& arguments, LoadInput::Kind kind
   } else if (known->kind != kind) {
     throw InputError(arguments.at("topic").path(), topic, "one type of message a topic");
   }
-  context.courses[topic]->set_tolerance(tolerance);
   return context.courses[topic];
+}
+
+}  // namespace
+
+std::shared_ptr<Course> load_csv(const Value& course, LoadInput::Kind kind, const EffectContext& context) {
+  std::string file = course.at("file").as_text();
+  if (!file.empty() && file[0] != '/') file = context.settings.directory + "/" + file;
+  return std::make_shared<Course>(Course::from_csv(file, kind));
+}
+
+std::shared_ptr<Course> load_course(const Value& arguments, LoadInput::Kind kind, const EffectContext& context) {
+  if (arguments.has("topic") == arguments.has("course")) {
+    throw InputError(arguments.path(), arguments.has("topic") ? "topic and course" : "neither topic nor course",
+                     "one of the two");
+  }
+  const bool wrench = kind == LoadInput::Kind::wrench;
+  const std::shared_ptr<Course> course = course_of(arguments, kind, context);
+  if (wrench && arguments.has("torque_about")) course->use_torque();
+  course->set_tolerance(kind == LoadInput::Kind::pose ? read_motion_tolerance(arguments)
+                                                      : read_load_tolerance(arguments, wrench, course->acting() == 6));
+  return course;
 }
 
 }  // namespace tissue_stiffness

@@ -24,10 +24,28 @@ double correlation(const LoadTolerance& noise, double lag) {
   return noise.smooth ? (1.0 + r) * std::exp(-r) : std::exp(-lag / noise.correlation_time);
 }
 
+std::string name_of(LoadErrorBasis::Error error) {
+  switch (error) {
+    case LoadErrorBasis::Error::gain:
+      return "gain";
+    case LoadErrorBasis::Error::bias:
+      return "bias";
+    case LoadErrorBasis::Error::delay:
+      return "delay";
+    case LoadErrorBasis::Error::hysteresis:
+      return "hysteresis";
+    case LoadErrorBasis::Error::direction:
+      return "direction";
+    case LoadErrorBasis::Error::noise:
+      return "noise";
+  }
+  return "";
+}
+
 }  // namespace
 
 bool LoadTolerance::exact() const {
-  for (const double std : {gain, bias, noise, delay, hysteresis, direction}) {
+  for (const double std : {gain, bias, noise, delay, hysteresis, direction, torque_bias, torque_noise, torque_hysteresis}) {
     if (std != 0.0) return false;
   }
   return true;
@@ -48,8 +66,17 @@ std::vector<std::pair<std::string, std::string>> load_error_keys(const std::stri
   return keys;
 }
 
-LoadTolerance read_load_tolerance(const Value& arguments, bool has_direction) {
+std::vector<std::pair<std::string, std::string>> torque_error_keys() {
+  const std::string absolute = " of the torque [N m], 1 sigma; ";
+  return {{"torque_bias", "constant offset of each component" + absolute + "10 % of the largest torque when absent"},
+          {"torque_noise", "slow noise of each component" + absolute + "2 % of the largest torque when absent"},
+          {"torque_hysteresis",
+           "offset along the sign of the rate of change" + absolute + "3 % of the largest torque when absent"}};
+}
+
+LoadTolerance read_load_tolerance(const Value& arguments, bool has_direction, bool has_torque) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
+  const LoadTolerance usual;
   LoadTolerance out;
   if (arguments.has("scale") && arguments.at("scale").type() == Value::Type::map) out.gain = 0.0;
   out.gain = arguments.number_or("gain", out.gain, 0.0, 1.0, "-");
@@ -60,6 +87,10 @@ LoadTolerance read_load_tolerance(const Value& arguments, bool has_direction) {
   out.delay = arguments.number_or("delay", out.delay, 0.0, 10.0, "s");
   out.hysteresis = arguments.number_or("hysteresis", out.hysteresis, 0.0, infinity, "");
   out.direction = has_direction ? arguments.number_or("direction", out.direction, 0.0, 1.0, "rad") : 0.0;
+  if (!has_torque) return out;
+  out.torque_bias = arguments.number_or("torque_bias", usual.bias, 0.0, infinity, "N m");
+  out.torque_noise = arguments.number_or("torque_noise", usual.noise, 0.0, infinity, "N m");
+  out.torque_hysteresis = arguments.number_or("torque_hysteresis", usual.hysteresis, 0.0, infinity, "N m");
   return out;
 }
 
@@ -87,24 +118,39 @@ LoadTolerance read_motion_tolerance(const Value& arguments) {
 
 LoadErrorBasis::LoadErrorBasis(const LoadTolerance& tolerance, const Load& measured, int components, double begin,
                                double end)
-    : tolerance_(tolerance), components_(components), begin_(begin) {
+    : tolerance_(tolerance), components_(components), begin_(begin), rates_(Eigen::VectorXd::Zero(components)) {
+  std::vector<Part> parts{{0, std::min(components, 3), "", "", tolerance.bias, tolerance.noise, tolerance.hysteresis}};
+  if (components == 6) {
+    parts.push_back({3, 3, "torque ", "N m", tolerance.torque_bias, tolerance.torque_noise, tolerance.torque_hysteresis});
+  }
+  for (Part& part : parts) measure(measured, end, part);
+  place_knots(end);
+  const Part whole{0, components, "", "", 0.0, 0.0, 0.0};
+  add(Error::gain, whole, 1, tolerance.gain, "-");
+  for (const Part& part : parts) add(Error::bias, part, part.rows, part.bias, part.unit);
+  add(Error::delay, whole, 1, tolerance.delay, "s");
+  for (const Part& part : parts) add(Error::hysteresis, part, part.rows, part.hysteresis, part.unit);
+  if (components >= 3) add(Error::direction, whole, 3, tolerance.direction, "rad");
+  const auto knots = static_cast<int>(knots_.cols());
+  for (const Part& part : parts) add(Error::noise, part, part.rows * knots, part.noise, part.unit);
+}
+
+// Finds the size and the rate of a part's load, of which its errors may be shares.
+void LoadErrorBasis::measure(const Load& measured, double end, Part& part) {
   double largest = 0.0, square = 0.0;
   for (int k = 0; k <= kSamples; ++k) {
-    const double time = begin + (end - begin) * k / kSamples;
-    largest = std::max(largest, measured(time).norm());
-    square += rate(measured, time).squaredNorm();
+    const double time = begin_ + (end - begin_) * k / kSamples;
+    largest = std::max(largest, measured(time).segment(part.row, part.rows).norm());
+    square += rate(measured, time).segment(part.row, part.rows).squaredNorm();
   }
-  rate_ = std::sqrt(square / (components * (kSamples + 1)));
-  for (double* std : {&tolerance_.bias, &tolerance_.noise, &tolerance_.hysteresis}) {
+  rates_.segment(part.row, part.rows).setConstant(std::sqrt(square / (part.rows * (kSamples + 1))));
+  for (double* std : {&part.bias, &part.noise, &part.hysteresis}) {
     if (*std < 0.0) *std *= -largest;
   }
-  add("gain", 1, tolerance_.gain, "-");
-  add("bias", components, tolerance_.bias, "");
-  add("delay", 1, tolerance_.delay, "s");
-  add("hysteresis", components, tolerance_.hysteresis, "");
-  if (components == 3) add("direction", 3, tolerance_.direction, "rad");
-  if (!(tolerance_.noise > 0.0)) return;
-  const double span = std::max(end - begin, 1e-6);
+}
+
+void LoadErrorBasis::place_knots(double end) {
+  const double span = std::max(end - begin_, 1e-6);
   const int count =
       std::clamp(static_cast<int>(std::ceil(kKnotsPerTime * span / tolerance_.correlation_time)) + 1, 2, kMostKnots);
   spacing_ = span / (count - 1);
@@ -113,12 +159,11 @@ LoadErrorBasis::LoadErrorBasis(const LoadTolerance& tolerance, const Load& measu
     for (int j = 0; j < count; ++j) covariance(i, j) = correlation(tolerance_, std::abs(i - j) * spacing_);
   }
   knots_ = Eigen::MatrixXd(covariance.llt().matrixL());
-  add("noise", count * components, tolerance_.noise, "");
 }
 
-void LoadErrorBasis::add(const std::string& name, int count, double std, const std::string& unit) {
+void LoadErrorBasis::add(Error error, const Part& part, int count, double std, const std::string& unit) {
   if (!(std > 0.0)) return;
-  groups_.push_back({name, size_, count, std, unit});
+  groups_.push_back({error, part.prefix + name_of(error), size_, count, std, unit, part.row, part.rows});
   size_ += count;
 }
 
@@ -140,22 +185,33 @@ Eigen::MatrixXd LoadErrorBasis::value(const Load& measured, double time) const {
     Eigen::MatrixXd out = Eigen::MatrixXd::Zero(components_, size_);
     const Eigen::VectorXd load = measured(now), slope = rate(measured, now);
     for (const Group& group : groups_) {
-      auto block = out.middleCols(group.first, group.count);
-      if (group.name == "gain") {
-        block = group.std * load;
-      } else if (group.name == "bias") {
-        block.diagonal().setConstant(group.std);
-      } else if (group.name == "delay") {
-        block = -group.std * slope;
-      } else if (group.name == "hysteresis") {
-        const double turning = std::max(kTurning * rate_, std::numeric_limits<double>::min());
-        block.diagonal() = group.std * (slope.array() / turning).tanh().matrix();
-      } else if (group.name == "direction") {
-        const Eigen::Vector3d force = load;
-        for (int i = 0; i < 3; ++i) block.col(i) = group.std * Eigen::Vector3d::Unit(i).cross(force);
-      } else {
-        const Eigen::RowVectorXd row = group.std * hats(now) * knots_;
-        for (int i = 0; i < components_; ++i) block.block(i, i * knots_.rows(), 1, knots_.rows()) = row;
+      auto block = out.block(group.row, group.first, group.rows, group.count);
+      switch (group.error) {
+        case Error::gain:
+          block = group.std * load;
+          break;
+        case Error::bias:
+          block.diagonal().setConstant(group.std);
+          break;
+        case Error::delay:
+          block = -group.std * slope;
+          break;
+        case Error::hysteresis:
+          for (int i = 0; i < group.rows; ++i) {
+            const double turning = std::max(kTurning * rates_[group.row + i], std::numeric_limits<double>::min());
+            block(i, i) = group.std * std::tanh(slope[group.row + i] / turning);
+          }
+          break;
+        case Error::direction:
+          for (int row = 0; row < group.rows; row += 3) {
+            const Eigen::Vector3d vector = load.segment<3>(row);
+            for (int i = 0; i < 3; ++i) block.block<3, 1>(row, i) = group.std * Eigen::Vector3d::Unit(i).cross(vector);
+          }
+          break;
+        case Error::noise:
+          const Eigen::RowVectorXd row = group.std * hats(now) * knots_;
+          for (int i = 0; i < group.rows; ++i) block.block(i, i * knots_.cols(), 1, knots_.cols()) = row;
+          break;
       }
     }
     return out;

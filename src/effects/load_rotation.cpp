@@ -4,7 +4,6 @@
 
 #include "effects/force_shares.hpp"
 #include "effects/registry.hpp"
-#include "fem/facet_quadrature.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness::effects {
@@ -17,36 +16,37 @@ Eigen::Matrix3d rotation(const Parameters& angles) {
   return Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
 }
 
-// Returns the course of the traction on this region.
-std::shared_ptr<Course> course_on(const Value& region, const EffectContext& context) {
+// Returns what the traction on this region reads.
+const Value& traction_on(const Value& region, const EffectContext& context) {
   for (const EffectSettings& effect : context.settings.effects) {
-    if (effect.name != "traction" || effect.arguments.at("region").as_text() != region.as_text()) continue;
-    return load_course(effect.arguments, LoadInput::Kind::wrench, context);
+    if (effect.name == "traction" && effect.arguments.at("region").as_text() == region.as_text()) return effect.arguments;
   }
   throw InputError(region.path(), region.shown(), "the region of a `traction` effect");
 }
 
 class LoadRotation : public Effect {
  public:
-  LoadRotation(const Value& arguments, const EffectContext& context)
-      : weights_(force_shares(arguments.at("region"), context)), course_(course_on(arguments.at("region"), context)) {}
+  LoadRotation(const Value& traction, const EffectContext& context)
+      : patterns_(wrench_patterns(traction, context)), course_(load_course(traction, LoadInput::Kind::wrench, context)) {}
 
-  // Adds the difference between the rotated force and the measured one.
+  // Adds the difference between the rotated force and torque and the measured ones.
   void linear_terms(LinearTerms& out) const override {
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) {
-        LoadTerm load;
-        load.pattern = along_axis(weights_, i);
-        load.coefficient = [i, j](const Parameters& p) { return rotation(p)(i, j) - (i == j ? 1.0 : 0.0); };
-        load.course = course_;
-        load.component = j;
-        out.loads.push_back(std::move(load));
+    for (std::size_t first = 0; first < patterns_.size(); first += 3) {
+      for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) {
+          LoadTerm load;
+          load.pattern = patterns_[first + static_cast<std::size_t>(i)];
+          load.coefficient = [i, j](const Parameters& p) { return rotation(p)(i, j) - (i == j ? 1.0 : 0.0); };
+          load.course = course_;
+          load.component = static_cast<int>(first) + j;
+          out.loads.push_back(std::move(load));
+        }
       }
     }
   }
 
  private:
-  Eigen::VectorXd weights_;
+  std::vector<Eigen::VectorXd> patterns_;  ///< of each component of the wrench
   std::shared_ptr<Course> course_;
 };
 
@@ -64,8 +64,9 @@ std::vector<Proposal> propose(const ProposalContext& context) {
 EffectSpec load_rotation_spec() {
   EffectSpec spec;
   spec.name = "load_rotation";
-  spec.summary = "the measured force of a `traction` is turned: the axes of its sensor are not the model's";
-  spec.formula = "(R(a) - I) F(t) int N_a dA / A";
+  spec.summary =
+      "the measured force of a `traction`, and its torque, are turned: the axes of the sensor are not the model's";
+  spec.formula = "a traction by (R(a) - I) F(t), and (R(a) - I) T(t)";
   spec.source = "an error of the sensor's mounting or of a transform";
   spec.parameters = {{"angles", "a", "rad", -3.2, 3.2, ParameterSpec::Default::required, 0.0, 0.0, 3}};
   spec.keys = {{"region", "region of a `traction` effect"}};
@@ -74,7 +75,7 @@ EffectSpec load_rotation_spec() {
 }
 
 std::unique_ptr<Effect> make_load_rotation(const Value& arguments, const EffectContext& context) {
-  return std::make_unique<LoadRotation>(arguments, context);
+  return std::make_unique<LoadRotation>(traction_on(arguments.at("region"), context), context);
 }
 
 }  // namespace tissue_stiffness::effects

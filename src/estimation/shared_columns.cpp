@@ -8,7 +8,7 @@ namespace {
 
 // Returns the share of an error's variance that its sensor has in all recordings.
 double shared_variance(const std::string& error) {
-  if (error == "noise") return 0.0;
+  if (error == "noise" || error == "torque noise") return 0.0;
   if (error == "gain" || error == "delay" || error == "direction") return 1.0;
   return 0.5;  // bias, hysteresis, pose
 }

@@ -15,27 +15,35 @@ namespace {
 constexpr double kTruth = 20e3;
 constexpr int kFrames = 40;
 
-ModelSettings pushed() {
-  ModelSettings model = box_settings({"inertia: {density: 1000}", modulus(prior(kTruth, 3)), "fixed: {region: clamp}",
-                                      "viscous_damping: {beta: 4.0e-3}", "traction: {region: tip, topic: /wrench}"});
+ModelSettings pushed(const std::string& torque = "") {
+  ModelSettings model =
+      box_settings({"inertia: {density: 1000}", modulus(prior(kTruth, 3)), "fixed: {region: clamp}",
+                    "viscous_damping: {beta: 4.0e-3}", "traction: {region: tip, topic: /wrench" + torque + "}"});
   model.exact_inputs = false;
   return model;
 }
 
+LoadSample twisting_wrench(double time) {
+  LoadSample sample = swaying_wrench(time);
+  sample.value[3] = 5e-5 * std::sin(5.0 * time);
+  sample.value[5] = 3e-5 * (1.0 - std::cos(3.0 * time));
+  return sample;
+}
+
 struct Setting {
-  ModelSettings settings = pushed();
+  ModelSettings settings;
   TetMesh mesh = bar_mesh();
   std::unique_ptr<Model> model;
   std::unique_ptr<InputModels> models;
   std::unique_ptr<MeshError::Question> question;
 
-  Setting() {
+  explicit Setting(ModelSettings model_settings = pushed()) : settings(std::move(model_settings)) {
     Experiment bar(settings, mesh, {kTruth});
     model = std::make_unique<Model>(settings, mesh);
     model->loads().set_first_stamp(0.0);
     for (int k = 0; k < 260; ++k) {
-      bar.add_load(swaying_wrench(0.005 * k));
-      model->loads().courses().at("/wrench")->add(0.005 * k, swaying_wrench(0.005 * k).value);
+      bar.add_load(twisting_wrench(0.005 * k));
+      model->loads().courses().at("/wrench")->add(0.005 * k, twisting_wrench(0.005 * k).value);
     }
     const std::vector<Frame> frames = see_all(bar, bar.film(0.0, kFilmed, kFrames), kNoise, 7);
     models = std::make_unique<InputModels>(*model);
@@ -93,8 +101,10 @@ TEST(InputModels, HaveABasisThatLeavesOutASmallPartOfTheNoise) {
   EXPECT_LE(sigmas(), kBasisShare);
 }
 
-TEST(InputLinearisation, ColumnsAreTheDerivativesOfTheRows) {
-  Setting setting;
+class InputLinearisationOf : public testing::TestWithParam<std::string> {};
+
+TEST_P(InputLinearisationOf, ColumnsAreTheDerivativesOfTheRows) {
+  Setting setting(pushed(GetParam()));
   InputLinearisation linearisation(*setting.question, *setting.models);
   Eigen::VectorXd z = Eigen::VectorXd::Zero(linearisation.size());
   z[0] = setting.model->parameters().prior_mean()[0];
@@ -107,6 +117,24 @@ TEST(InputLinearisation, ColumnsAreTheDerivativesOfTheRows) {
     const Eigen::VectorXd change = (rows_at(linearisation, low).error - rows_at(linearisation, high).error) / (2.0 * step);
     EXPECT_LT((change - there.columns.col(i)).norm(), 0.01 * there.columns.col(i).norm() + 1e-9) << i;
   }
+}
+
+INSTANTIATE_TEST_SUITE_P(Loads, InputLinearisationOf, testing::Values("", ", torque_about: [0.14, 0.01, 0.03]"));
+
+TEST(InputLinearisation, NamesTheErrorsOfATorqueThatActs) {
+  Setting force, torque(pushed(", torque_about: [0.14, 0.01, 0.03]"));
+  const auto names = [](const Setting& setting) {
+    std::string out;
+    for (const InputGroup& group : InputLinearisation(*setting.question, *setting.models).groups()) {
+      if (group.load >= 0) out += group.error + " [" + group.unit + "] ";
+    }
+    return out;
+  };
+  EXPECT_EQ(names(force), "gain [-] bias [N] delay [s] hysteresis [N] direction [rad] noise [N] ");
+  EXPECT_EQ(
+      names(torque),
+      "gain [-] bias [N] torque bias [N m] delay [s] hysteresis [N] torque hysteresis [N m] direction [rad] noise [N] "
+      "torque noise [N m] ");
 }
 
 }  // namespace

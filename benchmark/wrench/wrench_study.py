@@ -1,0 +1,114 @@
+"""A tool that presses on the end of a body, whose sensor tells force and torque, on truths of the independent simulator: is E
+right, with the torque and without it? usage: wrench_study.py ROOT --output FOLDER [--seeds N] [--estimate PROGRAM]"""
+import argparse
+import json
+import os
+import sys
+
+import numpy as np
+import rosbag
+import yaml
+
+import meshes
+import wrench_truths as truths
+from moving_study import write_points
+from rig_recordings import FAR_PRIOR, estimated, write_wrench
+from study_arguments import study_arguments
+
+CASES = ('force and torque', 'force alone')
+WANTED = 0.03
+
+
+def model_of(truth, case, prior, noise):
+    force, torque = noise
+    traction = {'region': 'tool', 'topic': '/tool/wrench', 'gain': 0.005, 'bias': force, 'noise': force, 'hysteresis': 0.0,
+                'direction': 0.01}
+    if case == 'force and torque':
+        traction.update(torque_about=[float(x) for x in truth.sensor], torque_bias=torque, torque_noise=torque,
+                        torque_hysteresis=0.0)
+    elasticity = {'law': 'linear', 'young_modulus': {'prior': prior, 'factor': 3.0}, 'poisson_ratio': truths.POISSON}
+    return {'mesh': {'file': 'mesh.vtk'}, 'regions': truth.regions,
+            'effects': [{'inertia': {'density': truths.DENSITY}}, {'elasticity': elasticity}, {'fixed': {'region': 'clamp'}},
+                        {'traction': traction}],
+            'observations': [{'vertices': {'topic': '/tissue/vertices', 'noise': truths.POINT_NOISE}}]}
+
+
+def recorded(args, seed, folder):
+    """Makes the recording and the models; what is there is kept."""
+    if os.path.exists(os.path.join(folder, 'truth.json')):
+        return
+    os.makedirs(folder, exist_ok=True)
+    truth, nodes, tets, surface, positions, wrenches = truths.draw(args.simulator, seed)
+    meshes.write_vtk(os.path.join(folder, 'mesh.vtk'), nodes, tets)
+    with rosbag.Bag(os.path.join(folder, 'recording.bag'), 'w') as bag:
+        noise = write_wrench(bag, wrenches, truths.FPS, truths.FORCE_NOISE, truth.rng)
+        write_points(bag, positions, surface, truth.rng)
+    prior = truth.modulus * float(truth.rng.choice(FAR_PRIOR))
+    for case in CASES:
+        with open(os.path.join(folder, case.replace(' ', '_') + '.yaml'), 'w') as file:
+            yaml.safe_dump(model_of(truth, case, prior, noise), file, default_flow_style=None, sort_keys=False)
+    with open(os.path.join(folder, 'truth.json'), 'w') as file:
+        json.dump({'modulus': truth.modulus, 'body': truth.body}, file)
+
+
+PAGE = """# A tool that measures force and torque: how far E is off
+
+`scripts/measure_wrench` writes this page. The recordings come from an independent simulator (FEniCSx, other mesh, other integrator), in which a
+tool presses on two small places on the end of a body, each at its own rate. The sensor is {height:.0f} mm above that end. The model knows no place, but
+the wrench on the whole end: `traction` with `torque_about`, and without. Points come at {fps:.0f} Hz with {point_noise:.1f} mm of noise. Forces and
+torques have {force_noise:.0f} % of noise. The prior is off by a factor of 0.4 to 2.5.
+
+| case | draws | converged | median error of those | largest | wanted | intervals that hold, of all |
+|---|---|---|---|---|---|---|
+{table}
+
+| case | draw | body | error | the interval holds the truth | its half width | state |
+|---|---|---|---|---|---|---|
+{draws}
+"""
+
+
+def page(rows):
+    table, draws = [], []
+    for case in CASES:
+        own = [r for r in rows if r['case'] == case]
+        told = [abs(r['error']) for r in own if r['state'] == 'converged']
+        table.append('| %s | %d | %d | %s | %s | %.0f %% | %d of %d |' % (
+            case, len(own), len(told), '%.1f %%' % (100 * np.median(told)) if told else '-',
+            '%.1f %%' % (100 * max(told)) if told else '-', 100 * WANTED, sum(r['inside'] for r in own), len(own)))
+        draws += ['| %s | %d | %s | %+.1f %% | %s | %.1f %% | %s |' % (
+            case, r['seed'], r['body'], 100 * r['error'], 'yes' if r['inside'] else 'no', 100 * r['width'], r['state'])
+            for r in own]
+    return PAGE.format(table='\n'.join(table), draws='\n'.join(draws), height=1e3 * truths.SENSOR_HEIGHT, fps=truths.FPS,
+                       point_noise=1e3 * truths.POINT_NOISE, force_noise=100 * truths.FORCE_NOISE)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('--seeds', type=int, default=8)
+    args = study_arguments(parser, 'estimate', 'wrench')
+    rows = []
+    for seed in range(args.seeds):
+        folder = os.path.join(args.output, str(seed))
+        recorded(args, seed, folder)
+        with open(os.path.join(folder, 'truth.json')) as file:
+            truth = json.load(file)
+        for case in CASES:
+            model = os.path.join(folder, case.replace(' ', '_') + '.yaml')
+            result, code = estimated(args.estimate, model, os.path.join(folder, 'recording.bag'), model[:-5])
+            found = result['parameters']['elasticity.young_modulus']
+            low, high = found['interval95']
+            rows.append({'case': case, 'seed': seed, 'body': truth['body'], 'error': found['mean'] / truth['modulus'] - 1.0,
+                         'inside': bool(low <= truth['modulus'] <= high), 'width': 0.5 * (high - low) / found['mean'],
+                         'state': result.get('state', '')})
+            print('%-16s %d %-6s error %+6.2f %%  %-7s %s exit %d' % (
+                case, seed, truth['body'], 100 * rows[-1]['error'], 'inside' if rows[-1]['inside'] else 'OUTSIDE',
+                rows[-1]['state'], code), flush=True)
+    text = page(rows)
+    print('\n' + text)
+    with open(os.path.join(args.root, 'doc', 'wrench.md'), 'w') as file:
+        file.write(text)
+
+
+if __name__ == '__main__':
+    sys.exit(main())
