@@ -29,8 +29,8 @@ const std::map<std::string, std::set<std::string>> kAllowed = [] {
   add("meshing", {"settings"});
   add("vtu", {"meshing"});
   add("fem", {"settings"});
-  add("effects", {"fem"});
-  add("forward", {"effects", "meshing"});
+  add("effects", {"fem", "meshing"});
+  add("forward", {"effects"});
   add("export", {"forward"});
   add("filter", {"types"});
   add("observation", {"forward", "filter"});

@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 
 #include "effects/registry.hpp"
 #include "fem/facet_quadrature.hpp"
@@ -48,8 +49,8 @@ std::vector<Eigen::VectorXd> wrench_patterns(const Value& arguments, const Effec
     throw InputError(arguments.at("region").path(), arguments.at("region").shown(),
                      "with `torque_about`, a region that is neither a point nor a line, because those take no torque");
   }
-  const Eigen::Matrix3d turn = eigen.operatorInverseSqrt() * eigen.operatorInverseSqrt();  // theta of a unit torque
-  const Eigen::Matrix3d lever = turn * cross_matrix(about - centre);                       // and of a unit force
+  const Eigen::Matrix3d turn = inertia.inverse();                     // theta of a unit torque
+  const Eigen::Matrix3d lever = turn * cross_matrix(about - centre);  // and of a unit force
   const auto turned = [&](const Eigen::Vector3d& theta) {
     const Eigen::Matrix3Xd forces = cross_matrix(theta) * from_centre * shares.asDiagonal();
     return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(forces.data(), forces.size()));

@@ -1,4 +1,4 @@
-// A rigid tool, whose pose is measured, touches the surface wherever it is: a ball, a capsule or a flat punch.
+// A rigid tool, whose pose is measured, touches the surface wherever it is.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,141 +7,76 @@
 #include "effects/registry.hpp"
 #include "effects/rigid_contact.hpp"
 #include "effects/solids.hpp"
-#include "tissue_stiffness/types/error.hpp"
+#include "effects/tool_shape.hpp"
 
 namespace tissue_stiffness::effects {
 namespace {
 
-constexpr double kRelativePenalty = 100.0;                   // of E over the facets' size, when `stiffness` is absent
-constexpr double kLeastRadius = 1e-5, kLargestRadius = 1.0;  // [m]
-constexpr double kResolution = 0.25;                         // of the radius, for the quadrature
-constexpr double kVelocityStep = 5e-4;                       // [s]
-constexpr double kPathStep = 0.01;                           // [s] between the poses that a path is read at
+constexpr double kRelativePenalty = 100.0;  // of E over the facets' size, when `stiffness` is absent
+constexpr double kResolution = 0.25;        // of the tool's size, for the quadrature
+constexpr double kVelocityStep = 5e-4;      // [s]
+constexpr double kPathStep = 0.01;          // [s] between the poses that a path is read at
 constexpr LoadTolerance kExact{0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0};
 enum Index { kRadius, kOffset, kStiffness, kFriction, kOwn };
 
-using Pose = Eigen::Matrix<double, 3, 4>;
-
-Eigen::Vector3d apply(const Pose& pose, const Eigen::Vector3d& point) {
-  return pose.leftCols<3>() * point + pose.col(3);
-}
-
-/// All points within `radius` of the segment from `from` to `to`; a ball where both are one.
-class Capsule : public Obstacle {
+/// A tool that drags the tissue along.
+class MovingTool : public Obstacle {
  public:
-  Capsule(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double radius)
-      : from_(from), axis_(to - from), radius_(radius) {}
-
-  Distance distance(const Eigen::Vector3d& point) const override {
-    const Eigen::Vector3d out = point - from_;
-    const double length = axis_.squaredNorm(), s = length > 0.0 ? axis_.dot(out) / length : 0.0;
-    const Eigen::Vector3d off = out - std::clamp(s, 0.0, 1.0) * axis_;
-    const double far = std::max(off.norm(), 1e-12);
-    const Eigen::Vector3d n = off / far;
-    Eigen::Matrix3d curvature = Eigen::Matrix3d::Identity() - n * n.transpose();
-    if (s > 0.0 && s < 1.0) curvature -= axis_ * axis_.transpose() / length;
-    return {far - radius_, n, curvature / far};
-  }
-
- private:
-  Eigen::Vector3d from_, axis_;
-  double radius_;
-};
-
-/// A cylinder with flat ends at `from` and `to`.
-class Cylinder : public Obstacle {
- public:
-  Cylinder(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double radius)
-      : from_(from), length_((to - from).norm()), direction_((to - from) / length_), radius_(radius) {}
-
-  Distance distance(const Eigen::Vector3d& point) const override {
-    const double s = direction_.dot(point - from_);
-    const Eigen::Vector3d off = point - from_ - s * direction_;
-    const double far = std::max(off.norm(), 1e-12), beyond_side = far - radius_, beyond_end = std::max(-s, s - length_);
-    if (beyond_side > 0.0 && beyond_end > 0.0) {  // nearest is the rim, which only a point outside may have
-      const double gap = std::hypot(beyond_side, beyond_end);
-      return {gap, (beyond_side * off / far + beyond_end * end_normal(s)) / gap, Eigen::Matrix3d::Zero()};
-    }
-    if (beyond_end >= beyond_side) return {beyond_end, end_normal(s), Eigen::Matrix3d::Zero()};
-    const Eigen::Vector3d n = off / far;
-    return {beyond_side, n, (Eigen::Matrix3d::Identity() - n * n.transpose() - direction_ * direction_.transpose()) / far};
-  }
-
- private:
-  Eigen::Vector3d end_normal(double s) const { return 2.0 * s < length_ ? Eigen::Vector3d(-direction_) : direction_; }
-
-  Eigen::Vector3d from_;
-  double length_;
-  Eigen::Vector3d direction_;
-  double radius_;
-};
-
-/// A shape that moves with the tool.
-template <typename Shape>
-class MovingTool : public Shape {
- public:
-  MovingTool(const Shape& shape, const Pose& now, const Pose& before, const Pose& after)
-      : Shape(shape), now_(now), before_(before), after_(after) {}
+  MovingTool(std::shared_ptr<const Obstacle> shape, const ToolPose& now, const ToolPose& before, const ToolPose& after)
+      : shape_(std::move(shape)), now_(now), rate_((after - before) / (2.0 * kVelocityStep)) {}
+  Distance distance(const Eigen::Vector3d& point) const override { return shape_->distance(point); }
   Eigen::Vector3d velocity(const Eigen::Vector3d& point) const override {
-    const Eigen::Vector3d own = now_.leftCols<3>().inverse() * (point - now_.col(3));
-    return (apply(after_, own) - apply(before_, own)) / (2.0 * kVelocityStep);
+    return rate_.leftCols<3>() * (now_.leftCols<3>().inverse() * (point - now_.col(3))) + rate_.col(3);
   }
 
  private:
-  Pose now_, before_, after_;
+  std::shared_ptr<const Obstacle> shape_;
+  ToolPose now_, rate_;
 };
 
 class ToolContact : public RigidContact {
  public:
   ToolContact(const Value& arguments, const EffectContext& context)
-      : RigidContact(context, find_surface(arguments.at("region"), context.regions).facets,
-                     kResolution * arguments.at("radius").as_quantity(kLeastRadius, kLargestRadius, "m").value),
-        region_(arguments.at("region").as_text()),
-        course_(load_course(arguments, LoadInput::Kind::pose, context)),
-        from_(arguments.at("center").as_vector3("m")),
-        to_(arguments.has("end") ? arguments.at("end").as_vector3("m") : from_),
-        size_(arguments.at("radius").as_quantity(kLeastRadius, kLargestRadius, "m").value),
-        flat_(arguments.has("flat") && arguments.at("flat").as_boolean()),
-        solids_(context.solids.size()) {
-    if (flat_ && from_ == to_) {
-      throw InputError(arguments.path() + ": flat", arguments.has("end") ? "center and end at one place" : "no end",
-                       "the cylinder's two ends, `center` and `end`");
-    }
-    course_->set_smoothing(arguments.number_or("smoothing", MotionPath::usual_smoothing, 0.0, 10.0, "s"));
-    course_->set_tolerance(kExact);  // `offset` and `radius` have tolerances instead
-  }
+      : ToolContact(arguments, context, read_tool_shape(arguments, context)) {}
 
   bool needs_elasticity() const override { return true; }
   std::string reacting_region() const override { return region_; }
 
  private:
+  ToolContact(const Value& arguments, const EffectContext& context, std::unique_ptr<const ToolShape> shape)
+      : RigidContact(context, find_surface(arguments.at("region"), context.regions).facets, kResolution * shape->size()),
+        region_(arguments.at("region").as_text()),
+        course_(load_course(arguments, LoadInput::Kind::pose, context)),
+        shape_(std::move(shape)),
+        solids_(context.solids.size()) {
+    course_->set_smoothing(arguments.number_or("smoothing", MotionPath::usual_smoothing, 0.0, 10.0, "s"));
+    course_->set_tolerance(kExact);  // `offset` and `radius` have tolerances instead
+  }
+
   std::shared_ptr<const Obstacle> obstacle(double time, const Parameters& p) const override {
-    const std::optional<Pose> pose = course_->pose(time);
+    const std::optional<ToolPose> pose = course_->pose(time);
     if (!pose) return nullptr;
-    const Eigen::Vector3d from = apply(*pose, from_), to = apply(*pose, to_);
-    if (flat_) return moving(Cylinder(from, to, p[kRadius]), time, *pose, p);
-    return moving(Capsule(from, to, p[kRadius]), time, *pose, p);
+    std::shared_ptr<const Obstacle> tool = shape_->at(*pose, p[kRadius], std::max(0.0, p[kOffset]));
+    if (!(friction(p) > 0.0)) return tool;
+    return std::make_shared<const MovingTool>(std::move(tool), *pose, *course_->pose(time - kVelocityStep),
+                                              *course_->pose(time + kVelocityStep));
   }
   double path(double from, double to) const override {
+    const Eigen::Matrix3Xd points = shape_->extremes();
+    const auto placed = [&points](const ToolPose& pose) {
+      return Eigen::Matrix3Xd((pose.leftCols<3>() * points).colwise() + pose.col(3));
+    };
     const int steps = std::max(1, static_cast<int>(std::ceil((to - from) / kPathStep)));
     double length = 0.0;
-    std::optional<Pose> last = course_->pose(from);
+    std::optional<ToolPose> last = course_->pose(from);
     for (int k = 1; k <= steps && last; ++k) {
-      const std::optional<Pose> next = course_->pose(from + (to - from) * k / steps);
-      const auto moved = [&](const Eigen::Vector3d& end) { return (apply(*next, end) - apply(*last, end)).norm(); };
-      length += std::max(moved(from_), moved(to_));
+      const std::optional<ToolPose> next = course_->pose(from + (to - from) * k / steps);
+      length += (placed(*next) - placed(*last)).colwise().norm().maxCoeff();
       last = next;
     }
-    return last ? length / size_ : std::numeric_limits<double>::infinity();
+    return last ? length / shape_->size() : std::numeric_limits<double>::infinity();
   }
   double offset(const Parameters& p) const override { return p[kOffset]; }
-
-  template <typename Shape>
-  std::shared_ptr<const Obstacle> moving(const Shape& shape, double time, const Pose& pose, const Parameters& p) const {
-    if (!(friction(p) > 0.0)) return std::make_shared<const Shape>(shape);
-    return std::make_shared<const MovingTool<Shape>>(shape, pose, *course_->pose(time - kVelocityStep),
-                                                     *course_->pose(time + kVelocityStep));
-  }
 
   // A penalty in proportion to the tissue's modulus: where the tool's motion is given, the shape does not depend on it.
   double penalty(const Parameters& p) const override {
@@ -152,9 +87,7 @@ class ToolContact : public RigidContact {
 
   std::string region_;
   std::shared_ptr<Course> course_;
-  Eigen::Vector3d from_, to_;  ///< in the tool's frame [m]
-  double size_;                ///< radius that the model starts from [m]
-  bool flat_;
+  std::unique_ptr<const ToolShape> shape_;
   std::size_t solids_;
 };
 
@@ -163,24 +96,23 @@ class ToolContact : public RigidContact {
 EffectSpec tool_contact_spec() {
   EffectSpec spec;
   spec.name = "tool_contact";
-  spec.summary = "a rigid tool whose pose is measured touches the surface: a ball, a capsule or a flat punch";
+  spec.summary =
+      "a rigid tool whose pose is measured touches the surface: a ball, a capsule, a flat punch, or what a surface file "
+      "holds";
   spec.formula =
       "-k min(g, 0) (n - mu v / sqrt(v^2 + v0^2)) at each surface point, g its distance from the tool - offset, v along "
       "the tool, v0 a hundredth of the body's size a second";
   spec.source = "penalty method, Wriggers 2006, sec. 5.3.2, Coulomb's law regularised, sec. 5.2; force per rest area";
-  spec.parameters = {
-      {"radius", "R", "m", kLeastRadius, kLargestRadius, ParameterSpec::Default::required, 0.0, NAN, 1, 0.0, 0.005},
-      {"offset", "g0", "m", -0.1, 0.1, ParameterSpec::Default::optional, 0.0, NAN, 1, 1e-4, 0.0},
-      {"stiffness", "k", "N/m^3", 0.0, 1e15, ParameterSpec::Default::optional, 0.0, NAN, 1},
-      {"friction", "mu", "-", 0.0, 10.0, ParameterSpec::Default::optional, 0.0, NAN, 1}};
+  spec.parameters = {{"radius", "R", "m", 0.0, 1.0, ParameterSpec::Default::optional, 0.0, NAN, 1, 0.0, 0.005},
+                     {"offset", "g0", "m", -0.1, 0.1, ParameterSpec::Default::optional, 0.0, NAN, 1, 1e-4, 0.0},
+                     {"stiffness", "k", "N/m^3", 0.0, 1e15, ParameterSpec::Default::optional, 0.0, NAN, 1},
+                     {"friction", "mu", "-", 0.0, 10.0, ParameterSpec::Default::optional, 0.0, NAN, 1}};
   spec.keys = {
       {"region", "facets that it may touch"},
       {"topic", "geometry_msgs/PoseStamped"},
       {"course", "{file: f.csv} with rows of time [s], x, y, z [m] and a quaternion qx, qy, qz, qw; instead of topic"},
-      {"smoothing", "half width of the quadratic that smoothes the poses [s]; 0.04 when absent, 0: as measured"},
-      {"center", "[x, y, z] of the ball in the tool's frame, or of one end of a capsule's or cylinder's axis [m]"},
-      {"end", "[x, y, z] of the other end [m]; a ball when absent"},
-      {"flat", "true: a cylinder with flat ends; false when absent"}};
+      {"smoothing", "half width of the quadratic that smoothes the poses [s]; 0.04 when absent, 0: as measured"}};
+  for (auto& key : tool_shape_keys()) spec.keys.push_back(std::move(key));
   spec.load = LoadInput::Kind::pose;
   spec.contact = true;
   return spec;

@@ -15,10 +15,6 @@ struct SurfacePoint {
   double distance = 0.0;                             ///< from the query point, >= 0 [m]
 };
 
-/// Returns the point of the triangle a, b, c that is closest to p (Ericson 2005, sec. 5.1.5).
-Eigen::Vector3d closest_on_triangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
-                                    const Eigen::Vector3d& c);
-
 /// Returns the point of the rest surface that is closest to `query`. It tests every facet, as the triangle of its corners.
 SurfacePoint closest_surface_point(const TetMesh& mesh, const Eigen::Vector3d& query);
 

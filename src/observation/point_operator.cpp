@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <limits>
 
+#include "meshing/closest_on_triangle.hpp"
 #include "observation/closest_point.hpp"
 #include "observation/observation_operator.hpp"
 

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <vector>
 
+#include "meshing/closest_on_triangle.hpp"
 #include "observation/closest_point.hpp"
 #include "observation/observation_operator.hpp"
 #include "observation/outline.hpp"

@@ -84,7 +84,8 @@ inline Arguments example_arguments(const EffectSpec& spec, const std::string& la
   Arguments arguments;
   for (const ParameterSpec& parameter : spec.parameters) {
     const bool idle = parameter.value == parameter.absent;  // what it does without saying so is nothing
-    if (!optional(parameter) || idle) arguments[parameter.name] = example(spec, parameter);
+    const bool shape = spec.name == "tool_contact" && parameter.name == "radius";  // needed where no file holds the tool
+    if (!optional(parameter) || idle || shape) arguments[parameter.name] = example(spec, parameter);
   }
   const Arguments known{{"law", law},       {"point", "[0.03, 0, 0]"},      {"normal", "[1, 0.2, 0.1]"},
                         {"topic", "/load"}, {"direction", "[1, 0.5, 0.2]"}, {"center", "[0.001, 0.002, 0.003]"}};

@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <cstdio>
+#include <fstream>
+#include <sstream>
 
 #include "../block_model.hpp"
 #include "../box_model.hpp"
@@ -78,6 +80,85 @@ TEST(ToolContact, AFlatPunchPushesEvenly) {
   EXPECT_NEAR(push(model).z(), -kPenalty * 0.0005 * 4e-4, 1e-9);
 }
 
+/// A file in OBJ's format that is gone with the test.
+class WrittenTool {
+ public:
+  explicit WrittenTool(const std::string& text, const std::string& file = "tool.obj") : name(testing::TempDir() + file) {
+    std::ofstream(name) << text;
+  }
+  ~WrittenTool() { std::remove(name.c_str()); }
+  WrittenTool(const WrittenTool&) = delete;
+  WrittenTool& operator=(const WrittenTool&) = delete;
+
+  std::string surface(const std::string& further = "") const { return "surface: {file: " + name + further + "}"; }
+
+  const std::string name;
+};
+
+// A box of 200 x 200 x 50 mm whose lower side is at z = 0, in millimetres.
+std::string box_in_millimetres(int sides = 6) {
+  std::string text;
+  for (const int z : {0, 50}) {
+    for (const char* corner : {"-100 -100", "100 -100", "100 100", "-100 100"})
+      text += std::string("v ") + corner + " " + std::to_string(z) + "\n";
+  }
+  const char* quads[] = {"4 3 2 1", "5 6 7 8", "1 2 6 5", "2 3 7 6", "3 4 8 7", "4 1 5 8"};
+  for (int side = 0; side < sides; ++side) text += std::string("f ") + quads[side] + "\n";
+  return text;
+}
+
+// A ball of 0.1 m about the origin, of rings of quadrangles.
+std::string ball_of_facets(int rings) {
+  std::ostringstream text;
+  const int around = 2 * rings;
+  for (int ring = 1; ring < rings; ++ring) {
+    for (int k = 0; k < around; ++k) {
+      const double polar = M_PI * ring / rings, turn = 2.0 * M_PI * k / around;
+      text << "v " << 0.1 * std::sin(polar) * std::cos(turn) << " " << 0.1 * std::sin(polar) * std::sin(turn) << " "
+           << 0.1 * std::cos(polar) << "\n";
+    }
+  }
+  const int poles = (rings - 1) * around;
+  text << "v 0 0 0.1\nv 0 0 -0.1\n";
+  for (int k = 0; k < around; ++k) {
+    const int next = (k + 1) % around;
+    text << "f " << poles + 1 << " " << k + 1 << " " << next + 1 << "\n";
+    text << "f " << poles + 2 << " " << poles - around + next + 1 << " " << poles - around + k + 1 << "\n";
+    for (int ring = 0; ring + 2 < rings; ++ring) {
+      const int upper = ring * around + 1, lower = upper + around;
+      text << "f " << upper + k << " " << lower + k << " " << lower + next << " " << upper + next << "\n";
+    }
+  }
+  return text.str();
+}
+
+TEST(ToolContact, ASurfaceFilePushesAsTheBodyThatItHolds) {
+  const WrittenTool box(box_in_millimetres());
+  Model punch(settings(box.surface(", scale: 0.001") + ", stiffness: 1e6"), block_mesh());
+  place(punch, 0.0, at(0.01, 0.01, 0.0195));
+  EXPECT_NEAR(push(punch).z(), -kPenalty * 0.0005 * 4e-4, 1e-9);
+  place(punch, 0.0, at(0.01, 0.01, 0.0205));
+  EXPECT_EQ(push(punch).norm(), 0.0);
+  // It lies on its side: what was its face at x = 100 mm is below.
+  place(punch, 0.0, at(-0.02, 0.01, 0.1195) * Eigen::AngleAxisd(0.5 * M_PI, Eigen::Vector3d::UnitY()));
+  EXPECT_NEAR(push(punch).z(), -kPenalty * 0.0005 * 4e-4, 1e-9);
+  Model grown(settings(box.surface(", scale: 0.001") + ", stiffness: 1e6, offset: 0.001"), block_mesh());
+  place(grown, 0.0, at(0.01, 0.01, 0.0205));
+  EXPECT_NEAR(push(grown).z(), -kPenalty * 0.0005 * 4e-4, 1e-9);
+}
+
+TEST(ToolContact, ABallOfManyFacetsPushesAsABall) {
+  const WrittenTool ball(ball_of_facets(120));
+  Model facets(settings(ball.surface() + ", stiffness: 1e6, friction: 0.2"), block_mesh());
+  Model smooth(settings("center: [0, 0, 0], radius: 0.1, stiffness: 1e6, friction: 0.2"), block_mesh());
+  for (Model* model : {&facets, &smooth}) {
+    for (int k = 0; k <= 4; ++k) place(*model, 0.01 * k, at(0.01 + 0.001 * k, 0.008, 0.1185));
+  }
+  const Eigen::Vector3d expected = push(smooth, 0.02);
+  EXPECT_GT(expected.x(), 0.1 * -expected.z());  // it drags the block along
+  EXPECT_LT((push(facets, 0.02) - expected).norm(), 0.03 * expected.norm());
+}
+
 TEST(ToolContact, ATouchedBodyIsDraggedAlong) {
   Model model(settings("center: [0, 0, 0], end: [0, 0, 0.05], flat: true, radius: 0.1, stiffness: 1e6, friction: 0.3"),
               block_mesh());
@@ -126,6 +207,11 @@ TEST(ToolContact, ARefusalNamesWhatIsAllowed) {
   EXPECT_NE(refused("center: [0, 0, 0]").find("radius"), std::string::npos);
   EXPECT_NE(refused("radius: 0.01").find("center"), std::string::npos);
   EXPECT_NE(refused("radius: 0.01, center: [0, 0, 0], flat: true").find("end"), std::string::npos);
+  EXPECT_NE(refused("radius: 0, center: [0, 0, 0]").find("> 0 m"), std::string::npos);
+  const WrittenTool box(box_in_millimetres()), open(box_in_millimetres(5), "open.obj");
+  EXPECT_NE(refused(box.surface() + ", radius: 0.01").find("no `radius` beside `surface`"), std::string::npos);
+  EXPECT_NE(refused(open.surface(", scale: 0.001")).find("open.obj"), std::string::npos);
+  EXPECT_NE(refused("surface: {file: nowhere.stl}").find("nowhere.stl"), std::string::npos);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "../box_model.hpp"
+#include "meshing/closest_on_triangle.hpp"
 #include "observation/closest_point.hpp"
 #include "tangent_check.hpp"
 
