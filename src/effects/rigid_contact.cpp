@@ -51,10 +51,12 @@ void RigidContact::for_each_inside(const Motion& motion, const Parameters& p, co
   for (std::size_t i = 0; i < facets_.size(); ++i) {
     const FacetNodes x = facet_nodes(mesh_, facets_[i], &motion.displacement);
     const Eigen::Vector3d middle = x.rowwise().mean();
-    if (there->distance(middle).gap - out > kReach * (x.colwise() - middle).colwise().norm().maxCoeff()) continue;
+    const double gap = there->distance(middle).gap - out;
+    if (gap > kReach * (x.colwise() - middle).colwise().norm().maxCoeff()) continue;
     const FacetNodes at_rest = facet_nodes(mesh_, facets_[i]);
     for (int q = 0; q < rule_.points(); ++q) {
       Inside inside{i, q, {}, 0.0, x * rule_.shape(q)};
+      if ((inside.position - middle).norm() < gap) continue;  // no step leads nearer than its length
       inside.distance = there->distance(inside.position);
       inside.distance.gap -= out;
       if (inside.distance.gap >= 0.0) continue;

@@ -2,10 +2,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <boost/geometry.hpp>
-#include <boost/geometry/index/rtree.hpp>
 #include <cmath>
-#include <iterator>
+#include <limits>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -14,21 +13,66 @@
 namespace tissue_stiffness {
 namespace {
 
-namespace bg = boost::geometry;
-using BoostPoint = bg::model::point<double, 3, bg::cs::cartesian>;
-using Box = bg::model::box<BoostPoint>;
-using Entry = std::pair<Box, int>;
-
+constexpr int kLeaf = 4;             // triangles in a box that is not divided further
 constexpr double kOnSurface = 1e-9;  // of the surface's size: closer points have no direction of their own
-
-BoostPoint to_boost(const Eigen::Vector3d& p) {
-  return {p.x(), p.y(), p.z()};
-}
 
 }  // namespace
 
+/// Boxes around triangles, each of which holds two others or the triangles of a leaf.
 struct SignedDistance::Tree {
-  bg::index::rtree<Entry, bg::index::rstar<16>> boxes;
+  struct Node {
+    Eigen::Vector3d low, high;
+    int first, count, right;  ///< triangles in `order`, if this is a leaf; else its left child follows it
+  };
+  std::vector<Node> nodes;
+  std::vector<int> order;
+
+  Tree(const Eigen::Matrix3Xd& low, const Eigen::Matrix3Xd& high) : order(static_cast<std::size_t>(low.cols())) {
+    std::iota(order.begin(), order.end(), 0);
+    divide(low, high, 0, static_cast<int>(order.size()));
+  }
+
+  int divide(const Eigen::Matrix3Xd& low, const Eigen::Matrix3Xd& high, int first, int count) {
+    const std::size_t index = nodes.size();
+    nodes.push_back({low.col(order[static_cast<std::size_t>(first)]), high.col(order[static_cast<std::size_t>(first)]),
+                     first, count <= kLeaf ? count : 0, 0});
+    for (int i = first; i < first + count; ++i) {
+      const int t = order[static_cast<std::size_t>(i)];
+      nodes[index].low = nodes[index].low.cwiseMin(low.col(t));
+      nodes[index].high = nodes[index].high.cwiseMax(high.col(t));
+    }
+    if (count <= kLeaf) return static_cast<int>(index);
+    Eigen::Index axis = 0;
+    (nodes[index].high - nodes[index].low).maxCoeff(&axis);
+    const auto begin = order.begin() + first;
+    std::nth_element(begin, begin + count / 2, begin + count,
+                     [&](int a, int b) { return low(axis, a) + high(axis, a) < low(axis, b) + high(axis, b); });
+    divide(low, high, first, count / 2);
+    const int right = divide(low, high, first + count / 2, count - count / 2);
+    nodes[index].right = right;
+    return static_cast<int>(index);
+  }
+
+  double square_to(int node, const Eigen::Vector3d& p) const {
+    const Node& box = nodes[static_cast<std::size_t>(node)];
+    return (p - p.cwiseMax(box.low).cwiseMin(box.high)).squaredNorm();
+  }
+
+  /// Visits the triangles whose boxes are closer than the root of `square`, which `visit` may lower.
+  template <typename Visit>
+  void search(int node, const Eigen::Vector3d& p, const double& square, const Visit& visit) const {
+    const Node& box = nodes[static_cast<std::size_t>(node)];
+    for (int i = box.first; i < box.first + box.count; ++i) visit(order[static_cast<std::size_t>(i)]);
+    if (box.count > 0) return;
+    int near = node + 1, far = box.right;
+    double to_near = square_to(near, p), to_far = square_to(far, p);
+    if (to_far < to_near) {
+      std::swap(near, far);
+      std::swap(to_near, to_far);
+    }
+    if (to_near < square) search(near, p, square, visit);
+    if (to_far < square) search(far, p, square, visit);
+  }
 };
 
 SignedDistance::SignedDistance(TriangleSurface surface)
@@ -37,15 +81,12 @@ SignedDistance::SignedDistance(TriangleSurface surface)
       low_(surface_.vertices.rowwise().minCoeff()),
       high_(surface_.vertices.rowwise().maxCoeff()) {
   sum_normals();
-  std::vector<Entry> entries;
+  Eigen::Matrix3Xd low(3, surface_.triangle_count()), high(3, surface_.triangle_count());
   for (int t = 0; t < surface_.triangle_count(); ++t) {
-    Eigen::Matrix3d corners;
-    for (int i = 0; i < 3; ++i) corners.col(i) = corner(t, i);
-    entries.emplace_back(Box(to_boost(corners.rowwise().minCoeff()), to_boost(corners.rowwise().maxCoeff())), t);
+    low.col(t) = corner(t, 0).cwiseMin(corner(t, 1)).cwiseMin(corner(t, 2));
+    high.col(t) = corner(t, 0).cwiseMax(corner(t, 1)).cwiseMax(corner(t, 2));
   }
-  auto tree = std::make_unique<Tree>();
-  tree->boxes = decltype(tree->boxes)(entries.begin(), entries.end());
-  tree_ = std::move(tree);
+  tree_ = std::make_unique<const Tree>(low, high);
 }
 
 SignedDistance::~SignedDistance() = default;
@@ -67,27 +108,20 @@ void SignedDistance::sum_normals() {
 SignedDistance::Value SignedDistance::operator()(const Eigen::Vector3d& point, double far) const {
   const Eigen::Vector3d off = point - point.cwiseMax(low_).cwiseMin(high_);
   if (off.squaredNorm() > far * far) return {off.norm(), off.normalized(), Eigen::Matrix3d::Zero()};
-  // The triangle in the nearest box bounds the distance, so the closest one has a box within it.
-  const auto weights_of = [&](int t) { return closest_weights(point, corner(t, 0), corner(t, 1), corner(t, 2)); };
-  const auto square_of = [&](int t, const Eigen::Vector3d& weights) {
+  int best = -1;
+  Eigen::Vector3d weights = Eigen::Vector3d::Zero();
+  double square = std::numeric_limits<double>::infinity();
+  const auto consider = [&](int t) {
+    const Eigen::Vector3d own = closest_weights(point, corner(t, 0), corner(t, 1), corner(t, 2));
     Eigen::Vector3d closest = Eigen::Vector3d::Zero();
-    for (int i = 0; i < 3; ++i) closest += weights[i] * corner(t, i);
-    return (point - closest).squaredNorm();
-  };
-  const auto nearest = tree_->boxes.qbegin(bg::index::nearest(to_boost(point), 1));
-  int best = nearest->second;
-  Eigen::Vector3d weights = weights_of(best);
-  double square = square_of(best, weights);
-  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(std::sqrt(square));
-  const Box around(to_boost(point - reach), to_boost(point + reach));
-  for (auto entry = tree_->boxes.qbegin(bg::index::intersects(around)); entry != tree_->boxes.qend(); ++entry) {
-    const Eigen::Vector3d own = weights_of(entry->second);
-    const double own_square = square_of(entry->second, own);
-    if (own_square >= square) continue;
-    best = entry->second;
+    for (int i = 0; i < 3; ++i) closest += own[i] * corner(t, i);
+    const double own_square = (point - closest).squaredNorm();
+    if (own_square >= square) return;
+    best = t;
     weights = own;
     square = own_square;
-  }
+  };
+  tree_->search(0, point, square, consider);
   return from_triangle(point, best, weights);
 }
 

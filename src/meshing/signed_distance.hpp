@@ -9,8 +9,7 @@ namespace tissue_stiffness {
 
 /// Signed distance of points from a closed surface, negative inside. Its sign is that of the pseudo-normal at the closest
 /// point: of a face, of an edge (the sum of both faces' normals) or of a vertex (the sum of the faces' normals, weighted by
-/// their angles there). Source: Baerentzen & Aanaes 2005, IEEE TVCG 11(3). The triangles are found by an R-tree
-/// (Boost.Geometry).
+/// their angles there). Source: Baerentzen & Aanaes 2005, IEEE TVCG 11(3). A tree of boxes finds the closest triangle.
 class SignedDistance {
  public:
   struct Value {
