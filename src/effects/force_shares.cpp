@@ -38,6 +38,7 @@ Eigen::VectorXd force_shares(const Value& region, const EffectContext& context) 
 std::vector<Eigen::VectorXd> wrench_patterns(const Value& arguments, const EffectContext& context) {
   const Eigen::VectorXd shares = force_shares(arguments.at("region"), context);
   std::vector<Eigen::VectorXd> out;
+  out.reserve(6);
   for (int i = 0; i < 3; ++i) out.push_back(along_axis(shares, i));
   if (!arguments.has("torque_about")) return out;
   const Eigen::Vector3d about = arguments.at("torque_about").as_vector3("m"), centre = context.mesh.nodes * shares;
