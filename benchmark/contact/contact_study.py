@@ -16,6 +16,7 @@ import meshes
 from foreign import simulate_header
 from rig_recordings import FAR_PRIOR, estimated, stamp, write_force
 from study_arguments import study_arguments
+from study_pages import judged_modulus
 
 WANTED = 0.02
 EDGE = 1e-6  # m
@@ -74,10 +75,7 @@ def row_of(args, seed):
     result, _ = estimated(args.estimate, os.path.join(folder, 'model.yaml'), os.path.join(folder, 'recording.bag'),
                           os.path.join(folder, 'estimate'))
     seconds = time.monotonic() - begun
-    modulus = result['parameters']['elasticity.young_modulus']
-    low, high = modulus['interval95']
-    return dict(truth, seed=seed, error=modulus['mean'] / truth['modulus'] - 1.0, inside=bool(low <= truth['modulus'] <= high),
-                width=0.5 * (high - low) / modulus['mean'], state=result.get('state', ''), seconds=seconds)
+    return {**truth, 'seed': seed, 'seconds': seconds, **judged_modulus(result, truth['modulus'])}
 
 
 PAGE = """# A tool that touches: how far E is off

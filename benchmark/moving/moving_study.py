@@ -18,6 +18,7 @@ import moving_truths as truths
 from foreign import simulate_header
 from rig_recordings import FAR_PRIOR, estimated, stamp, write_force
 from study_arguments import study_arguments
+from study_pages import judged_modulus, write_page
 
 WANTED = {'indentation': 0.02, 'retraction, force': 0.02, 'retraction, no force': 0.05, 'shaken base': 0.02}
 TOOL_AT = np.array([0.2, -0.1, 0.15])  # the pose's own place: only its motion counts
@@ -77,14 +78,14 @@ def recorded(args, kind, seed, folder):
     if os.path.exists(os.path.join(folder, 'truth.json')):
         return
     os.makedirs(folder, exist_ok=True)
-    truth, nodes, tets, surface, positions, wrenches = truths.draw(args.simulator, kind, seed)
+    truth, nodes, tets, surface, positions, forces = truths.draw(args.simulator, kind, seed)
     rng = truth.rng
     meshes.write_vtk(os.path.join(folder, 'mesh.vtk'), nodes, tets)
     noise = 0.0
     with rosbag.Bag(os.path.join(folder, 'recording.bag'), 'w') as bag:
         write_pose(bag, truth, rng)
         if kind != 'shaken base':
-            noise = write_force(bag, wrenches[:, :3], truths.FPS, truths.FORCE_NOISE, rng)
+            noise = write_force(bag, forces, truths.FPS, truths.FORCE_NOISE, rng)
         if kind != 'indentation':
             write_points(bag, positions, surface, rng)
     prior = truth.modulus * float(rng.choice(FAR_PRIOR))
@@ -93,7 +94,7 @@ def recorded(args, kind, seed, folder):
             yaml.safe_dump(model_of(truth, case, prior, noise), file, default_flow_style=None, sort_keys=False)
     with open(os.path.join(folder, 'truth.json'), 'w') as file:
         json.dump({'modulus': truth.modulus, 'ratio': truth.ratio, 'body': truth.body,
-                   'force': float(np.abs(wrenches[:, :3]).max())}, file)
+                   'force': float(np.abs(forces).max())}, file)
 
 
 def estimated_case(args, case, folder):
@@ -107,8 +108,8 @@ def judged(case, result, truth):
     if case == 'retraction, no force':
         ratio = moduli['elasticity#2.young_modulus']['mean'] / first['mean']
         return ratio / truth['ratio'] - 1.0, None, None
-    low, high = first['interval95']
-    return first['mean'] / truth['modulus'] - 1.0, bool(low <= truth['modulus'] <= high), 0.5 * (high - low) / first['mean']
+    own = judged_modulus(result, truth['modulus'])
+    return own['error'], own['inside'], own['width']
 
 
 PAGE = """# Regions that follow a pose: how far E is off
@@ -173,10 +174,7 @@ def main():
                 print('%-22s %d %-6s error %+6.2f %%  %-7s %-10s %s exit %d' % (
                     case, seed, truth['body'], 100 * error, {True: 'inside', False: 'OUTSIDE', None: ''}[inside], verdict,
                     state, code), flush=True)
-    text = page(rows)
-    print('\n' + text)
-    with open(os.path.join(args.root, 'doc', 'moving.md'), 'w') as file:
-        file.write(text)
+    write_page(args, 'moving.md', page(rows))
 
 
 if __name__ == '__main__':

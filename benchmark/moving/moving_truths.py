@@ -27,7 +27,7 @@ def gripped_sim(simulate):
     """The simulator's class with regions that follow a rigid motion by springs of its own."""
     class Gripped(bodies.extend(simulate)):
         def __init__(self, config, extra):
-            self.guides, self.wrenches = [], []
+            self.guides, self.forces = [], []
             super().__init__(config, extra)
             for inside, motion in extra.get('guides', []):
                 whole, free = self.spring_on(inside)
@@ -51,19 +51,14 @@ def gripped_sim(simulate):
             before = self.un.x.array.copy()
             super().step(dt, depth)
             middle = (1 - self.af) * self.un.x.array + self.af * before
-            self.wrenches = [[self.wrench_of(firm * (whole @ (self.way(motion, self.t - self.af * dt) - middle)))
-                              for whole, firm, motion in self.guides]] + self.wrenches[:1]
-
-        def wrench_of(self, nodal):
-            """Force [N], and torque about the origin [N m], on the body at rest."""
-            forces = nodal.reshape(-1, 3)
-            return np.hstack([forces.sum(axis=0), np.cross(self.X, forces).sum(axis=0)])
+            self.forces = [[firm * (whole @ (self.way(motion, self.t - self.af * dt) - middle)).reshape(-1, 3).sum(axis=0)
+                            for whole, firm, motion in self.guides]] + self.forces[:1]
 
         def reaction(self):
-            """The wrench on the region that follows, extrapolated to the end of the last step."""
-            if len(self.wrenches) < 2:
-                return np.zeros(6)
-            last, before = self.wrenches
+            """Force [N] on the region that follows, extrapolated to the end of the last step."""
+            if len(self.forces) < 2:
+                return np.zeros(3)
+            last, before = self.forces
             return last[0] + self.af * (last[0] - before[0])
     return Gripped
 
@@ -139,18 +134,18 @@ class Truth:
         body = sim(c, extra)
         to_surface, _ = simulate.p2_interp_matrix(body.X, body.cells, nodes[surface])
         body.init_accel()
-        positions, wrenches, whole = [], [], []
+        positions, forces, whole = [], [], []
         for k in range(FRAMES):
             for _ in range(c['time']['substeps'] if k else 0):
                 body.step(1.0 / FPS / c['time']['substeps'])
             body.t = k / FPS
             shift = self.motion(body.t)[0] if 'shake' in extra else 0.0
             positions.append(nodes[surface] + to_surface @ body.u.x.array.reshape(-1, 3) + shift)
-            wrenches.append(body.reaction() if body.guides else np.zeros(6))
+            forces.append(body.reaction() if body.guides else np.zeros(3))
             whole.append(body.u.x.array.reshape(-1, 3) + shift)
         self.film = {'time': np.arange(FRAMES) / FPS, 'X': body.X, 'cells': body.cells,
                      'surf6': simulate.surface_p2(body.cells, body.X), 'U': np.array(whole)}
-        return nodes, tets, surface, np.array(positions), np.array(wrenches)
+        return nodes, tets, surface, np.array(positions), np.array(forces)
 
 
 def draw(simulator, kind, seed, one_modulus=False):
@@ -159,6 +154,6 @@ def draw(simulator, kind, seed, one_modulus=False):
     import simulate
     truth = Truth(kind, seed, one_modulus)
     sim = gripped_sim(simulate)
-    nodes, tets, surface, coarse, coarse_wrenches = truth.run(simulate, sim, STEP)
-    _, _, _, fine, fine_wrenches = truth.run(simulate, sim, 0.5 * STEP)
-    return truth, nodes, tets, surface, (4 * fine - coarse) / 3, (4 * fine_wrenches - coarse_wrenches) / 3
+    nodes, tets, surface, coarse, coarse_forces = truth.run(simulate, sim, STEP)
+    _, _, _, fine, fine_forces = truth.run(simulate, sim, 0.5 * STEP)
+    return truth, nodes, tets, surface, (4 * fine - coarse) / 3, (4 * fine_forces - coarse_forces) / 3

@@ -15,6 +15,7 @@ import yaml
 from foreign_draws import draw_list, write_draw
 from foreign_study import simulate_truths, truth_folder
 from study_arguments import study_arguments
+from study_pages import write_page
 
 SHARES = (0.3, 0.55)  # of the recording that are cut off
 KINDS = ('stated', 'correlated', 'one side', 'few sensors')
@@ -141,10 +142,7 @@ def main():
             row['verdict'] = diagnosed(args, bag, folder, 'moving')
             rows.append(row)
             print(row['truth'], row['kind'], share, row['with'] or error, row['verdict'], row['without'], flush=True)
-    text = page(rows)
-    print('\n' + text)
-    with open(os.path.join(args.root, 'doc', 'start.md'), 'w') as file:
-        file.write(text)
+    write_page(args, 'start.md', page(rows))
 
 
 if __name__ == '__main__':

@@ -6,7 +6,6 @@ import multiprocessing
 import os
 import sys
 
-import numpy as np
 import rosbag
 import yaml
 
@@ -16,6 +15,7 @@ import track_film
 from moving_study import write_pose
 from rig_recordings import FAR_PRIOR, estimated, write_force
 from study_arguments import study_arguments
+from study_pages import judged_modulus, summary_row, write_page
 
 WANTED = 0.02
 VIEWS = ('iso', 'top', 'iso', 'side')
@@ -41,7 +41,7 @@ def recorded(args, kind, seed, folder):
     if os.path.exists(os.path.join(folder, 'truth.json')):
         return
     os.makedirs(folder, exist_ok=True)
-    truth, nodes, tets, _, _, wrenches = truths.draw(args.simulator, kind, seed, one_modulus=True)
+    truth, nodes, tets, _, _, forces = truths.draw(args.simulator, kind, seed, one_modulus=True)
     import render  # beside the simulator
     import simulate
     meshes.write_vtk(os.path.join(folder, 'mesh.vtk'), nodes, tets)
@@ -51,7 +51,7 @@ def recorded(args, kind, seed, folder):
         track_film.write(bag, folder)
         write_pose(bag, truth, truth.rng)
         if kind != 'shaken base':
-            force_noise = write_force(bag, wrenches[:, :3], truths.FPS, truths.FORCE_NOISE, truth.rng)
+            force_noise = write_force(bag, forces, truths.FPS, truths.FORCE_NOISE, truth.rng)
     prior = truth.modulus * float(truth.rng.choice(FAR_PRIOR))
     with open(os.path.join(folder, 'model.yaml'), 'w') as file:
         yaml.safe_dump(model_of(truth, prior, force_noise), file, default_flow_style=None, sort_keys=False)
@@ -82,12 +82,9 @@ def page(rows):
     table, draws = [], []
     for kind, name in CASES.items():
         own = [r for r in rows if r['kind'] == kind]
-        told = [abs(r['error']) for r in own if r['state'] == 'converged']
         if not own:
             continue
-        table.append('| %s | %d | %d | %s | %s | %.0f %% | %d of %d |' % (
-            name, len(own), len(told), '%.1f %%' % (100 * np.median(told)) if told else '', '%.1f %%' % (100 * max(told)) if told else '',
-            100 * WANTED, sum(r['inside'] for r in own), len(own)))
+        table.append(summary_row(name, own, WANTED))
         draws += ['| %s | %d | %s | %s | %+.1f %% | %s | %.1f %% | %s |' % (
             name, r['seed'], r['body'], r['view'], 100 * r['error'], 'yes' if r['inside'] else 'no', 100 * r['width'], r['state'])
             for r in own]
@@ -116,21 +113,14 @@ def main():
                 truth = json.load(file)
             result, code = estimated(args.estimate, os.path.join(folder, 'model.yaml'), os.path.join(folder, 'recording.bag'),
                                      os.path.join(folder, 'out'))
-            modulus = result['parameters']['elasticity.young_modulus']
-            low, high = modulus['interval95']
-            row = {'kind': kind, 'seed': seed, 'body': truth['body'], 'view': truth['view'],
-                   'error': modulus['mean'] / truth['modulus'] - 1.0, 'inside': bool(low <= truth['modulus'] <= high),
-                   'width': 0.5 * (high - low) / modulus['mean'], 'state': result.get('state', '')}
+            row = {'kind': kind, 'seed': seed, 'body': truth['body'], 'view': truth['view'], **judged_modulus(result, truth['modulus'])}
             rows.append(row)
             print('%-12s %d %-6s %-5s error %+6.2f %%  %-7s +-%.1f %%  %s exit %d' % (
                 kind, seed, row['body'], row['view'], 100 * row['error'], 'inside' if row['inside'] else 'OUTSIDE', 100 * row['width'],
                 row['state'], code), flush=True)
     if args.draw_only or args.only is not None:
         return
-    text = page(rows)
-    print('\n' + text)
-    with open(os.path.join(args.root, 'doc', 'tracks.md'), 'w') as file:
-        file.write(text)
+    write_page(args, 'tracks.md', page(rows))
 
 
 if __name__ == '__main__':

@@ -5,7 +5,6 @@ import json
 import os
 import sys
 
-import numpy as np
 import rosbag
 import yaml
 
@@ -14,6 +13,7 @@ import wrench_truths as truths
 from moving_study import write_points
 from rig_recordings import FAR_PRIOR, estimated, write_wrench
 from study_arguments import study_arguments
+from study_pages import judged_modulus, summary_row, write_page
 
 CASES = ('force and torque', 'force alone')
 WANTED = 0.03
@@ -72,10 +72,7 @@ def page(rows):
     table, draws = [], []
     for case in CASES:
         own = [r for r in rows if r['case'] == case]
-        told = [abs(r['error']) for r in own if r['state'] == 'converged']
-        table.append('| %s | %d | %d | %s | %s | %.0f %% | %d of %d |' % (
-            case, len(own), len(told), '%.1f %%' % (100 * np.median(told)) if told else '-',
-            '%.1f %%' % (100 * max(told)) if told else '-', 100 * WANTED, sum(r['inside'] for r in own), len(own)))
+        table.append(summary_row(case, own, WANTED))
         draws += ['| %s | %d | %s | %+.1f %% | %s | %.1f %% | %s |' % (
             case, r['seed'], r['body'], 100 * r['error'], 'yes' if r['inside'] else 'no', 100 * r['width'], r['state'])
             for r in own]
@@ -96,18 +93,12 @@ def main():
         for case in CASES:
             model = os.path.join(folder, case.replace(' ', '_') + '.yaml')
             result, code = estimated(args.estimate, model, os.path.join(folder, 'recording.bag'), model[:-5])
-            found = result['parameters']['elasticity.young_modulus']
-            low, high = found['interval95']
-            rows.append({'case': case, 'seed': seed, 'body': truth['body'], 'error': found['mean'] / truth['modulus'] - 1.0,
-                         'inside': bool(low <= truth['modulus'] <= high), 'width': 0.5 * (high - low) / found['mean'],
-                         'state': result.get('state', '')})
+            row = {'case': case, 'seed': seed, 'body': truth['body'], **judged_modulus(result, truth['modulus'])}
+            rows.append(row)
             print('%-16s %d %-6s error %+6.2f %%  %-7s %s exit %d' % (
-                case, seed, truth['body'], 100 * rows[-1]['error'], 'inside' if rows[-1]['inside'] else 'OUTSIDE',
-                rows[-1]['state'], code), flush=True)
-    text = page(rows)
-    print('\n' + text)
-    with open(os.path.join(args.root, 'doc', 'wrench.md'), 'w') as file:
-        file.write(text)
+                case, seed, row['body'], 100 * row['error'], 'inside' if row['inside'] else 'OUTSIDE', row['state'], code),
+                flush=True)
+    write_page(args, 'wrench.md', page(rows))
 
 
 if __name__ == '__main__':
