@@ -3,11 +3,11 @@
 
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <sstream>
 
 #include "../block_model.hpp"
 #include "../box_model.hpp"
+#include "../written_file.hpp"
 #include "fem/facet_quadrature.hpp"
 #include "forward/full_model.hpp"
 
@@ -80,20 +80,9 @@ TEST(ToolContact, AFlatPunchPushesEvenly) {
   EXPECT_NEAR(push(model).z(), -kPenalty * 0.0005 * 4e-4, 1e-9);
 }
 
-/// A file in OBJ's format that is gone with the test.
-class WrittenTool {
- public:
-  explicit WrittenTool(const std::string& text, const std::string& file = "tool.obj") : name(testing::TempDir() + file) {
-    std::ofstream(name) << text;
-  }
-  ~WrittenTool() { std::remove(name.c_str()); }
-  WrittenTool(const WrittenTool&) = delete;
-  WrittenTool& operator=(const WrittenTool&) = delete;
-
-  std::string surface(const std::string& further = "") const { return "surface: {file: " + name + further + "}"; }
-
-  const std::string name;
-};
+std::string surface(const WrittenFile& tool, const std::string& further = "") {
+  return "surface: {file: " + tool.name + further + "}";
+}
 
 // A box of 200 x 200 x 50 mm whose lower side is at z = 0, in millimetres.
 std::string box_in_millimetres(int sides = 6) {
@@ -133,8 +122,8 @@ std::string ball_of_facets(int rings) {
 }
 
 TEST(ToolContact, ASurfaceFilePushesAsTheBodyThatItHolds) {
-  const WrittenTool box(box_in_millimetres());
-  Model punch(settings(box.surface(", scale: 0.001") + ", stiffness: 1e6"), block_mesh());
+  const WrittenFile box("box.obj", box_in_millimetres());
+  Model punch(settings(surface(box, ", scale: 0.001") + ", stiffness: 1e6"), block_mesh());
   place(punch, 0.0, at(0.01, 0.01, 0.0195));
   EXPECT_NEAR(push(punch).z(), -kPenalty * 0.0005 * 4e-4, 1e-9);
   place(punch, 0.0, at(0.01, 0.01, 0.0205));
@@ -142,14 +131,14 @@ TEST(ToolContact, ASurfaceFilePushesAsTheBodyThatItHolds) {
   // It lies on its side: what was its face at x = 100 mm is below.
   place(punch, 0.0, at(-0.02, 0.01, 0.1195) * Eigen::AngleAxisd(0.5 * M_PI, Eigen::Vector3d::UnitY()));
   EXPECT_NEAR(push(punch).z(), -kPenalty * 0.0005 * 4e-4, 1e-9);
-  Model grown(settings(box.surface(", scale: 0.001") + ", stiffness: 1e6, offset: 0.001"), block_mesh());
+  Model grown(settings(surface(box, ", scale: 0.001") + ", stiffness: 1e6, offset: 0.001"), block_mesh());
   place(grown, 0.0, at(0.01, 0.01, 0.0205));
   EXPECT_NEAR(push(grown).z(), -kPenalty * 0.0005 * 4e-4, 1e-9);
 }
 
 TEST(ToolContact, ABallOfManyFacetsPushesAsABall) {
-  const WrittenTool ball(ball_of_facets(120));
-  Model facets(settings(ball.surface() + ", stiffness: 1e6, friction: 0.2"), block_mesh());
+  const WrittenFile ball("ball.obj", ball_of_facets(120));
+  Model facets(settings(surface(ball) + ", stiffness: 1e6, friction: 0.2"), block_mesh());
   Model smooth(settings("center: [0, 0, 0], radius: 0.1, stiffness: 1e6, friction: 0.2"), block_mesh());
   for (Model* model : {&facets, &smooth}) {
     for (int k = 0; k <= 4; ++k) place(*model, 0.01 * k, at(0.01 + 0.001 * k, 0.008, 0.1185));
@@ -208,9 +197,9 @@ TEST(ToolContact, ARefusalNamesWhatIsAllowed) {
   EXPECT_NE(refused("radius: 0.01").find("center"), std::string::npos);
   EXPECT_NE(refused("radius: 0.01, center: [0, 0, 0], flat: true").find("end"), std::string::npos);
   EXPECT_NE(refused("radius: 0, center: [0, 0, 0]").find("> 0 m"), std::string::npos);
-  const WrittenTool box(box_in_millimetres()), open(box_in_millimetres(5), "open.obj");
-  EXPECT_NE(refused(box.surface() + ", radius: 0.01").find("no `radius` beside `surface`"), std::string::npos);
-  EXPECT_NE(refused(open.surface(", scale: 0.001")).find("open.obj"), std::string::npos);
+  const WrittenFile box("box.obj", box_in_millimetres()), open("open.obj", box_in_millimetres(5));
+  EXPECT_NE(refused(surface(box) + ", radius: 0.01").find("no `radius` beside `surface`"), std::string::npos);
+  EXPECT_NE(refused(surface(open, ", scale: 0.001")).find("open.obj"), std::string::npos);
   EXPECT_NE(refused("surface: {file: nowhere.stl}").find("nowhere.stl"), std::string::npos);
 }
 

@@ -1,8 +1,8 @@
 #include <cstdio>
-#include <fstream>
 #include <utility>
 #include <vector>
 
+#include "../written_file.hpp"
 #include "mesh_checks.hpp"
 #include "meshing/box_mesh.hpp"
 #include "tissue_stiffness/meshing/build_mesh.hpp"
@@ -59,19 +59,6 @@ INSTANTIATE_TEST_SUITE_P(
                     Refused{"box_coincident.vtk", "both at (0.01, "}, Refused{"box_hexahedron.vtk", "type 12 with 8 nodes"},
                     Refused{"box_node_out_of_range.vtk", "node 99"}, Refused{"box_truncated.vtk", "entries (cells)"},
                     Refused{"no_such_file.vtk", "no readable file"}, Refused{"cube.obj", "ending '.obj'"}));
-
-/// A file that the test writes and removes.
-class WrittenFile {
- public:
-  WrittenFile(const std::string& ending, const std::string& text) : name(testing::TempDir() + "written" + ending) {
-    std::ofstream(name) << text;
-  }
-  ~WrittenFile() { std::remove(name.c_str()); }
-  WrittenFile(const WrittenFile&) = delete;
-  WrittenFile& operator=(const WrittenFile&) = delete;
-
-  const std::string name;
-};
 
 std::string vtk_tetrahedron(const std::string& points, const std::string& offsets) {
   return "# vtk DataFile Version 5.1\ntest\nASCII\nDATASET UNSTRUCTURED_GRID\n" + points + "\nCELLS 2 4\nOFFSETS int\n" +

@@ -1,28 +1,16 @@
 // VTK's XML unstructured grids, read by VTK in another process.
 #include "vtu/vtu_reader.hpp"
 
-#include <cstdio>
-#include <fstream>
 #include <utility>
 #include <vector>
 
 #include "../meshing/mesh_checks.hpp"
+#include "../written_file.hpp"
 #include "meshing/tet_file_check.hpp"
 #include "tissue_stiffness/meshing/mesh_io.hpp"
 
 namespace tissue_stiffness {
 namespace {
-
-/// A file that the test writes and removes.
-class VtuFile {
- public:
-  explicit VtuFile(const std::string& text) : name(testing::TempDir() + "written.vtu") { std::ofstream(name) << text; }
-  ~VtuFile() { std::remove(name.c_str()); }
-  VtuFile(const VtuFile&) = delete;
-  VtuFile& operator=(const VtuFile&) = delete;
-
-  const std::string name;
-};
 
 std::string array(const std::string& name, const std::string& type, const std::string& values) {
   return "<DataArray Name=\"" + name + "\" type=\"" + type + "\" format=\"ascii\">" + values + "</DataArray>\n";
@@ -44,7 +32,7 @@ std::string with(const std::string& from, const std::string& to) {
 }
 
 TEST(VtuReader, ReadsTetrahedraAndSkipsWhatBoundsThem) {
-  const VtuFile file(grid());
+  const WrittenFile file(".vtu", grid());
   const TetFile found = read_vtu(file.name);
   EXPECT_EQ(found.tets, Eigen::Vector4i(0, 1, 2, 3));
   EXPECT_EQ(found.nodes.rightCols(3), Eigen::Matrix3d::Identity());
@@ -60,7 +48,7 @@ TEST(VtuReader, ReadsEveryEncoding) {
 }
 
 TEST(VtuReader, IsForProgramsThatAskForIt) {
-  const VtuFile file(grid());
+  const WrittenFile file(".vtu", grid());
   expect_contains(refusal([&] { load_tet_mesh(file.name, 0.1, 1); }), "ending '.vtu'; allowed: .ele, .inp");
   accept_vtu_meshes();
   expect_sound(load_tet_mesh(file.name, 0.1, 2), 1e-3 / 6.0, 1e-15);
@@ -68,7 +56,7 @@ TEST(VtuReader, IsForProgramsThatAskForIt) {
 
 TEST(VtuReader, LeavesItToTheMeshsChecksThatThereAreTetrahedra) {
   for (const std::string& text : {with("NumberOfCells=\"2\"", "NumberOfCells=\"0\""), with("5 10", "5 9")}) {
-    const VtuFile file(text);
+    const WrittenFile file(".vtu", text);
     EXPECT_EQ(read_vtu(file.name).tets.cols(), 0);
     expect_contains(refusal([&] { check_tet_file(read_vtu(file.name), 1.0, 1, file.name); }), "no tetrahedra");
   }
@@ -90,7 +78,7 @@ TEST(VtuReader, SaysWhatIsWrong) {
       {"# vtk DataFile Version 3.0\n", "line 1"},
       {"", "an empty file"}};
   for (const auto& [text, part] : refused) {
-    const VtuFile file(text);
+    const WrittenFile file(".vtu", text);
     const std::string message = refusal([&] { read_vtu(file.name); });
     expect_contains(message, "mesh file " + file.name + ": found ");
     expect_contains(message, part);
