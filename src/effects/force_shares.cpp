@@ -1,23 +1,17 @@
 #include "effects/force_shares.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include "effects/registry.hpp"
 #include "fem/facet_quadrature.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "types/cross_matrix.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
 constexpr double kThin = 1e-6;  // smallest over largest second moment of a region that is a line
-
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d out;
-  out << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return out;
-}
 
 }  // namespace
 

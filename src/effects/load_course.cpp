@@ -1,10 +1,10 @@
 #include <algorithm>
 
 #include "effects/registry.hpp"
+#include "settings/inside_folder.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
 namespace tissue_stiffness {
-
 namespace {
 
 // Effects of one model share the course of a file or topic.
@@ -29,9 +29,8 @@ std::shared_ptr<Course> course_of(const Value& arguments, LoadInput::Kind kind, 
 }  // namespace
 
 std::shared_ptr<Course> load_csv(const Value& course, LoadInput::Kind kind, const EffectContext& context) {
-  std::string file = course.at("file").as_text();
-  if (!file.empty() && file[0] != '/') file = context.settings.directory + "/" + file;
-  return std::make_shared<Course>(Course::from_csv(file, kind));
+  return std::make_shared<Course>(
+      Course::from_csv(path_from(context.settings.directory, course.at("file").as_text()), kind));
 }
 
 std::shared_ptr<Course> load_course(const Value& arguments, LoadInput::Kind kind, const EffectContext& context) {

@@ -3,18 +3,9 @@
 #include <Eigen/Geometry>
 
 #include "effects/registry.hpp"
+#include "types/cross_matrix.hpp"
 
 namespace tissue_stiffness::effects {
-namespace {
-
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
-
-}  // namespace
-
 PressedSurface::PressedSurface(const Value& region, const EffectContext& context)
     : mesh_(context.mesh),
       fem_(context.fem),

@@ -1,23 +1,18 @@
 #include "effects/tool_shape.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
 #include "meshing/signed_distance.hpp"
+#include "settings/inside_folder.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "types/nearest_rotation.hpp"
 
 namespace tissue_stiffness {
 namespace {
 
 Eigen::Vector3d apply(const ToolPose& pose, const Eigen::Vector3d& point) {
   return pose.leftCols<3>() * point + pose.col(3);
-}
-
-// Between measured poses the columns are interpolated, which leaves them nearly orthonormal.
-Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& turn) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(turn, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  return svd.matrixU() * svd.matrixV().transpose();
 }
 
 /// All points within `radius` of the segment from `from` to `to`; a ball where both are one.
@@ -70,7 +65,8 @@ class Cylinder : public Obstacle {
   double radius_;
 };
 
-/// A closed surface that moves with the tool.
+/// A closed surface that moves with the tool. Between measured poses the columns of R are interpolated, which leaves them
+/// nearly orthonormal.
 class SurfaceTool : public Obstacle {
  public:
   SurfaceTool(std::shared_ptr<const SignedDistance> surface, const ToolPose& pose, double margin)
@@ -157,8 +153,7 @@ std::unique_ptr<const ToolShape> read_tool_shape(const Value& arguments, const E
     throw InputError(arguments.at(key).path(), arguments.at(key).shown(), std::string("no `") + key + "` beside `surface`");
   }
   const Value& surface = arguments.at("surface");
-  std::string file = surface.at("file").as_text();
-  if (!file.empty() && file[0] != '/') file = context.settings.directory + "/" + file;
+  const std::string file = path_from(context.settings.directory, surface.at("file").as_text());
   return std::make_unique<const SurfaceShape>(load_surface(file, surface.number_or("scale", 1.0, 1e-6, 1e6, "m")));
 }
 

@@ -113,9 +113,7 @@ SignedDistance::Value SignedDistance::operator()(const Eigen::Vector3d& point, d
   double square = std::numeric_limits<double>::infinity();
   const auto consider = [&](int t) {
     const Eigen::Vector3d own = closest_weights(point, corner(t, 0), corner(t, 1), corner(t, 2));
-    Eigen::Vector3d closest = Eigen::Vector3d::Zero();
-    for (int i = 0; i < 3; ++i) closest += own[i] * corner(t, i);
-    const double own_square = (point - closest).squaredNorm();
+    const double own_square = (point - place(t, own)).squaredNorm();
     if (own_square >= square) return;
     best = t;
     weights = own;
@@ -127,8 +125,7 @@ SignedDistance::Value SignedDistance::operator()(const Eigen::Vector3d& point, d
 
 SignedDistance::Value SignedDistance::from_triangle(const Eigen::Vector3d& point, int triangle,
                                                     const Eigen::Vector3d& weights) const {
-  Eigen::Vector3d closest = Eigen::Vector3d::Zero(), normal = face_normals_.col(triangle), along = Eigen::Vector3d::Zero();
-  for (int i = 0; i < 3; ++i) closest += weights[i] * corner(triangle, i);
+  Eigen::Vector3d normal = face_normals_.col(triangle), along = Eigen::Vector3d::Zero();
   const auto corners = (weights.array() > 0.0).count();
   for (int i = 0; i < 3; ++i) {
     const int next = (i + 1) % 3, last = (i + 2) % 3;
@@ -138,11 +135,10 @@ SignedDistance::Value SignedDistance::from_triangle(const Eigen::Vector3d& point
       along = (corner(triangle, next) - corner(triangle, i)).normalized();
     }
   }
-  const Eigen::Vector3d off = point - closest;
+  const Eigen::Vector3d off = point - place(triangle, weights);
   const double length = off.norm(), sign = off.dot(normal) < 0.0 ? -1.0 : 1.0;
   Value out{sign * length, normal.normalized(), Eigen::Matrix3d::Zero()};
-  if (length <= kOnSurface * (high_ - low_).norm()) return out;
-  if (corners == 3) return out;
+  if (corners == 3 || length <= kOnSurface * (high_ - low_).norm()) return out;
   out.gradient = sign / length * off;
   out.curvature =
       (Eigen::Matrix3d::Identity() - out.gradient * out.gradient.transpose() - along * along.transpose()) / out.distance;

@@ -31,6 +31,10 @@ class SignedDistance {
  private:
   struct Tree;
   Eigen::Vector3d corner(int triangle, int i) const { return surface_.vertices.col(surface_.triangles(i, triangle)); }
+  /// Returns the point of a triangle with these weights of its corners.
+  Eigen::Vector3d place(int triangle, const Eigen::Vector3d& weights) const {
+    return weights[0] * corner(triangle, 0) + weights[1] * corner(triangle, 1) + weights[2] * corner(triangle, 2);
+  }
   void sum_normals();
   Value from_triangle(const Eigen::Vector3d& point, int triangle, const Eigen::Vector3d& weights) const;
 

@@ -1,12 +1,12 @@
 // Markers may stand off the surface. Each is carried by the facet nearest to it at rest, as if by a rigid pin.
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 
 #include "observation/closest_point.hpp"
 #include "observation/named_points.hpp"
 #include "observation/observation_operator.hpp"
 #include "observation/surface_anchor.hpp"
 #include "tissue_stiffness/types/error.hpp"
+#include "types/nearest_rotation.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -64,11 +64,7 @@ class MarkerOperator : public ObservationOperator {
     for (Eigen::Index k = 0; k < a.anchor.shape.size(); ++k)
       gradient += u.segment<3>(3 * mesh_.tets(k, a.anchor.tet)) * a.anchor.gradient.col(k).transpose();
     Eigen::Matrix3d turn = 0.5 * (gradient - gradient.transpose()) + Eigen::Matrix3d::Identity();
-    if (finite_) {
-      const Eigen::JacobiSVD<Eigen::Matrix3d> svd(Eigen::Matrix3d::Identity() + gradient,
-                                                  Eigen::ComputeFullU | Eigen::ComputeFullV);
-      turn = svd.matrixU() * svd.matrixV().transpose();
-    }
+    if (finite_) turn = nearest_rotation(Eigen::Matrix3d::Identity() + gradient);
     return a.foot + a.anchor.displacement(mesh_, u) + turn * a.pin;
   }
 

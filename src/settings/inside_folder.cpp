@@ -10,6 +10,11 @@ namespace tissue_stiffness {
 
 namespace fs = std::filesystem;
 
+std::string path_from(const std::string& directory, const std::string& file) {
+  if (file.empty() || file.front() == '/' || directory.empty()) return file;
+  return directory.back() == '/' ? directory + file : directory + "/" + file;
+}
+
 std::string require_inside(const std::string& file, const std::string& folder, const std::string& where,
                            const std::string& or_else) {
   std::error_code failed;

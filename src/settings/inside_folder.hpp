@@ -6,6 +6,9 @@
 
 namespace tissue_stiffness {
 
+/// Returns the path of a `file` that settings in `directory` name, which is relative to it or absolute.
+std::string path_from(const std::string& directory, const std::string& file);
+
 /// Returns the path of a `file` that a caller names, relative to `folder` or absolute. Throws InputError, naming `where`,
 /// if it lies outside that folder, also by way of ".." or a link. `or_else` ends the sentence on what is allowed.
 std::string require_inside(const std::string& file, const std::string& folder, const std::string& where,

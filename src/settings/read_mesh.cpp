@@ -1,6 +1,7 @@
 #include <limits>
 #include <variant>
 
+#include "settings/inside_folder.hpp"
 #include "settings/key_spec.hpp"
 #include "settings/read_sections.hpp"
 #include "tissue_stiffness/types/error.hpp"
@@ -12,11 +13,6 @@ constexpr double positive = std::numeric_limits<double>::min();
 
 const KeySpec& key(const std::string& path) {
   return find_key(model_keys(), path);
-}
-
-std::string resolved(const std::string& file, const std::string& directory) {
-  if (file.front() == '/' || directory.empty()) return file;
-  return directory.back() == '/' ? directory + file : directory + "/" + file;
 }
 
 Eigen::Vector3d read_direction(const Value& value) {
@@ -91,7 +87,7 @@ MeshSettings read_mesh(const Value& map, const std::string& directory) {
   } else if (map.has("extrude")) {
     read_extrude(map.at("extrude"), mesh);
   } else {
-    mesh.file = resolved(map.at("file").as_text(), directory);
+    mesh.file = path_from(directory, map.at("file").as_text());
     mesh.scale = read_number(map, key("mesh.scale"));
     mesh.max_edge_length = read_number(map, key("mesh.max_edge_length"));
   }

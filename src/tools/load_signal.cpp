@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "effects/course.hpp"
+#include "settings/inside_folder.hpp"
 #include "tissue_stiffness/types/error.hpp"
 #include "tools/scene_keys.hpp"
 
@@ -58,8 +59,7 @@ Signal read_steps(const Value& map) {
 }
 
 Signal read_csv(const Value& map, const std::string& directory) {
-  std::string file = read_text(map, key("csv.file"));
-  if (!file.empty() && file[0] != '/') file = directory + "/" + file;
+  const std::string file = path_from(directory, read_text(map, key("csv.file")));
   const auto course = std::make_shared<const Course>(Course::from_csv(file, LoadInput::Kind::pressure));
   return [course](double t) { return course->value(t, 0); };
 }
