@@ -91,7 +91,9 @@ bool SystematicError::inputs_believed() const {
 bool SystematicError::left_study(const Filtered& filtered) const {
   if (!inputs_ || !inputs_->fitted || input_shift_.size() == 0) return false;
   const Eigen::ArrayXd moved = filtered.mean - runs_at_;
-  return (moved.abs() > (filtered.covariance + parts_.all).diagonal().array().sqrt()).any();
+  Eigen::ArrayXd variance = filtered.covariance.diagonal();
+  if (inputs_believed()) variance += parts_.all.diagonal().array();
+  return (moved.abs() > variance.sqrt()).any();
 }
 
 void SystematicError::take_mesh(const MeshError::Answer& answer, double misfit_scale) {

@@ -68,7 +68,8 @@ class SystematicError {
   /// Returns whether the frames since the last test leave more than noise and mesh, compared with those that were tested.
   /// It is false where no misfit was tested.
   bool misfit_has_risen(const FilteredMisfit& misfit) const;
-  /// Returns whether the runs have left the place where the inputs were studied.
+  /// Returns whether the runs have left the place where the inputs were studied, by more than their standard deviation. A
+  /// study that is not believed says nothing of that deviation: it may have been asked before the runs had settled.
   bool left_study(const Filtered& filtered) const;
 
  private:
