@@ -1,22 +1,21 @@
 """A rigid ball touches a block, on truths of the independent simulator: is E right, and does its interval hold?
 usage: contact_study.py ROOT --output FOLDER [--seeds N] [--estimate PROGRAM]"""
 import argparse
-import json
 import os
 import sys
 import time
 
 import numpy as np
 import rosbag
-import yaml
 from geometry_msgs.msg import PoseStamped
 
 import contact_truths as truths
 import meshes
+from draw_folders import begin_draw, estimated, read_truth, write_model, write_truth
 from foreign import simulate_header
-from rig_recordings import FAR_PRIOR, estimated, stamp, write_force
+from rig_recordings import FAR_PRIOR, stamp, write_force
 from study_arguments import study_arguments
-from study_pages import judged_modulus
+from study_pages import judged_modulus, write_page
 
 WANTED = 0.02
 EDGE = 1e-6  # m
@@ -52,28 +51,23 @@ def model_of(truth, prior, noise):
 
 def recorded(args, seed, folder):
     """Makes the recording and the model; what is there is kept."""
-    if os.path.exists(os.path.join(folder, 'truth.json')):
+    if not begin_draw(folder):
         return
-    os.makedirs(folder, exist_ok=True)
     truth, nodes, tets, forces = truths.draw(args.simulator, seed)
     meshes.write_vtk(os.path.join(folder, 'mesh.vtk'), nodes, tets)
     noise = write_bag(os.path.join(folder, 'recording.bag'), truth, forces, truth.rng)
     prior = truth.modulus * float(truth.rng.choice(FAR_PRIOR))
-    with open(os.path.join(folder, 'model.yaml'), 'w') as file:
-        yaml.safe_dump(model_of(truth, prior, noise), file, default_flow_style=None, sort_keys=False)
-    with open(os.path.join(folder, 'truth.json'), 'w') as file:
-        json.dump({'modulus': truth.modulus, 'radius': truth.radius, 'depth': 1.2 * truth.depth,
-                   'force': float(np.abs(forces).max())}, file)
+    write_model(folder, model_of(truth, prior, noise))
+    write_truth(folder, {'modulus': truth.modulus, 'radius': truth.radius, 'depth': 1.2 * truth.depth,
+                         'force': float(np.abs(forces).max())})
 
 
 def row_of(args, seed):
     folder = os.path.join(args.output, str(seed))
     recorded(args, seed, folder)
-    with open(os.path.join(folder, 'truth.json')) as file:
-        truth = json.load(file)
+    truth = read_truth(folder)
     begun = time.monotonic()
-    result, _ = estimated(args.estimate, os.path.join(folder, 'model.yaml'), os.path.join(folder, 'recording.bag'),
-                          os.path.join(folder, 'estimate'))
+    result, _ = estimated(args.estimate, folder)
     seconds = time.monotonic() - begun
     return {**truth, 'seed': seed, 'seconds': seconds, **judged_modulus(result, truth['modulus'])}
 
@@ -116,8 +110,7 @@ def main():
         r = rows[-1]
         print('%d E %.1f kPa error %+.2f %% +- %.1f %% %s %s %.0f s' % (
             seed, 1e-3 * r['modulus'], 100 * r['error'], 100 * r['width'], 'inside' if r['inside'] else 'OUTSIDE', r['state'], r['seconds']), flush=True)
-    with open(os.path.join(args.root, 'doc', 'contact.md'), 'w') as file:
-        file.write(page(rows))
+    write_page(args, 'contact.md', page(rows))
 
 
 if __name__ == '__main__':

@@ -6,6 +6,7 @@ import sys
 
 import numpy as np
 
+import meshes
 from smooth_course import smooth
 
 DENSITY, POISSON = 1060.0, 0.45
@@ -91,12 +92,7 @@ class Truth:
                     gmsh.model.mesh.field.setNumber(near, key, value)
                 gmsh.model.mesh.field.setAsBackgroundMesh(near)
                 gmsh.option.setNumber('Mesh.MeshSizeExtendFromBoundary', 0)
-            gmsh.model.addPhysicalGroup(3, [tag for _, tag in gmsh.model.getEntities(3)], 1)
-            gmsh.model.mesh.generate(3)
-            gmsh.model.mesh.optimize('')
-            if order == 2:
-                gmsh.model.mesh.setOrder(2)
-            return gmsh
+            return meshes.fill(gmsh, order)
         simulate.gmsh_mesh = mesh
 
     def run(self, simulate, fine=FINE):

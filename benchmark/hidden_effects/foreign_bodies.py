@@ -4,6 +4,8 @@ import copy
 
 import numpy as np
 
+import meshes
+
 LOAD_SPREAD = 0.0001  # m, edge of a load's window
 FAR = 4.0             # m, from an end face to the centre of the ball that covers it alone
 
@@ -108,12 +110,7 @@ def own_mesh(kind, d, h, order, name):
     gmsh.option.setNumber('Mesh.MeshSizeMin', 0.6 * h)
     gmsh.option.setNumber('Mesh.Algorithm', 5 if name == 'obs' else 6)
     gmsh.option.setNumber('General.NumThreads', 1)
-    gmsh.model.addPhysicalGroup(3, [tag for _, tag in gmsh.model.getEntities(3)], 1)
-    gmsh.model.mesh.generate(3)
-    gmsh.model.mesh.optimize('')
-    if order == 2:
-        gmsh.model.mesh.setOrder(2)
-    return gmsh
+    return meshes.fill(gmsh, order)
 
 
 def own_markers(kind, d):

@@ -2,21 +2,21 @@
 are fitted together, and a third one is foretold. The rig's force sensor has one gain and one direction, wrong within their
 tolerances, in all three. usage: joint_study.py ROOT --output FOLDER [--seeds N] [--estimate PROGRAM]"""
 import argparse
-import json
 import logging
 import os
-import subprocess
 import sys
 
 import numpy as np
 import rosbag
-import yaml
 from scipy.spatial.transform import Rotation
 
 import meshes
 import moving_study
 import moving_truths as truths
+from draw_folders import begin_draw, estimated, read_truth, write_model, write_truth
+from rig_recordings import FAR_PRIOR, write_force
 from study_arguments import study_arguments
+from study_pages import judged_modulus
 
 COURSES = 3        # the last one is foretold
 GAIN = 0.05        # 1 sigma, of the rig's force sensor
@@ -41,9 +41,8 @@ def courses(truth):
 
 def recorded(args, seed, folder):
     """Makes the recordings and their model; what is there is kept."""
-    if os.path.exists(os.path.join(folder, 'truth.json')):
+    if not begin_draw(folder):
         return
-    os.makedirs(folder, exist_ok=True)
     sys.path.insert(0, args.simulator)
     logging.disable(logging.INFO)
     import simulate
@@ -57,30 +56,12 @@ def recorded(args, seed, folder):
         forces = gain * turn.apply(forces) + BIAS * np.abs(forces).max() * rng.standard_normal(3)
         with rosbag.Bag(os.path.join(folder, '%d.bag' % k), 'w') as bag:
             moving_study.write_pose(bag, truth, rng)
-            noise = max(noise, moving_study.write_force(bag, forces, rng))
+            noise = max(noise, write_force(bag, forces, truths.FPS, truths.FORCE_NOISE, rng))
     meshes.write_vtk(os.path.join(folder, 'mesh.vtk'), nodes, tets)
-    model = moving_study.model_of(truth, 'indentation', truth.modulus * float(rng.choice(moving_study.FAR_PRIOR)), noise)
+    model = moving_study.model_of(truth, 'indentation', truth.modulus * float(rng.choice(FAR_PRIOR)), noise)
     model['observations'][0]['reaction'].update({'gain': GAIN, 'bias': noise, 'rotation_tolerance': TURN})
-    with open(os.path.join(folder, 'model.yaml'), 'w') as file:
-        yaml.safe_dump(model, file, default_flow_style=None, sort_keys=False)
-    with open(os.path.join(folder, 'truth.json'), 'w') as file:
-        json.dump({'modulus': truth.modulus, 'body': truth.body, 'gain': gain}, file)
-
-
-def estimated(args, folder):
-    out = os.path.join(folder, 'joint')
-    bags = [os.path.join(folder, '%d.bag' % k) for k in range(COURSES)]
-    run = subprocess.run([args.estimate, os.path.join(folder, 'model.yaml'), *bags[:-1], '--predict', bags[-1], '--output', out,
-                          '--quiet'], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    if run.returncode not in (0, 3):
-        raise RuntimeError(run.stdout)
-    with open(os.path.join(out, 'results.json')) as file:
-        return json.load(file)
-
-
-def judged(parameter, truth):
-    low, high = parameter['interval95']
-    return parameter['mean'] / truth - 1.0, low <= truth <= high, 0.5 * (high - low) / parameter['mean']
+    write_model(folder, model)
+    write_truth(folder, {'modulus': truth.modulus, 'body': truth.body, 'gain': gain})
 
 
 def main():
@@ -93,16 +74,16 @@ def main():
     for seed in range(args.seeds):
         folder = os.path.join(args.output, 'joint_%d' % seed)
         recorded(args, seed, folder)
-        with open(os.path.join(folder, 'truth.json')) as file:
-            truth = json.load(file)
-        results = estimated(args, folder)
-        name = 'elasticity.young_modulus'
-        alone = judged(results['recordings'][0]['alone']['parameters'][name], truth['modulus'])
-        both = judged(results['parameters'][name], truth['modulus'])
+        truth = read_truth(folder)
+        bags = ['%d.bag' % k for k in range(COURSES)]
+        results, _ = estimated(args.estimate, folder, bags=bags[:-1], options=['--predict', os.path.join(folder, bags[-1]), '--quiet'])
+        alone = judged_modulus(results['recordings'][0]['alone'], truth['modulus'])
+        both = judged_modulus(results, truth['modulus'])
         third = results['recordings'][-1]
-        held.append(both[1])
+        held.append(both['inside'])
         foretold.append(third['agreement']['passes'])
-        cells = ['%+.1f %%, +-%.1f %%, %s' % (100 * e, 100 * w, 'holds' if h else '**misses**') for e, h, w in (alone, both)]
+        cells = ['%+.1f %%, +-%.1f %%, %s' % (100 * e['error'], 100 * e['width'], 'holds' if e['inside'] else '**misses**')
+                 for e in (alone, both)]
         print('| %d | %s | %+.1f %% | %s | %.2f | %.1f | %s |' % (
             seed, truth['body'], 100 * (truth['gain'] - 1), ' | '.join(cells), third['rms_sigma'], third['agreement']['z'],
             results['state']), flush=True)

@@ -1,22 +1,21 @@
 """Regions that follow a rigid body, on truths of the independent simulator: is E right, and does its interval hold?
 usage: moving_study.py ROOT --output FOLDER [--seeds N] [--estimate PROGRAM] [--fresh]"""
 import argparse
-import json
 import os
 import sys
 
 import numpy as np
 import rosbag
 import sensor_msgs.point_cloud2 as point_cloud2
-import yaml
 from geometry_msgs.msg import PoseStamped
 from scipy.spatial.transform import Rotation
 from sensor_msgs.msg import PointField
 
 import meshes
 import moving_truths as truths
+from draw_folders import begin_draw, estimated, file_name, read_truth, write_model, write_truth
 from foreign import simulate_header
-from rig_recordings import FAR_PRIOR, estimated, stamp, write_force
+from rig_recordings import FAR_PRIOR, stamp, write_force
 from study_arguments import study_arguments
 from study_pages import judged_modulus, write_page
 
@@ -75,9 +74,8 @@ def cases_of(kind):
 
 def recorded(args, kind, seed, folder):
     """Makes the recording and the models; what is there is kept."""
-    if os.path.exists(os.path.join(folder, 'truth.json')):
+    if not begin_draw(folder):
         return
-    os.makedirs(folder, exist_ok=True)
     truth, nodes, tets, surface, positions, forces = truths.draw(args.simulator, kind, seed)
     rng = truth.rng
     meshes.write_vtk(os.path.join(folder, 'mesh.vtk'), nodes, tets)
@@ -90,16 +88,9 @@ def recorded(args, kind, seed, folder):
             write_points(bag, positions, surface, rng)
     prior = truth.modulus * float(rng.choice(FAR_PRIOR))
     for case in cases_of(kind):
-        with open(os.path.join(folder, case.replace(', ', '_').replace(' ', '_') + '.yaml'), 'w') as file:
-            yaml.safe_dump(model_of(truth, case, prior, noise), file, default_flow_style=None, sort_keys=False)
-    with open(os.path.join(folder, 'truth.json'), 'w') as file:
-        json.dump({'modulus': truth.modulus, 'ratio': truth.ratio, 'body': truth.body,
-                   'force': float(np.abs(forces).max())}, file)
-
-
-def estimated_case(args, case, folder):
-    model = os.path.join(folder, case.replace(', ', '_').replace(' ', '_') + '.yaml')
-    return estimated(args.estimate, model, os.path.join(folder, 'recording.bag'), model[:-5])
+        write_model(folder, model_of(truth, case, prior, noise), case)
+    write_truth(folder, {'modulus': truth.modulus, 'ratio': truth.ratio, 'body': truth.body,
+                         'force': float(np.abs(forces).max())})
 
 
 def judged(case, result, truth):
@@ -160,12 +151,11 @@ def main():
     rows = []
     for kind in truths.KINDS:
         for seed in range(args.seeds):
-            folder = os.path.join(args.output, '%s_%d' % (kind.replace(' ', '_'), seed))
+            folder = os.path.join(args.output, '%s_%d' % (file_name(kind), seed))
             recorded(args, kind, seed, folder)
-            with open(os.path.join(folder, 'truth.json')) as file:
-                truth = json.load(file)
+            truth = read_truth(folder)
             for case in cases_of(kind):
-                result, code = estimated_case(args, case, folder)
+                result, code = estimated(args.estimate, folder, case)
                 error, inside, width = judged(case, result, truth)
                 verdict = result['identifiable']['elasticity.young_modulus']['verdict']
                 state = result.get('state', '')

@@ -7,7 +7,7 @@ import numpy as np
 import rosbag
 import yaml
 
-from common import MODULUS, Workshop, modulus, publish, table
+from common import Workshop, modulus, publish, table
 from meshes import write_obj
 
 STARTS = (0.5, 5.0)  # times the truth

@@ -127,7 +127,7 @@ def diastasis(kept, curves):
 
 
 def relative_stiffness(work, cine):
-    paths, times, scale, kept, curves, axes = cine
+    paths, times, scale, kept, curves, _ = cine
     first, last = diastasis(kept, curves)
     chosen = [k for k in kept if first <= k <= last]
     centre = np.array([0.5 * (cv2.imread(paths[0]).shape[1] - 1), 0.0])

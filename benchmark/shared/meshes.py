@@ -38,6 +38,16 @@ def revolved(line, count):
     return points, np.concatenate(triangles)
 
 
+def fill(gmsh, order):
+    """Fills all volumes of gmsh's model with tetrahedra of this order. Returns gmsh, as the simulator's own mesher does."""
+    gmsh.model.addPhysicalGroup(3, [tag for _, tag in gmsh.model.getEntities(3)], 1)
+    gmsh.model.mesh.generate(3)
+    gmsh.model.mesh.optimize('')
+    if order == 2:
+        gmsh.model.mesh.setOrder(2)
+    return gmsh
+
+
 def write_obj(path, points, triangles):
     with open(path, 'w') as file:
         file.writelines('v %.9g %.9g %.9g\n' % tuple(p) for p in points)

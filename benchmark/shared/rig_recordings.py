@@ -1,8 +1,4 @@
-"""What a rig records on truths of the independent simulator: smooth motions, the force on a tool, and what `estimate` finds."""
-import json
-import os
-import subprocess
-
+"""What a rig records on truths of the independent simulator: stamps, and the force on a tool."""
 import genpy
 import numpy as np
 from geometry_msgs.msg import WrenchStamped
@@ -32,12 +28,3 @@ def write_wrench(bag, wrenches, rate, share, rng):
 def write_force(bag, forces, rate, share, rng):
     """Does so with forces alone. Returns their noise [N]."""
     return write_wrench(bag, forces, rate, share, rng)[0]
-
-
-def estimated(program, model, recording, out):
-    """Returns the results and the exit code."""
-    run = subprocess.run([program, model, recording, '--output', out], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    if run.returncode not in (0, 3):
-        raise RuntimeError(run.stdout)
-    with open(os.path.join(out, 'results.json')) as file:
-        return json.load(file), run.returncode

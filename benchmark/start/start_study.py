@@ -15,7 +15,7 @@ import yaml
 from foreign_draws import draw_list, write_draw
 from foreign_study import simulate_truths, truth_folder
 from study_arguments import study_arguments
-from study_pages import write_page
+from study_pages import judged_modulus, write_page
 
 SHARES = (0.3, 0.55)  # of the recording that are cut off
 KINDS = ('stated', 'correlated', 'one side', 'few sensors')
@@ -83,14 +83,6 @@ def diagnosed(args, bag, folder, name):
         return json.load(file)['verdict']
 
 
-def judged(result, truth):
-    """Error, whether the interval holds, its half width, state."""
-    modulus = result['parameters']['elasticity.young_modulus']
-    low, high = modulus['interval95']
-    return {'error': modulus['mean'] / truth - 1, 'inside': bool(low <= truth <= high), 'width': (high - low) / 2 / truth,
-            'state': result['state']}
-
-
 def page(rows):
     known = [row for row in rows if row['with'] and row['with']['state'] == 'converged']
     errors = np.abs([row['with']['error'] for row in known])
@@ -136,9 +128,9 @@ def main():
             model['mesh']['file'] = os.path.abspath(os.path.join(folder, model['mesh']['file']))
             row = {'truth': draw['truth'], 'kind': draw['kind'], 'share': share}
             plain, error = estimated(args, model, bag, folder, 'plain')
-            row['without'] = judged(plain, truth) if plain else None
+            row['without'] = judged_modulus(plain, truth) if plain else None
             moving, error = estimated(args, with_motion(model, size_of(model['mesh']['file'])), bag, folder, 'moving')
-            row['with'] = judged(moving, truth) if moving else None
+            row['with'] = judged_modulus(moving, truth) if moving else None
             row['verdict'] = diagnosed(args, bag, folder, 'moving')
             rows.append(row)
             print(row['truth'], row['kind'], share, row['with'] or error, row['verdict'], row['without'], flush=True)

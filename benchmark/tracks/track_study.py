@@ -1,19 +1,18 @@
 """Features that an endoscope's camera sees, on truths of the independent simulator: is E right, and does its interval hold?
 usage: track_study.py ROOT --output FOLDER [--seeds N] [--estimate PROGRAM] [--draw-only]"""
 import argparse
-import json
 import multiprocessing
 import os
 import sys
 
 import rosbag
-import yaml
 
 import meshes
 import moving_truths as truths
 import track_film
+from draw_folders import begin_draw, estimated, file_name, read_truth, write_model, write_truth
 from moving_study import write_pose
-from rig_recordings import FAR_PRIOR, estimated, write_force
+from rig_recordings import FAR_PRIOR, write_force
 from study_arguments import study_arguments
 from study_pages import judged_modulus, summary_row, write_page
 
@@ -38,9 +37,8 @@ def model_of(truth, prior, force_noise):
 
 def recorded(args, kind, seed, folder):
     """Makes the film, the recording and the model; what is there is kept."""
-    if os.path.exists(os.path.join(folder, 'truth.json')):
+    if not begin_draw(folder):
         return
-    os.makedirs(folder, exist_ok=True)
     truth, nodes, tets, _, _, forces = truths.draw(args.simulator, kind, seed, one_modulus=True)
     import render  # beside the simulator
     import simulate
@@ -53,10 +51,8 @@ def recorded(args, kind, seed, folder):
         if kind != 'shaken base':
             force_noise = write_force(bag, forces, truths.FPS, truths.FORCE_NOISE, truth.rng)
     prior = truth.modulus * float(truth.rng.choice(FAR_PRIOR))
-    with open(os.path.join(folder, 'model.yaml'), 'w') as file:
-        yaml.safe_dump(model_of(truth, prior, force_noise), file, default_flow_style=None, sort_keys=False)
-    with open(os.path.join(folder, 'truth.json'), 'w') as file:
-        json.dump({'modulus': truth.modulus, 'body': truth.body, 'view': VIEWS[seed % len(VIEWS)]}, file)
+    write_model(folder, model_of(truth, prior, force_noise))
+    write_truth(folder, {'modulus': truth.modulus, 'body': truth.body, 'view': VIEWS[seed % len(VIEWS)]})
 
 
 PAGE = """# Features in a film: how far E is off
@@ -101,7 +97,7 @@ def main():
     rows = []
     for kind in CASES:
         for seed in range(args.seeds) if args.only is None else [args.only]:
-            folder = os.path.join(args.output, '%s_%d' % (kind.replace(' ', '_'), seed))
+            folder = os.path.join(args.output, '%s_%d' % (file_name(kind), seed))
             make = multiprocessing.Process(target=recorded, args=(args, kind, seed, folder))  # whose memory ends with it
             make.start()
             make.join()
@@ -109,10 +105,8 @@ def main():
                 raise RuntimeError('%s %d cannot be simulated' % (kind, seed))
             if args.draw_only:
                 continue
-            with open(os.path.join(folder, 'truth.json')) as file:
-                truth = json.load(file)
-            result, code = estimated(args.estimate, os.path.join(folder, 'model.yaml'), os.path.join(folder, 'recording.bag'),
-                                     os.path.join(folder, 'out'))
+            truth = read_truth(folder)
+            result, code = estimated(args.estimate, folder)
             row = {'kind': kind, 'seed': seed, 'body': truth['body'], 'view': truth['view'], **judged_modulus(result, truth['modulus'])}
             rows.append(row)
             print('%-12s %d %-6s %-5s error %+6.2f %%  %-7s +-%.1f %%  %s exit %d' % (

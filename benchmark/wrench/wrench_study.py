@@ -1,17 +1,16 @@
 """A tool that presses on the end of a body, whose sensor tells force and torque, on truths of the independent simulator: is E
 right, with the torque and without it? usage: wrench_study.py ROOT --output FOLDER [--seeds N] [--estimate PROGRAM]"""
 import argparse
-import json
 import os
 import sys
 
 import rosbag
-import yaml
 
 import meshes
 import wrench_truths as truths
+from draw_folders import begin_draw, estimated, read_truth, write_model, write_truth
 from moving_study import write_points
-from rig_recordings import FAR_PRIOR, estimated, write_wrench
+from rig_recordings import FAR_PRIOR, write_wrench
 from study_arguments import study_arguments
 from study_pages import judged_modulus, summary_row, write_page
 
@@ -35,9 +34,8 @@ def model_of(truth, case, prior, noise):
 
 def recorded(args, seed, folder):
     """Makes the recording and the models; what is there is kept."""
-    if os.path.exists(os.path.join(folder, 'truth.json')):
+    if not begin_draw(folder):
         return
-    os.makedirs(folder, exist_ok=True)
     truth, nodes, tets, surface, positions, wrenches = truths.draw(args.simulator, seed)
     meshes.write_vtk(os.path.join(folder, 'mesh.vtk'), nodes, tets)
     with rosbag.Bag(os.path.join(folder, 'recording.bag'), 'w') as bag:
@@ -45,10 +43,8 @@ def recorded(args, seed, folder):
         write_points(bag, positions, surface, truth.rng)
     prior = truth.modulus * float(truth.rng.choice(FAR_PRIOR))
     for case in CASES:
-        with open(os.path.join(folder, case.replace(' ', '_') + '.yaml'), 'w') as file:
-            yaml.safe_dump(model_of(truth, case, prior, noise), file, default_flow_style=None, sort_keys=False)
-    with open(os.path.join(folder, 'truth.json'), 'w') as file:
-        json.dump({'modulus': truth.modulus, 'body': truth.body}, file)
+        write_model(folder, model_of(truth, case, prior, noise), case)
+    write_truth(folder, {'modulus': truth.modulus, 'body': truth.body})
 
 
 PAGE = """# A tool that measures force and torque: how far E is off
@@ -88,11 +84,9 @@ def main():
     for seed in range(args.seeds):
         folder = os.path.join(args.output, str(seed))
         recorded(args, seed, folder)
-        with open(os.path.join(folder, 'truth.json')) as file:
-            truth = json.load(file)
+        truth = read_truth(folder)
         for case in CASES:
-            model = os.path.join(folder, case.replace(' ', '_') + '.yaml')
-            result, code = estimated(args.estimate, model, os.path.join(folder, 'recording.bag'), model[:-5])
+            result, code = estimated(args.estimate, folder, case)
             row = {'case': case, 'seed': seed, 'body': truth['body'], **judged_modulus(result, truth['modulus'])}
             rows.append(row)
             print('%-16s %d %-6s error %+6.2f %%  %-7s %s exit %d' % (
