@@ -251,7 +251,8 @@ def figures(rows):
 
 def time_line(what, wanted, rows, key):
     seconds = [row[key] for row in rows if key in row]
-    return '| %s | %s | %d | %.1f, %.1f |' % (what, wanted, len(seconds), *np.percentile(seconds or [np.nan], (50, 95)))
+    told = '%.1f, %.1f' % tuple(np.percentile(seconds, (50, 95))) if seconds else 'not measured'
+    return '| %s | %s | %d | %s |' % (what, wanted, len(seconds), told)
 
 
 def by_kind(rows):
