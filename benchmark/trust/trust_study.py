@@ -174,7 +174,7 @@ def wilson(hits, count):
 
 def shown_share(hits, count):
     return '-' if count == 0 else '%.1f %% of %d (%.0f to %.0f)' % (100.0 * hits / count, count,
-                                                                    *(100.0 * bound for bound in wilson(hits, count)))
+                                                                    *(100.0 * max(0.0, bound) for bound in wilson(hits, count)))
 
 
 def frame_share(rows):
