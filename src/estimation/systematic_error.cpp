@@ -76,6 +76,10 @@ bool SystematicError::misfit_has_risen(const FilteredMisfit& misfit) const {
   return since > passing * (studied_.scale + of_mesh());
 }
 
+bool SystematicError::misfit_has_fallen(const FilteredMisfit& misfit) const {
+  return studied_.scale > kFullSigmas * kFullSigmas * (misfit.scale + of_mesh());
+}
+
 Eigen::VectorXd SystematicError::mesh_shift() const {
   return mesh_shift_.size() > 0 ? mesh_shift_ : Eigen::VectorXd::Zero(model_.parameters().prior_std().size());
 }
@@ -92,7 +96,7 @@ bool SystematicError::left_study(const Filtered& filtered) const {
   if (!inputs_ || !inputs_->fitted || input_shift_.size() == 0) return false;
   const Eigen::ArrayXd moved = filtered.mean - runs_at_;
   Eigen::ArrayXd variance = filtered.covariance.diagonal();
-  if (inputs_believed()) variance += parts_.all.diagonal().array();
+  if (!misfit_has_fallen(filtered.misfit)) variance += parts_.all.diagonal().array();
   return (moved.abs() > variance.sqrt()).any();
 }
 

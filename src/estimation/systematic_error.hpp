@@ -49,7 +49,7 @@ class SystematicError {
   /// `rows` is the number of rows when the study was asked for. set_runs_at() has to follow.
   void take_inputs(InputStudy::Answer answer, double rows);
   /// Sets the runs' parameters, from which the shift to the joint fit of parameters and input errors is counted, and the
-  /// scale of the misfit there.
+  /// scale of the misfit there, of the frames that were studied.
   void set_runs_at(const Eigen::VectorXd& w, double misfit_scale);
   /// Drops the joint fit, which says nothing about the present runs.
   void drop_fit();
@@ -69,10 +69,11 @@ class SystematicError {
   /// It is false where no misfit was tested.
   bool misfit_has_risen(const FilteredMisfit& misfit) const;
   /// Returns whether the runs have left the place where the inputs were studied, by more than their standard deviation. A
-  /// study that is not believed says nothing of that deviation: it may have been asked before the runs had settled.
+  /// study says nothing of that deviation where its runs left much more than the present ones: it was asked too early.
   bool left_study(const Filtered& filtered) const;
 
  private:
+  bool misfit_has_fallen(const FilteredMisfit& misfit) const;
   double unexplained(const FilteredMisfit& misfit) const;
   Eigen::VectorXd mesh_shift() const;
   void refresh();

@@ -200,7 +200,7 @@ class UnscentedScheme : public Scheme {
     const Studies::Subjects subjects = studies_.due(frames.size(), restudying_, pace_.replaying, pace_.background);
     if (!subjects.any()) return moved;
     const PosteriorLinearizationFilter& filter = filter_run_->filter();
-    if (subjects.inputs) rows_asked_ = filter.rows();
+    if (subjects.inputs) misfit_asked_ = filtered().misfit;
     studies_.begin({model_, frames, filter.mean(), filter.spread(), model_.parameters().prior_std()}, subjects,
                    pace_.replaying, pace_.hurried());
     return !pace_.hurried() ? take_studies() || moved : moved;
@@ -215,7 +215,7 @@ class UnscentedScheme : public Scheme {
   // A load's estimated error is taken off where it is plausible, leaves a misfit that passes, and moves the estimate. What
   // the runs then still leave to the fit's parameters is a shift. An error that is not believed must not hide the misfit.
   bool take_inputs(InputStudy::Answer answer) {
-    systematic_.take_inputs(std::move(answer), rows_asked_);
+    systematic_.take_inputs(std::move(answer), misfit_asked_.rows);
     const InputStudy::Answer& inputs = *systematic_.inputs();
     restudying_ = false;
     if (!inputs.fitted) return false;
@@ -236,7 +236,10 @@ class UnscentedScheme : public Scheme {
       validity_.reset();
     }
     const PosteriorLinearizationFilter& filter = filter_run_->filter();
-    systematic_.set_runs_at(change ? filter.mean() : inputs.asked, filter.misfit_scale());
+    if (change)
+      systematic_.set_runs_at(filter.mean(), filter.misfit_scale());
+    else
+      systematic_.set_runs_at(inputs.asked, misfit_asked_.scale);
     return change;
   }
 
@@ -246,10 +249,10 @@ class UnscentedScheme : public Scheme {
   SystematicError systematic_;
   Validity validity_;
   Settling settling_;
-  double rows_asked_ = 0.0;  ///< number of rows when the inputs' study was asked for
-  bool corrected_ = false;   ///< the loads' estimated errors are taken off
-  bool restudying_ = false;  ///< the runs have left the place of the last study
-  Studies studies_;          ///< declared last, because its thread reads the model
+  SystematicError::FilteredMisfit misfit_asked_;  ///< when the inputs' study was asked for
+  bool corrected_ = false;                        ///< the loads' estimated errors are taken off
+  bool restudying_ = false;                       ///< the runs have left the place of the last study
+  Studies studies_;                               ///< declared last, because its thread reads the model
 };
 
 }  // namespace

@@ -40,26 +40,29 @@ TEST(SystematicError, NothingRisesBeforeATest) {
   EXPECT_FALSE(SystematicError(model).misfit_has_risen({100.0, 1e4}));
 }
 
-// The loads' errors move the modulus by 1 (a logarithm), and the filter knows it to 0.01. Returns whether a filter at `mean`
-// has left the study.
-bool left(double mean, const std::string& implausible) {
+// The loads' errors move the modulus by 1 (a logarithm), and the filter knows it to 0.01. The study's runs left the mean
+// square `studied`. Returns whether a filter at `mean` that leaves `now` has left the study.
+bool left(double mean, double studied, double now) {
   const Model model(box_settings(bar_under_gravity(prior(20e3, 3))), bar_mesh());
   SystematicError error(model);
-  InputStudy::Answer answer = answer_at_zero(1.0);
-  answer.implausible = implausible;
-  error.take_inputs(answer, 1000.0);
-  error.set_runs_at(Eigen::VectorXd::Zero(1), 1.0);
-  return error.left_study({Eigen::VectorXd::Constant(1, mean), Eigen::MatrixXd::Constant(1, 1, 1e-4), {1.0, 1000.0}});
+  error.take_inputs(answer_at_zero(1.0), 1000.0);
+  error.set_runs_at(Eigen::VectorXd::Zero(1), studied);
+  return error.left_study({Eigen::VectorXd::Constant(1, mean), Eigen::MatrixXd::Constant(1, 1, 1e-4), {now, 1000.0}});
 }
 
 TEST(SystematicError, AStudyIsLeftWhenTheRunsMoveBeyondItsInterval) {
-  EXPECT_FALSE(left(0.9, ""));
-  EXPECT_TRUE(left(-1.1, ""));
+  EXPECT_FALSE(left(0.9, 1.0, 1.0));
+  EXPECT_TRUE(left(-1.1, 1.0, 1.0));
 }
 
-TEST(SystematicError, AStudyThatIsNotBelievedIsLeftAsSoonAsTheFilterMoves) {
-  EXPECT_FALSE(left(0.005, "the gain would have to be 9"));
-  EXPECT_TRUE(left(-0.2, "the gain would have to be 9"));
+TEST(SystematicError, AStudyThatWasAskedTooEarlyIsLeftAsSoonAsTheFilterMoves) {
+  EXPECT_FALSE(left(0.005, 27.0, 1.0));
+  EXPECT_TRUE(left(-0.2, 27.0, 1.0));
+}
+
+TEST(SystematicError, AStudyOfAModelThatStaysWrongIsNotLeftWithinItsInterval) {
+  EXPECT_FALSE(left(-0.2, 27.0, 27.0));
+  EXPECT_TRUE(left(-1.1, 27.0, 27.0));
 }
 
 }  // namespace
