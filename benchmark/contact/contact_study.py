@@ -67,7 +67,7 @@ def row_of(args, seed):
     recorded(args, seed, folder)
     truth = read_truth(folder)
     begun = time.monotonic()
-    result, _ = estimated(args.estimate, folder)
+    result = estimated(args.estimate, folder)
     seconds = time.monotonic() - begun
     return {**truth, 'seed': seed, 'seconds': seconds, **judged_modulus(result, truth['modulus'])}
 

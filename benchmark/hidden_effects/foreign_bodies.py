@@ -9,7 +9,8 @@ import meshes
 LOAD_SPREAD = 0.0001  # m, edge of a load's window
 FAR = 4.0             # m, from an end face to the centre of the ball that covers it alone
 
-# Each is held at the face where it starts; `low` and `high`: the box around it [m].
+# Each is held at the face where it starts; `low` and `high`: the box around it [m]. `h`: the
+# longest edge of the truth; `h_obs`: that of the mesh that is given.
 BODIES = {
     'bar': {'body': {'type': 'bar', 'h': 0.010, 'h_obs': 0.0115}, 'low': [0, -0.01, -0.01], 'high': [0.1, 0.01, 0.01]},
     'slab': {'body': {'type': 'bar', 'L': 0.08, 'W': 0.05, 'H': 0.02, 'h': 0.0115, 'h_obs': 0.0125},

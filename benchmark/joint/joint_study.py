@@ -76,7 +76,7 @@ def main():
         recorded(args, seed, folder)
         truth = read_truth(folder)
         bags = ['%d.bag' % k for k in range(COURSES)]
-        results, _ = estimated(args.estimate, folder, bags=bags[:-1], options=['--predict', os.path.join(folder, bags[-1]), '--quiet'])
+        results = estimated(args.estimate, folder, bags=bags[:-1], options=['--predict', os.path.join(folder, bags[-1]), '--quiet'])
         alone = judged_modulus(results['recordings'][0]['alone'], truth['modulus'])
         both = judged_modulus(results, truth['modulus'])
         third = results['recordings'][-1]

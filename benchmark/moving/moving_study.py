@@ -155,15 +155,15 @@ def main():
             recorded(args, kind, seed, folder)
             truth = read_truth(folder)
             for case in cases_of(kind):
-                result, code = estimated(args.estimate, folder, case)
+                result = estimated(args.estimate, folder, case)
                 error, inside, width = judged(case, result, truth)
                 verdict = result['identifiable']['elasticity.young_modulus']['verdict']
                 state = result.get('state', '')
                 rows.append({'case': case, 'seed': seed, 'body': truth['body'], 'error': error, 'inside': inside,
-                             'width': width, 'verdict': verdict, 'state': state, 'code': code})
-                print('%-22s %d %-6s error %+6.2f %%  %-7s %-10s %s exit %d' % (
+                             'width': width, 'verdict': verdict, 'state': state})
+                print('%-22s %d %-6s error %+6.2f %%  %-7s %-10s %s' % (
                     case, seed, truth['body'], 100 * error, {True: 'inside', False: 'OUTSIDE', None: ''}[inside], verdict,
-                    state, code), flush=True)
+                    state), flush=True)
     write_page(args, 'moving.md', page(rows))
 
 

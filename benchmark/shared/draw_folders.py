@@ -1,9 +1,10 @@
 """The folder of one draw of a study: its models and its truth, which are written once, and what `estimate` finds there."""
 import json
 import os
-import subprocess
 
 import yaml
+
+from tool_runs import call
 
 
 def file_name(case):
@@ -32,11 +33,8 @@ def read_truth(folder):
 
 
 def estimated(program, folder, case='model', bags=('recording.bag',), options=()):
-    """Runs `estimate` with a case's model on bags of the folder. Returns the results and the exit code."""
-    model = os.path.join(folder, file_name(case) + '.yaml')
-    command = [program, model, *(os.path.join(folder, bag) for bag in bags), '--output', model[:-len('.yaml')], *options]
-    run = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    if run.returncode not in (0, 3):
-        raise RuntimeError(run.stdout)
-    with open(os.path.join(model[:-len('.yaml')], 'results.json')) as file:
-        return json.load(file), run.returncode
+    """Returns the results of `estimate` with a case's model on bags of the folder. Raises Failed where it gives none."""
+    out = os.path.join(folder, file_name(case))
+    call([program, out + '.yaml', *(os.path.join(folder, bag) for bag in bags), '--output', out, *options])
+    with open(os.path.join(out, 'results.json')) as file:
+        return json.load(file)

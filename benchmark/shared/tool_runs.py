@@ -8,8 +8,8 @@ class Failed(Exception):
     """A tool gave no answer; the text says why."""
 
 
-def call(command, time_limit):
-    """Runs a tool and returns what it printed. Raises Failed where it gives no answer within the limit [s]."""
+def call(command, time_limit=None):
+    """Runs a tool and returns what it printed. Raises Failed where it gives no answer, or none within the limit [s]."""
     try:
         done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=time_limit)
     except subprocess.TimeoutExpired:

@@ -12,10 +12,12 @@ import numpy as np
 import rosbag
 import yaml
 
+from draw_folders import estimated, write_model
 from foreign_draws import draw_list, write_draw
 from foreign_study import simulate_truths, truth_folder
 from study_arguments import study_arguments
 from study_pages import judged_modulus, write_page
+from tool_runs import Failed
 
 SHARES = (0.3, 0.55)  # of the recording that are cut off
 KINDS = ('stated', 'correlated', 'one side', 'few sensors')
@@ -61,17 +63,13 @@ def with_motion(model, size):
     return model
 
 
-def estimated(args, model, bag, folder, name):
-    path = os.path.join(folder, name + '.yaml')
-    with open(path, 'w') as file:
-        yaml.safe_dump(model, file, sort_keys=False)
-    output = os.path.join(folder, name)
-    run = subprocess.run([args.estimate, path, bag, '--output', output, '--allow-outside'], capture_output=True, text=True, check=False)
-    results = os.path.join(output, 'results.json')
-    if not os.path.exists(results):
-        return None, run.stderr.strip()[-200:]
-    with open(results) as file:
-        return json.load(file), ''
+def answered(args, model, folder, name):
+    """The results, or None and why there are none."""
+    write_model(folder, model, name)
+    try:
+        return estimated(args.estimate, folder, name, bags=['cut.bag'], options=['--allow-outside']), ''
+    except Failed as error:
+        return None, str(error)
 
 
 def diagnosed(args, bag, folder, name):
@@ -127,9 +125,9 @@ def main():
                 model = yaml.safe_load(file)
             model['mesh']['file'] = os.path.abspath(os.path.join(folder, model['mesh']['file']))
             row = {'truth': draw['truth'], 'kind': draw['kind'], 'share': share}
-            plain, error = estimated(args, model, bag, folder, 'plain')
+            plain, error = answered(args, model, folder, 'plain')
             row['without'] = judged_modulus(plain, truth) if plain else None
-            moving, error = estimated(args, with_motion(model, size_of(model['mesh']['file'])), bag, folder, 'moving')
+            moving, error = answered(args, with_motion(model, size_of(model['mesh']['file'])), folder, 'moving')
             row['with'] = judged_modulus(moving, truth) if moving else None
             row['verdict'] = diagnosed(args, bag, folder, 'moving')
             rows.append(row)

@@ -106,12 +106,12 @@ def main():
             if args.draw_only:
                 continue
             truth = read_truth(folder)
-            result, code = estimated(args.estimate, folder)
+            result = estimated(args.estimate, folder)
             row = {'kind': kind, 'seed': seed, 'body': truth['body'], 'view': truth['view'], **judged_modulus(result, truth['modulus'])}
             rows.append(row)
-            print('%-12s %d %-6s %-5s error %+6.2f %%  %-7s +-%.1f %%  %s exit %d' % (
+            print('%-12s %d %-6s %-5s error %+6.2f %%  %-7s +-%.1f %%  %s' % (
                 kind, seed, row['body'], row['view'], 100 * row['error'], 'inside' if row['inside'] else 'OUTSIDE', 100 * row['width'],
-                row['state'], code), flush=True)
+                row['state']), flush=True)
     if args.draw_only or args.only is not None:
         return
     write_page(args, 'tracks.md', page(rows))

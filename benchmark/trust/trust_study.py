@@ -169,12 +169,12 @@ def wilson(hits, count):
     """95 % interval of a share."""
     z, p = 1.96, hits / count
     middle, half = p + z * z / (2 * count), z * np.sqrt(p * (1 - p) / count + z * z / (4 * count * count))
-    return (middle - half) / (1 + z * z / count), (middle + half) / (1 + z * z / count)
+    return max(0.0, middle - half) / (1 + z * z / count), (middle + half) / (1 + z * z / count)
 
 
 def shown_share(hits, count):
     return '-' if count == 0 else '%.1f %% of %d (%.0f to %.0f)' % (100.0 * hits / count, count,
-                                                                    *(100.0 * max(0.0, bound) for bound in wilson(hits, count)))
+                                                                    *(100.0 * bound for bound in wilson(hits, count)))
 
 
 def frame_share(rows):

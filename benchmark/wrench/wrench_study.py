@@ -86,11 +86,11 @@ def main():
         recorded(args, seed, folder)
         truth = read_truth(folder)
         for case in CASES:
-            result, code = estimated(args.estimate, folder, case)
+            result = estimated(args.estimate, folder, case)
             row = {'case': case, 'seed': seed, 'body': truth['body'], **judged_modulus(result, truth['modulus'])}
             rows.append(row)
-            print('%-16s %d %-6s error %+6.2f %%  %-7s %s exit %d' % (
-                case, seed, row['body'], 100 * row['error'], 'inside' if row['inside'] else 'OUTSIDE', row['state'], code),
+            print('%-16s %d %-6s error %+6.2f %%  %-7s %s' % (
+                case, seed, row['body'], 100 * row['error'], 'inside' if row['inside'] else 'OUTSIDE', row['state']),
                 flush=True)
     write_page(args, 'wrench.md', page(rows))
 
