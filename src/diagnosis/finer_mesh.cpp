@@ -26,6 +26,7 @@ std::shared_ptr<const RecordingFit> on_finer_mesh(const FittedModel& base, const
   const auto basis = [&](const TetMesh& mesh) {
     BasisOptions options = basis_beside(model.mesh(), mesh);
     options.keep_root = true;
+    options.nonlinear = BasisOptions::Nonlinear::left_out;
     options.growths = base.recording_fit->growths();
     return RecordingFit::chosen_at(base.fit, std::move(options));
   };
@@ -33,6 +34,15 @@ std::shared_ptr<const RecordingFit> on_finer_mesh(const FittedModel& base, const
   const TetMesh mesh = refined_mesh(model.mesh(), settings.mesh);
   return std::make_shared<const RecordingFit>(settings, mesh, refine_regions(model.body().regions, model.mesh(), mesh),
                                               base.recording_fit->recording(), basis(mesh));
+}
+
+// Returns what the base's own mesh predicts at its fit, of what is linear in the model.
+Eigen::VectorXd predicted_linearly(const FittedModel& base) {
+  const RecordingFit& own = *base.recording_fit;
+  if (own.linear()) return base.rows.predicted;
+  BasisOptions options = RecordingFit::chosen_at(base.fit);
+  options.nonlinear = BasisOptions::Nonlinear::left_out;
+  return RecordingFit(own.model().settings(), own, options).predicted(base.fit.w);
 }
 
 // Returns the step of Levenberg and Marquardt, in the prior's standard deviations.
@@ -50,11 +60,12 @@ Eigen::VectorXd damped_step(const Eigen::MatrixXd& j, const Eigen::VectorXd& err
 FinerMesh finer_mesh(const FittedModel& base, const RecordingFit* known) {
   FinerMesh out{Eigen::VectorXd::Zero(base.rows.error.size())};
   const Model& model = base.recording_fit->model();
-  if (model.nonlinear() || !MeshError::why_not(model).empty()) return out;
+  if (!MeshError::why_not(model).empty()) return out;
   out.recording_fit = on_finer_mesh(base, known);
+  const Eigen::VectorXd predicted = predicted_linearly(base);
   const Eigen::VectorXd prior = model.parameters().prior_std();
   const auto change_at = [&](const Eigen::VectorXd& w) {
-    return Eigen::VectorXd(base.rows.used.cwiseProduct(out.recording_fit->predicted(w) - base.rows.predicted));
+    return Eigen::VectorXd(base.rows.used.cwiseProduct(out.recording_fit->predicted(w) - predicted));
   };
   const auto cost = [&](const Eigen::VectorXd& w) { return change_at(w).squaredNorm(); };
   Eigen::VectorXd w =

@@ -74,7 +74,7 @@ void RefitList::keep(std::vector<std::optional<Refit>> done) {
     if (!refit) continue;
     comparison_.note(refit->explained->error);
     if (refit->model && refit->model->recording_fit->model().nonlinear() && screening_.finer.recording_fit)
-      test_by_own_mesh(finer_mesh(*refit->model), *refit);
+      test_by_own_mesh(finer_mesh(*refit->model, screening_.finer.recording_fit.get()), *refit);
     refits_.push_back(std::move(*refit));
   }
   assess();
