@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "diagnosis/missing_force.hpp"
 #include "diagnosis/scores.hpp"
@@ -19,26 +20,43 @@ void find_probabilities_of(std::vector<Hypothesis>& hypotheses) {
   for (Hypothesis& h : hypotheses) h.probability /= sum;
 }
 
-// Returns the weight at which no extension gains more than the residual of the model shows. What gains more gains it from
-// the mesh's error, across the lowest modes or by its memory.
-double least_weight(const Hypothesis& model, const std::vector<Hypothesis>& all) {
-  double least = -std::numeric_limits<double>::infinity();
-  for (const Hypothesis& h : all) {
-    if (!h.extends(model) || (h.random_force && !model.effects.empty())) continue;
-    least = std::max(least, h.log_weight - h.log_prior - log_bayes_factor_of_test(model.test.z));
+double gain_over(const Hypothesis& model, const Hypothesis& extension) {
+  return believed_gain(extension.log_evidence - model.log_weight + model.log_prior,
+                       (extension.log_modal_evidence - model.log_modal_evidence).minCoeff(), model.test.z);
+}
+
+// Gives each hypothesis the evidence that is believed beside all that it extends, the smallest models first.
+void weigh_extensions(std::vector<Hypothesis>& hypotheses) {
+  std::vector<Hypothesis*> order;
+  order.reserve(hypotheses.size());
+  for (Hypothesis& h : hypotheses) order.push_back(&h);
+  std::stable_sort(order.begin(), order.end(), [](const Hypothesis* a, const Hypothesis* b) {
+    return std::make_pair(a->effects.size(), a->random_force != nullptr) <
+           std::make_pair(b->effects.size(), b->random_force != nullptr);
+  });
+  for (Hypothesis* h : order) {
+    double evidence = h->log_evidence;
+    for (const Hypothesis& model : hypotheses) {
+      if (h->extends(model)) evidence = std::min(evidence, model.log_weight - model.log_prior + gain_over(model, *h));
+    }
+    h->log_weight = evidence + h->log_prior;
   }
-  return least + model.log_prior;
 }
 
 // Something unknown is one alternative to the most probable model, whatever it acts beside. So all random forces together
-// gain over that model what its test says, and a search that tries more models makes them no more probable. It may also act
-// in the place of what is named, whose model is a near twin then. So it keeps its prior where that model leaves nothing.
+// gain over that model what its test says, and a search that tries more models makes them no more probable. Over a named
+// model they gain what the one beside it does, if any size of the mesh's error says more. A force may also act in the place
+// of what is named, whose model is a near twin then. So it keeps its prior where that model leaves nothing.
 void bound_random_forces(const Hypothesis& best, std::vector<Hypothesis>& all) {
   const auto counts = [&best](const Hypothesis& h) {
     return h.random_force && (!h.superfluous || (h.same_effects(best) && !best.effects.empty()));
   };
-  const double over_best = best.log_weight + log_bayes_factor_of_test(best.test.z);
-  const auto shown = [over_best](const Hypothesis& h) { return over_best + h.log_prior_of_force; };
+  double gain = log_bayes_factor_of_test(best.test.z);
+  for (const Hypothesis& h : all) {
+    if (!h.random_force || !h.same_effects(best) || best.effects.empty()) continue;
+    gain = std::max(gain, (h.log_modal_evidence - best.log_modal_evidence).maxCoeff());
+  }
+  const auto shown = [over_best = best.log_weight + gain](const Hypothesis& h) { return over_best + h.log_prior_of_force; };
   double sum = 0.0;
   for (Hypothesis& h : all) {
     if (!counts(h)) continue;
@@ -66,13 +84,18 @@ bool Hypothesis::extends(const Hypothesis& other) const {
 }
 
 bool Hypothesis::superfluous_beside(const Hypothesis& other) const {
-  return extends(other) && !other.test.structured();
+  if (!extends(other) || other.test.structured()) return false;
+  return random_force || log_weight - other.log_weight <= 2.0 * kComparison.worthwhile;
 }
 
 void Hypothesis::weigh(const Assessment& assessment, const ModelComparison& models) {
-  log_weight = assessment.log_evidence + log_prior;
-  if (random_force) log_weight += log_evidence_gained(*random_force, assessment, models);
+  log_evidence = assessment.log_evidence;
+  log_modal_evidence = assessment.log_modal_evidence;
   test = assessment.test;
+  if (!random_force) return;
+  const Eigen::VectorXd gain = log_evidence_gained(*random_force, assessment, models);
+  log_evidence += gain.maxCoeff();
+  log_modal_evidence += gain;
 }
 
 const Hypothesis& Comparison::best() const {
@@ -101,6 +124,7 @@ std::vector<Trace> Comparison::traces() const {
     out.push_back({&h, 0.0});
     weighed.push_back(h);
   }
+  for (Hypothesis& h : weighed) h.log_weight = h.log_evidence + h.log_prior;
   find_probabilities_of(weighed);
   const double sum = 1.0 - weighed.front().probability, together = std::min(sum, kComparison.most_traces);
   for (std::size_t i = 0; i < out.size(); ++i) out[i].share = sum > 0.0 ? together * weighed[i + 1].probability / sum : 0.0;
@@ -108,17 +132,14 @@ std::vector<Trace> Comparison::traces() const {
 }
 
 void Comparison::find_probabilities() {
-  constexpr double none = -std::numeric_limits<double>::infinity();
+  weigh_extensions(hypotheses);
   for (Hypothesis& h : hypotheses) {
     const auto enough = [&h](const Hypothesis& other) { return h.superfluous_beside(other); };
     h.superfluous = std::any_of(hypotheses.begin(), hypotheses.end(), enough);
   }
   std::vector<Hypothesis> weighed = hypotheses;
   for (Hypothesis& h : weighed) {
-    if (h.superfluous) h.log_weight = none;
-  }
-  for (Hypothesis& h : weighed) {
-    if (!h.random_force && h.log_weight > none) h.log_weight = std::max(h.log_weight, least_weight(h, weighed));
+    if (h.superfluous) h.log_weight = -std::numeric_limits<double>::infinity();
   }
   const Hypothesis* best = &weighed.front();
   for (const Hypothesis& h : weighed) {
@@ -139,10 +160,11 @@ void Comparison::assess(const ModelComparison& models) {
 }
 
 void Comparison::drop_worse_twins() {
-  const auto worse = [this](const Hypothesis& h) {
-    return std::any_of(hypotheses.begin(), hypotheses.end(), [&h](const Hypothesis& other) {
+  const auto weight = [](const Hypothesis& h) { return h.log_evidence + h.log_prior; };
+  const auto worse = [this, weight](const Hypothesis& h) {
+    return std::any_of(hypotheses.begin(), hypotheses.end(), [&](const Hypothesis& other) {
       const bool twin = h.same_effects(other) && !h.random_force == !other.random_force;
-      return twin && (other.log_weight > h.log_weight || (other.log_weight == h.log_weight && &other < &h));
+      return twin && (weight(other) > weight(h) || (weight(other) == weight(h) && &other < &h));
     });
   };
   std::vector<Hypothesis> kept;

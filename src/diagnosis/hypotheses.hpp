@@ -19,7 +19,9 @@ struct Hypothesis {
   double log_prior = 0.0;                      ///< of the hypothesis
   double log_prior_of_force = 0.0;             ///< the random force's part of it
   std::shared_ptr<const Explained> explained;  ///< the model
-  double log_weight = 0.0;                     ///< log evidence plus log prior, up to a constant
+  double log_evidence = 0.0;                   ///< up to a constant
+  Eigen::VectorXd log_modal_evidence;          ///< along the lowest modes, for each size of the mesh's error
+  double log_weight = 0.0;                     ///< evidence that is believed plus prior, both logarithms
   TestResult test;                             ///< of its residual; with a random force, of that without it
   bool superfluous = false;                    ///< another hypothesis already suffices
   double probability = 0.0;
@@ -27,9 +29,10 @@ struct Hypothesis {
   bool same_effects(const Hypothesis& other) const;  ///< in whichever order they were added
   /// Returns whether this one has all that the other one has and something more.
   bool extends(const Hypothesis& other) const;
-  /// Returns whether this one extends another one that leaves no structure beyond chance.
+  /// Returns whether this one extends another one that leaves no structure beyond chance, with a random force or with a
+  /// gain of no more than twice `worthwhile`.
   bool superfluous_beside(const Hypothesis& other) const;
-  /// Sets weight and test as `models` assess the explained model.
+  /// Sets evidence and test as `models` assess the explained model.
   void weigh(const Assessment& assessment, const ModelComparison& models);
 };
 /// A trace is a hypothesis that no test asks for, with its share of the belief where its evidence still counts.
@@ -46,17 +49,16 @@ struct Comparison {
   double none_of_these() const;                            ///< probability of all hypotheses with a random force
   double probability_of(const std::string& effect) const;  ///< probability of all others that hold it
   /// Returns what may act besides the most probable hypothesis without being missed: superfluous extensions of it, by their
-  /// evidence. Together they have no more than half, because the evidence may be that of the mesh's error.
+  /// whole evidence. Together they have no more than half, because the evidence may be that of the mesh's error.
   std::vector<Trace> traces() const;
-  /// Assigns weights, tests and probabilities to all hypotheses by one likelihood. Sets that were fitted in several orders
-  /// are one hypothesis: the likeliest fit.
+  /// Assigns evidences, tests and probabilities to all hypotheses by one likelihood. Sets that were fitted in several
+  /// orders are one hypothesis: the likeliest fit.
   void assess(const ModelComparison& models);
-  /// Computes probabilities from the weights. A superfluous hypothesis has none: what it has more is too small to be
-  /// missing, whatever it gains. Only a random force beside the most probable named model keeps its prior, because
-  /// something unknown may act in the place of what is named. No hypothesis loses more to effects that extend it than the
-  /// structure of its residual says. A random force gains over the given model, and all random forces together gain over
-  /// the most probable one, what their tests say. The tests tolerate what the mesh's error and its memory may give to a
-  /// force.
+  /// Computes weights and probabilities from the evidences and tests. An extension of a model gains over it no more than
+  /// believed_gain() says. A superfluous hypothesis has no probability, because what it has more is too small to be
+  /// missing. Only a random force beside the most probable named model keeps its prior then, because something unknown may
+  /// act in the place of what is named. All random forces together gain over the most probable model what one beside it
+  /// gains.
   void find_probabilities();
   /// `deeper` is a comparison about the model with `effects` added. Its hypotheses take the place of those with these
   /// effects alone, and have to be assessed together with the others.

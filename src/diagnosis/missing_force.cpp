@@ -186,13 +186,16 @@ RandomForce::RandomForce(const FittedModel& model) : frames(model.rows.frames) {
   scale = modes.scale();
 }
 
-double log_evidence_gained(const RandomForce& force, const Assessment& alone, const ModelComparison& comparison) {
-  const double s = comparison.noise_variance();
-  const Eigen::VectorXd error = comparison.whitened(alone.left);
-  const std::vector<FrameEvidence> evidence = evidence_of(error, comparison.whitened(force.along), force.frames, s);
-  const ForcePrior prior = likeliest_force_prior(force.transitions, evidence, force.scale);
-  const double gain = 0.5 * (error.squaredNorm() / s - smooth_force(force.transitions, evidence, prior).deviance);
-  return gain - log_of_tried_priors(force.along.cols());
+Eigen::VectorXd log_evidence_gained(const RandomForce& force, const Assessment& alone, const ModelComparison& comparison) {
+  const double s = comparison.noise_variance(), tried = log_of_tried_priors(force.along.cols());
+  Eigen::MatrixXd rows(alone.left.size(), 1 + force.along.cols());
+  rows << alone.left, force.along;
+  return comparison.by_mesh_error(rows, [&](const Eigen::MatrixXd& along, const FrameRows& frames) {
+    const std::vector<FrameEvidence> evidence = evidence_of(along.col(0), along.rightCols(along.cols() - 1), frames, s);
+    const ForcePrior prior = likeliest_force_prior(force.transitions, evidence, force.scale);
+    const double without = along.col(0).squaredNorm() / s;
+    return 0.5 * (without - smooth_force(force.transitions, evidence, prior).deviance) - tried;
+  });
 }
 
 }  // namespace tissue_stiffness

@@ -27,9 +27,9 @@ struct RandomForce {
   FrameRows frames;                          ///< of the rows
   double scale = 0.0;                        ///< rms of the forces that move the modes
 };
-/// Returns the log evidence that what a model leaves is the work of such a force, beyond that of noise and the mesh's
-/// error. It is the force's marginal likelihood (Schweppe 1965) at its best prior, less the log of the number of priors
-/// that were tried. `alone` assesses the model without the force.
-double log_evidence_gained(const RandomForce& force, const Assessment& alone, const ModelComparison& comparison);
+/// Returns the log evidence that what a model leaves along the lowest modes is the work of such a force, beyond that of
+/// noise and the mesh's error, by the size of that error. It is the force's marginal likelihood (Schweppe 1965) at its best
+/// prior, less the log of the number of priors that were tried. `alone` assesses the model without the force.
+Eigen::VectorXd log_evidence_gained(const RandomForce& force, const Assessment& alone, const ModelComparison& comparison);
 
 }  // namespace tissue_stiffness

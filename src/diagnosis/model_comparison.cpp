@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kNarrower = 0.25;  // ratio of the widths of successive priors in the mixture
 constexpr int kSizes = 32;          // of the mesh's error, over which a test is averaged
+constexpr int kModalSizes = 4;      // the same for the modal evidence, with both ends
 constexpr double kTiny = 1e-12;     // [sigma^2]: a direction that no row sees
 
 double log_determinant(const Eigen::LDLT<Eigen::MatrixXd>& factor) {
@@ -114,6 +115,17 @@ class AlongMesh {
   Eigen::ArrayXXd squares_, variances_, repeated_;  ///< directions x frames
 };
 
+// Returns the size of the mesh's error over what a refinement changes. It is evenly distributed by its logarithm.
+double size_of_mesh_error(double quantile) {
+  return kComparison.least_of_mesh * std::pow(kComparison.whole_mesh / kComparison.least_of_mesh, quantile);
+}
+
+Eigen::MatrixXd unknowns(const Linearisation& model, const MeshAllowance& mesh) {
+  Eigen::MatrixXd out(model.columns.rows(), model.columns.cols() + mesh.columns.cols());
+  out << model.columns, mesh.columns;
+  return out;
+}
+
 // Returns the widths of the amplitudes' priors over the stated width.
 std::vector<double> scales_of(const Linearisation& model) {
   std::vector<double> out;
@@ -125,6 +137,41 @@ std::vector<double> scales_of(const Linearisation& model) {
   return out;
 }
 
+/// Laplace's approximation for rows of variance s: error ~ N(rows u, s I), without the rows' weights.
+struct Laplace {
+  Laplace(const Linearisation& model, const Eigen::MatrixXd& rows, const Eigen::VectorXd& error, double s) {
+    Eigen::VectorXd mean = Eigen::VectorXd::Zero(rows.cols());
+    mean.head(model.prior.size()) = model.prior;
+    const Eigen::MatrixXd gram = rows.transpose() * rows / s;
+    const Eigen::VectorXd seen = rows.transpose() * error / s;
+    const Eigen::Index own = model.parameters, rest = rows.cols() - own;
+    std::vector<double> evidence;
+    for (const double scale : scales_of(model)) {
+      Eigen::VectorXd weight = Eigen::VectorXd::Ones(rows.cols());
+      for (const Eigen::Index i : model.amplitudes) weight[i] = 1.0 / (scale * scale);
+      Eigen::MatrixXd precision = gram;
+      precision.diagonal() += weight;
+      const Eigen::LDLT<Eigen::MatrixXd> factor(precision);
+      const Eigen::VectorXd pull = seen + weight.cwiseProduct(mean);
+      Eigen::VectorXd at = factor.solve(pull);
+      // Numerics that are not plausible explain nothing, so the parameters have to do without them.
+      at.tail(rest) = at.tail(rest).cwiseMax(-MisfitTest::bound).cwiseMin(MisfitTest::bound);
+      at.head(own) = precision.topLeftCorner(own, own).ldlt().solve(pull.head(own) -
+                                                                    precision.topRightCorner(own, rest) * at.tail(rest));
+      const double likelihood = -0.5 * (error - rows * at).squaredNorm() / s;
+      evidence.push_back(likelihood - 0.5 * (weight.dot((at - mean).cwiseAbs2()) + log_determinant(factor)) +
+                         0.5 * weight.array().log().sum());
+      if (evidence.back() < *std::max_element(evidence.begin(), evidence.end())) continue;
+      most_probable = at;
+      log_likelihood = likelihood;
+    }
+    log_evidence = log_mean_exp(evidence);
+  }
+
+  double log_evidence = 0.0, log_likelihood = 0.0;
+  Eigen::VectorXd most_probable;
+};
+
 }  // namespace
 
 ModelComparison::ModelComparison(const FittedModel& base, const Eigen::VectorXd& mesh_change)
@@ -134,6 +181,16 @@ ModelComparison::ModelComparison(const FittedModel& base, const Eigen::VectorXd&
       differences_(differences_of(base.rows)),
       along_(lowest_modes(base)),
       base_cost_(base.rows.error.squaredNorm()) {
+  for (Eigen::Index k = 0; k < frames_.count(); ++k) {
+    const auto [from, size] = frames_[k];
+    std::vector<Eigen::Index> forces;
+    for (Eigen::Index i = 0; i < size; ++i) {
+      if (nodes_[from + i] == kForceRow) forces.push_back(i);
+    }
+    const Eigen::MatrixXd shapes = with_unit_columns(along_.middleRows(from, size), forces);
+    modal_.push_back(orthonormal(used_.segment(from, size).asDiagonal() * shapes));
+    modal_frames_.append(modal_.back().cols());
+  }
   allow_for_mesh(mesh_change);
   note(base.rows.error);
 }
@@ -198,6 +255,11 @@ void ModelComparison::note(const ModelComparison& other) {
 
 Assessment ModelComparison::assess(const Explained& explained) const {
   Assessment out = assess(explained, mesh_);
+  Eigen::MatrixXd rows(explained.error.size(), 1 + explained.linearisation.columns.cols() + mesh_.columns.cols());
+  rows << explained.error, unknowns(explained.linearisation, mesh_);
+  out.log_modal_evidence = by_mesh_error(rows, [&](const Eigen::MatrixXd& along, const FrameRows&) {
+    return Laplace(explained.linearisation, along.rightCols(along.cols() - 1), along.col(0), noise_variance_).log_evidence;
+  });
   if (!explained.mesh) return out;
   Assessment own = assess(explained, *explained.mesh);
   out.left = std::move(own.left);
@@ -208,41 +270,39 @@ Assessment ModelComparison::assess(const Explained& explained) const {
 
 Assessment ModelComparison::assess(const Explained& explained, const MeshAllowance& mesh) const {
   const Linearisation& model = explained.linearisation;
-  const double s = noise_variance_;
-  Eigen::MatrixXd j(explained.error.size(), model.columns.cols() + mesh.columns.cols());
-  j << model.columns, mesh.columns;
-  const Eigen::MatrixXd white = whitened_by(mesh, s, frames_, j);
-  const Eigen::VectorXd error = whitened_by(mesh, s, frames_, explained.error);
-  Eigen::VectorXd mean = Eigen::VectorXd::Zero(j.cols());
-  mean.head(model.prior.size()) = model.prior;
-  const Eigen::MatrixXd gram = white.transpose() * white / s;
-  const Eigen::VectorXd seen = white.transpose() * error / s;
-  const Eigen::Index own = model.parameters, rest = j.cols() - own;
+  const Eigen::MatrixXd j = unknowns(model, mesh);
+  const Laplace laplace(model, whitened_by(mesh, noise_variance_, frames_, j),
+                        whitened_by(mesh, noise_variance_, frames_, explained.error), noise_variance_);
   Assessment out;
-  Eigen::VectorXd u;
-  std::vector<double> evidence;
-  for (const double scale : scales_of(model)) {
-    Eigen::VectorXd weight = Eigen::VectorXd::Ones(j.cols());
-    for (const Eigen::Index i : model.amplitudes) weight[i] = 1.0 / (scale * scale);
-    Eigen::MatrixXd precision = gram;
-    precision.diagonal() += weight;
-    const Eigen::LDLT<Eigen::MatrixXd> factor(precision);
-    const Eigen::VectorXd pull = seen + weight.cwiseProduct(mean);
-    Eigen::VectorXd at = factor.solve(pull);
-    // Numerics that are not plausible explain nothing, so the parameters have to do without them.
-    at.tail(rest) = at.tail(rest).cwiseMax(-MisfitTest::bound).cwiseMin(MisfitTest::bound);
-    at.head(own) = precision.topLeftCorner(own, own).ldlt().solve(pull.head(own) -
-                                                                  precision.topRightCorner(own, rest) * at.tail(rest));
-    const double likelihood = model.log_root_weights - 0.5 * (error - white * at).squaredNorm() / s;
-    evidence.push_back(likelihood - 0.5 * (weight.dot((at - mean).cwiseAbs2()) + log_determinant(factor)) +
-                       0.5 * weight.array().log().sum());
-    if (evidence.back() < *std::max_element(evidence.begin(), evidence.end())) continue;
-    u = at;
-    out.log_likelihood = likelihood;
-  }
-  out.log_evidence = log_mean_exp(evidence);
-  out.left = explained.error - j * u;
+  out.log_evidence = model.log_root_weights + laplace.log_evidence;
+  out.log_likelihood = model.log_root_weights + laplace.log_likelihood;
+  out.left = explained.error - j * laplace.most_probable;
   test_left(static_cast<double>(model.columns.cols()), mesh, out);
+  return out;
+}
+
+Eigen::MatrixXd ModelComparison::along_modes(const Eigen::MatrixXd& rows) const {
+  Eigen::MatrixXd out(modal_frames_.total(), rows.cols());
+  for (Eigen::Index k = 0; k < frames_.count(); ++k) {
+    const auto [from, size] = frames_[k];
+    const auto [first, count] = modal_frames_[k];
+    out.middleRows(first, count) = modal_[static_cast<std::size_t>(k)].transpose() * rows.middleRows(from, size);
+  }
+  return out;
+}
+
+Eigen::VectorXd ModelComparison::by_mesh_error(
+    const Eigen::MatrixXd& rows,
+    const std::function<double(const Eigen::MatrixXd&, const FrameRows&)>& log_evidence) const {
+  const Eigen::MatrixXd along = along_modes(rows);
+  MeshAllowance mesh;
+  mesh.basis = along_modes(mesh_.basis);
+  Eigen::VectorXd out(kModalSizes);
+  for (int i = 0; i < kModalSizes; ++i) {
+    const double r = size_of_mesh_error(i / (kModalSizes - 1.0)) / kComparison.least_of_mesh;
+    mesh.variances = r * r * mesh_.variances;
+    out[i] = log_evidence(whitened_by(mesh, noise_variance_, modal_frames_, along), modal_frames_);
+  }
   return out;
 }
 
@@ -255,12 +315,11 @@ void ModelComparison::test_left(double fitted, const MeshAllowance& mesh, Assess
     test.set_numerics(0.0, std::pow(size / kComparison.whole_mesh, 2) * across / rows);
     return test.z();
   };
-  constexpr double least = kComparison.least_of_mesh, ratio = kComparison.whole_mesh / kComparison.least_of_mesh;
   std::vector<double> z;
   z.reserve(kSizes);
-  for (int i = 0; i < kSizes; ++i) z.push_back(z_at(least * std::pow(ratio, (i + 0.5) / kSizes)));
+  for (int i = 0; i < kSizes; ++i) z.push_back(z_at(size_of_mesh_error((i + 0.5) / kSizes)));
   out.test = {averaged_z(z)};
-  out.strict_test = {z_at(least)};
+  out.strict_test = {z_at(kComparison.least_of_mesh)};
 }
 
 MisfitTest ModelComparison::test_of(const Eigen::VectorXd& error, double fitted) const {

@@ -20,7 +20,9 @@ struct TestResult {
 
 /// An assessment is what the comparison makes of one model.
 struct Assessment {
-  double log_evidence = 0.0;    ///< log p(e), up to a constant that all models share
+  double log_evidence = 0.0;  ///< log p(e), up to a constant that all models share
+  /// What the sensors see along the lowest modes says this, for each size of the mesh's error, up to a constant of each.
+  Eigen::VectorXd log_modal_evidence;
   double log_likelihood = 0.0;  ///< log p(e | u) at the most probable u, up to the constant of log_evidence
   Eigen::VectorXd left;         ///< residual at the most probable u
   TestResult test;              ///< of `left`, because missing physics moves the lowest modes
@@ -42,6 +44,11 @@ struct Assessment {
 /// Laplace's approximation (MacKay 2003, eq. 28.10) with the numerics as further unknowns. An added amplitude's prior is an
 /// even mixture of normal ones from its stated width down to `smallest` of it. So an effect pays for the order of its size
 /// and not for the width that a proposal happens to state.
+///
+/// The mesh's error has a known covariance along the lowest modes alone. So the modal evidence takes of each frame k only
+/// Q_k^T e, where the columns of Q_k are orthonormal and span the lowest modes as the sensors see them, and each measured
+/// force. It is told for several sizes r of that error, from the smallest to the largest. Its rows have no weights of their
+/// own.
 class ModelComparison {
  public:
   /// `mesh_change` is what a finer mesh changes of the base's rows [sigma].
@@ -62,6 +69,10 @@ class ModelComparison {
   MeshAllowance allowance(const Eigen::VectorXd& change) const;
   /// Returns the rows (N x k) in which the covariance is s I: along B_k they shrink by the root of s / (s + L_k).
   Eigen::MatrixXd whitened(const Eigen::MatrixXd& rows) const;
+  /// Returns log_evidence(rows) for each size of the mesh's error. `log_evidence` gets the rows along the modes, Q_k^T
+  /// rows, in which noise and that error have the covariance s I, and their frames.
+  Eigen::VectorXd by_mesh_error(const Eigen::MatrixXd& rows,
+                                const std::function<double(const Eigen::MatrixXd&, const FrameRows&)>& log_evidence) const;
   /// Assesses a model. Its evidence is compared with that of others, so it allows for the base's mesh. Its test allows for
   /// the error of its own mesh, where that is known.
   Assessment assess(const Explained& model) const;
@@ -74,6 +85,8 @@ class ModelComparison {
 
  private:
   Assessment assess(const Explained& model, const MeshAllowance& mesh) const;
+  /// Returns Q_k^T rows, frame under frame.
+  Eigen::MatrixXd along_modes(const Eigen::MatrixXd& rows) const;
   /// Tests what a model with `fitted` parameters leaves.
   void test_left(double fitted, const MeshAllowance& mesh, Assessment& out) const;
 
@@ -82,6 +95,8 @@ class ModelComparison {
   FrameRows frames_;
   std::vector<SparseMatrix> differences_;  ///< between neighbouring points, of each frame
   Eigen::MatrixXd along_;                  ///< rows / amplitude of each mode
+  std::vector<Eigen::MatrixXd> modal_;     ///< Q_k of each frame
+  FrameRows modal_frames_;                 ///< of the rows along them
   MeshAllowance mesh_;                     ///< of the base
   double base_cost_ = 0.0;
   double noise_variance_ = 0.0;

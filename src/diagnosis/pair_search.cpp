@@ -30,6 +30,7 @@ class PairSearch {
     if (finding_.verdict != Verdict::missing) turn(leaders);
     if (finding_.verdict != Verdict::missing) return std::nullopt;
     exchange(leaders);
+    if (finding_.verdict != Verdict::missing) return std::nullopt;  // the likelihood of all rounds believes another model
     const std::string best = finding_.comparison.best().effects.front();
     finding_.put_first(best);
     const auto is_best = [&best](const Leader& l) { return l.effect == best; };

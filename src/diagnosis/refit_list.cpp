@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "diagnosis/missing_force.hpp"
+#include "diagnosis/scores.hpp"
 #include "diagnosis/try_run.hpp"
 #include "effects/registry.hpp"
 #include "fit/nested_parameters.hpp"
@@ -172,7 +173,11 @@ void RefitList::assess() {
   tbb::parallel_for(std::size_t{0}, refits_.size(), [&](std::size_t i) {
     Refit& refit = refits_[i];
     refit.assessment = comparison_.assess(*refit.explained);
-    refit.log_bayes_factor = refit.assessment.log_evidence - given_.log_evidence - std::log(variants_of(refit.effect));
+    const Assessment& larger = refit.assessment;
+    refit.log_bayes_factor =
+        believed_gain(larger.log_evidence - given_.log_evidence,
+                      (larger.log_modal_evidence - given_.log_modal_evidence).minCoeff(), given_.test.z) -
+        std::log(variants_of(refit.effect));
   });
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t i = 0; i < refits_.size(); ++i) order.emplace_back(-refits_[i].log_bayes_factor, i);

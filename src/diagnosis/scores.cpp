@@ -16,18 +16,6 @@ constexpr int kBisections = 60;
 constexpr double kGone = 1e-6;           // share of a tangent: with less left it says nothing of its own
 constexpr double kNearlyCertain = 1e-3;  // -log of a p-value below which its terms cancel
 
-Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& a) {
-  if (a.cols() == 0) return a;
-  Eigen::MatrixXd scaled = a;
-  for (Eigen::Index i = 0; i < a.cols(); ++i) {
-    const double norm = a.col(i).norm();
-    if (norm > 0.0) scaled.col(i) /= norm;
-  }
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scaled);
-  qr.setThreshold(kSame);
-  return qr.householderQ() * Eigen::MatrixXd::Identity(a.rows(), qr.rank());
-}
-
 // Returns log P(Z >= z).
 double log_upper_tail(double z) {
   return z < kFar ? std::log(normal_cdf(-z)) : -0.5 * z * z - std::log(z * std::sqrt(2.0 * M_PI));
@@ -44,6 +32,18 @@ double upper_quantile(double log_p) {
 }
 
 }  // namespace
+
+Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns) {
+  if (columns.size() == 0) return Eigen::MatrixXd(columns.rows(), 0);
+  Eigen::MatrixXd scaled = columns;
+  for (Eigen::Index i = 0; i < columns.cols(); ++i) {
+    const double norm = columns.col(i).norm();
+    if (norm > 0.0) scaled.col(i) /= norm;
+  }
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scaled);
+  qr.setThreshold(kSame);
+  return qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), qr.rank());
+}
 
 Scorer::Scorer(const Eigen::VectorXd& residual, const Eigen::MatrixXd& nuisance_tangents, double variance)
     : basis_(orthonormal(nuisance_tangents)), variance_(variance) {
@@ -106,6 +106,10 @@ double log_bayes_factor_of_test(double z) {
   const double l = -log_upper_tail(z);
   if (l < kNearlyCertain) return std::log(0.5 + l / 6.0);  // its series, because the terms below cancel
   return l - 2.0 * std::log(l) + std::log1p(-(1.0 + l) * std::exp(-l));
+}
+
+double believed_gain(double whole, double modal, double z) {
+  return std::min(whole, std::max(log_bayes_factor_of_test(z), modal));
 }
 
 }  // namespace tissue_stiffness

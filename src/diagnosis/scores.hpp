@@ -39,6 +39,9 @@ class Scorer {
   double variance_;
 };
 
+/// Returns an orthonormal basis of the columns' span.
+Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns);
+
 /// Returns the log of the mean of exp(values), without overflow.
 double log_mean_exp(const std::vector<double>& values);
 
@@ -56,5 +59,12 @@ double averaged_z(const std::vector<double>& z);
 ///   (1 - p + p log p) / (p (log p)^2).
 /// Its mean under the hypothesis is 1, as that of a Bayes factor has to be. It is at least 1/2.
 double log_bayes_factor_of_test(double z);
+
+/// Returns the log Bayes factor that is believed of a larger model over a smaller one, whose test lies z standard
+/// deviations above its mean. It is no more than the `whole` evidence says, and no more than either the test or the `modal`
+/// evidence says, that of what the sensors see along the lowest modes. The mesh's error has a known covariance along these
+/// modes alone, so whatever else the evidence holds may be that error. `modal` is the least over the sizes of that error:
+/// the lower bound of a robust Bayesian analysis (Berger 1994, Test 3).
+double believed_gain(double whole, double modal, double z);
 
 }  // namespace tissue_stiffness

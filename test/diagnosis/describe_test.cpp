@@ -20,7 +20,8 @@ class Described : public CleanBar {
   Hypothesis hypothesis(Names effects, double weight, double left) const {
     Hypothesis out;
     out.effects = std::move(effects);
-    out.log_weight = weight;
+    out.log_evidence = weight;
+    out.log_modal_evidence = Eigen::VectorXd::Zero(1);
     out.test.z = 1e3 * left;
     out.explained = std::make_shared<const Explained>(rigid(base_.rows.error - (1.0 - left) * slow()));
     return out;

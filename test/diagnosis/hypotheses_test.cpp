@@ -15,12 +15,14 @@ constexpr double kLeavesNoise = 0.0;  // z of what leaves noise alone
 constexpr double kPasses = 2.0;       // of what passes, and yet leaves some structure
 constexpr double kFails = 1e3;        // of what shows whatever others gain
 
-// `random_force` adds one that does nothing.
-Hypothesis hypothesis(std::vector<std::string> effects, double weight, double z, bool random_force = false) {
+// Models have the same modal evidence here, and `random_force` adds one that gains nothing along the modes. So only the
+// tests say what is left.
+Hypothesis hypothesis(std::vector<std::string> effects, double evidence, double z, bool random_force = false) {
   Hypothesis out;
   out.effects = std::move(effects);
   if (random_force) out.random_force = std::make_shared<const RandomForce>();
-  out.log_weight = weight;
+  out.log_modal_evidence = Eigen::Vector2d::Constant(random_force ? -1e3 : 0.0);
+  out.log_evidence = evidence;
   out.test.z = z;
   return out;
 }
@@ -47,7 +49,8 @@ TEST_F(CleanBar, AssessesAllHypothesesAlike) {
   EXPECT_FALSE(c.given().test.structured());
   for (const Hypothesis& h : c.hypotheses) {
     const Assessment own = models.assess(*h.explained);
-    EXPECT_DOUBLE_EQ(h.log_weight, own.log_evidence - 1.5);
+    EXPECT_DOUBLE_EQ(h.log_evidence, own.log_evidence);
+    EXPECT_EQ(h.log_modal_evidence, own.log_modal_evidence);
     EXPECT_DOUBLE_EQ(h.test.z, own.test.z);
   }
   EXPECT_GT(c.given().probability, 0.99);
@@ -90,7 +93,7 @@ TEST(Comparison, MergesWhatIsFoundBesideALeader) {
                            hypothesis({"a"}, 70.0, kFails, true), hypothesis({}, 60.0, kFails, true)});
   c.hypotheses[1].log_prior = -2.0;
   EXPECT_EQ(judge(c), Verdict::unexplained);
-  Comparison deeper = compared({hypothesis({}, 51.0, kFails), hypothesis({"b"}, 81.0, kLeavesNoise),
+  Comparison deeper = compared({hypothesis({}, 51.0, kFails), hypothesis({"b"}, 84.0, kLeavesNoise),
                                 hypothesis({"c"}, 80.0, kLeavesNoise), hypothesis({}, 65.0, kFails, true)});
   deeper.hypotheses[1].log_prior = -3.0;
   c.merge({"a"}, deeper);
@@ -157,7 +160,7 @@ TEST(Comparison, GivesNothingToWhatExtendsASufficientModel) {
   const double none = std::exp(log_bayes_factor_of_test(kLeavesNoise) - 3.0), all = 1.0 + std::exp(-1.0) + none;
   EXPECT_NEAR(c.probability_of("a"), 1.0 / all, 1e-9);
   EXPECT_NEAR(c.none_of_these(), none / all, 1e-9) << "in the place of a, and not beside it";
-  EXPECT_DOUBLE_EQ(c.hypotheses[3].log_weight, 90.0);
+  EXPECT_DOUBLE_EQ(c.hypotheses[3].log_evidence, 90.0);
   EXPECT_EQ(judge(c), Verdict::missing);
   EXPECT_EQ(believed_effects(c), (std::vector<std::string>{"a", "b"}));  // each of them alone
   EXPECT_LT(c.hypotheses[2].probability, 1.0);
@@ -173,14 +176,44 @@ TEST(Comparison, TakesNoMoreEvidenceThanTheResidualShows) {
   std::vector<Hypothesis> list{hypothesis({}, 0.0, 2.0), hypothesis({"a"}, 500.0, kLeavesNoise),
                                hypothesis({"b"}, 499.0, kLeavesNoise)};
   const Comparison slight = compared(list);
-  const double given = std::exp(-log_bayes_factor_of_test(2.0)), both = 1.0 + std::exp(-1.0);
-  EXPECT_NEAR(slight.given().probability, given / (given + both), 1e-9);
-  EXPECT_NEAR(slight.probability_of("a") / slight.probability_of("b"), std::exp(1.0), 1e-9);
+  const double gain = std::exp(log_bayes_factor_of_test(2.0));
+  EXPECT_NEAR(slight.given().probability, 1.0 / (1.0 + 2.0 * gain), 1e-9);
+  EXPECT_NEAR(slight.probability_of("a"), slight.probability_of("b"), 1e-9) << "the mesh's error may tell them apart";
   EXPECT_EQ(judge(slight), Verdict::adequate);
   list[0].test.z = 4.0;
   EXPECT_EQ(judge(compared(list)), Verdict::missing);
-  list[1].log_weight = list[2].log_weight = 1.0;  // less than that is not raised
+  list[1].log_evidence = list[2].log_evidence = 1.0;  // less than that is not raised
   EXPECT_NEAR(compared(list).given().probability, 1.0 / (1.0 + 2.0 * std::exp(1.0)), 1e-9);
+}
+
+// A small effect may lie along few directions, which a test of all squares together does not see. Where the modal evidence
+// shows it, it is missing though the test passes. It has to explain the other rows as well.
+TEST(Comparison, BelievesWhatTheLowestModesShowThoughTheTestPasses) {
+  const auto list = [](double whole, double modal) {
+    std::vector<Hypothesis> out{hypothesis({}, 0.0, kLeavesNoise), hypothesis({"a"}, whole, kLeavesNoise),
+                                hypothesis({"b"}, 900.0, kLeavesNoise)};
+    out[1].log_modal_evidence << modal, modal + 10.0;  // with the least one of them
+    out[1].log_prior = -3.0;
+    return out;
+  };
+  EXPECT_EQ(judge(compared(list(60.0, 57.0))), Verdict::missing);
+  EXPECT_EQ(believed_effects(compared(list(60.0, 57.0))), std::vector<std::string>{"a"});
+  EXPECT_NEAR(compared(list(60.0, 13.5)).given().probability, 1.0 / (1.0 + std::exp(10.5)), 1e-9);
+  EXPECT_NEAR(compared(list(13.5, 60.0)).given().probability, 1.0 / (1.0 + std::exp(10.5)), 1e-9);
+  EXPECT_EQ(judge(compared(list(60.0, 12.5))), Verdict::adequate) << "too little beside its prior";
+  EXPECT_EQ(judge(compared(list(12.5, 60.0))), Verdict::adequate);
+  EXPECT_EQ(judge(compared(list(-700.0, 60.0))), Verdict::adequate);
+}
+
+// What a pair gains is counted from what its smaller model is believed to gain.
+TEST(Comparison, CountsWhatAPairGainsFromItsSmallerModel) {
+  std::vector<Hypothesis> list{hypothesis({}, 0.0, kFails), hypothesis({"a"}, 50.0, kLeavesNoise),
+                               hypothesis({"a", "b"}, 150.0, kLeavesNoise)};
+  EXPECT_EQ(compared(list).best().effects, std::vector<std::string>{"a"});
+  list[2].log_modal_evidence << 20.0, 30.0;
+  const Comparison pair = compared(list);
+  EXPECT_EQ(pair.best().effects, (std::vector<std::string>{"a", "b"}));
+  EXPECT_NEAR(pair.best().log_weight, 70.0, 1e-9);
 }
 
 // The evidence of what is superfluous still counts for E, but no more than the test that does without it.
@@ -193,7 +226,7 @@ TEST(Comparison, TracesWhatMayActWithoutBeingMissed) {
   EXPECT_EQ(halves[0].hypothesis->effects, std::vector<std::string>{"a"});
   EXPECT_NEAR(halves[0].share, 0.5 / (1.0 + std::exp(-1.0)), 1e-9);
   EXPECT_NEAR(halves[0].share + halves[1].share, 0.5, 1e-9);
-  list[1].log_weight = list[2].log_weight = -2.0;
+  list[1].log_evidence = list[2].log_evidence = -2.0;
   const Comparison weak = compared(list);
   EXPECT_NEAR(weak.traces()[0].share, 1.0 / (2.0 + std::exp(2.0)), 1e-9);
   list[0].test.z = kPasses;
@@ -215,6 +248,18 @@ TEST(Comparison, GivesToSomethingUnknownWhatTheTestSays) {
     EXPECT_NEAR(none_of_these(3.5, evidence), 1.0 / (1.0 + std::exp(3.0 - log_bayes_factor_of_test(3.5))), 1e-6);
     EXPECT_GT(none_of_these(7.0, evidence), 0.999);
   }
+}
+
+// A force that explains what a named model leaves along the modes counts, even where the test of all squares passes.
+TEST(Comparison, GivesToSomethingUnknownWhatTheModesShow) {
+  std::vector<Hypothesis> list{hypothesis({}, 0.0, kFails), hypothesis({"a"}, 50.0, kLeavesNoise),
+                               hypothesis({"a"}, 60.0, kFails, true)};
+  list[2].log_prior = list[2].log_prior_of_force = -3.0;
+  list[2].log_modal_evidence << -5.0, 10.0;  // with the larger one of them
+  EXPECT_NEAR(compared(list).none_of_these(), 1.0 / (1.0 + std::exp(-7.0)), 1e-9);
+  EXPECT_EQ(judge(compared(list)), Verdict::unexplained);
+  list[2].log_modal_evidence << -20.0, -30.0;
+  EXPECT_EQ(judge(compared(list)), Verdict::missing);
 }
 
 TEST(Judge, NeedsBothAProbabilityAndAFit) {

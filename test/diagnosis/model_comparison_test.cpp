@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 #include <sstream>
+#include <utility>
 
 #include "clean_bar.hpp"
 #include "diagnosis/missing_force.hpp"
@@ -168,6 +169,47 @@ TEST_F(CleanBar, TestsEachModeAgainstTheMeshsErrorThere) {
   EXPECT_FALSE(models.assess(rigid(base_.rows.error + part(other + 1))).test.passes());
 }
 
+// What lies across the lowest modes says nothing to the modal evidence, and what lies along them says the same as to the
+// whole.
+TEST_F(CleanBar, HasTheModalEvidenceOfWhatLiesAlongTheModes) {
+  const Eigen::VectorXd& e = base_.rows.error;
+  const ModelComparison models(base_, Eigen::VectorXd::Zero(e.size()));
+  const Eigen::MatrixXd parts = ModelComparison(base_, slow() + 50.0 * e.cwiseAbs2()).mesh_directions();
+  const Assessment before = models.assess(rigid(e));
+  const auto loss = [&](const Eigen::VectorXd& x) {
+    const Assessment after = models.assess(rigid(e + 10.0 * x.normalized()));
+    const Eigen::VectorXd modal = before.log_modal_evidence - after.log_modal_evidence;
+    EXPECT_NEAR(modal.maxCoeff(), modal.minCoeff(), 1e-6) << "there is no error of the mesh";
+    return std::make_pair(before.log_evidence - after.log_evidence, modal[0]);
+  };
+  const auto along = loss(parts.col(0)), across = loss(parts.rightCols(1));
+  EXPECT_GT(along.first, 10.0);
+  EXPECT_NEAR(along.second, along.first, 1e-6);
+  EXPECT_GT(across.first, 10.0);
+  EXPECT_NEAR(across.second, 0.0, 1e-6);
+}
+
+// Along one direction d_k a frame the mesh's error has the variance r^2 L. There the modal evidence is that of
+// N(d_k^T e; 0, s + r^2 L), for each r from the smallest to the largest.
+TEST_F(CleanBar, HasTheModalEvidenceForEachSizeOfTheMeshsError) {
+  const Eigen::VectorXd change = 3.0 * ModelComparison(base_, slow()).mesh_directions().col(0) / kComparison.whole_mesh;
+  const ModelComparison models(base_, change);
+  const FrameRows& frames = base_.rows.frames;
+  Eigen::VectorXd alternating = change;  // a course in time that D does not have
+  for (Eigen::Index k = 0; k < frames.count(); k += 2) alternating.segment(frames[k].from, frames[k].size) *= -1.0;
+  alternating -= change * (change.dot(alternating) / change.squaredNorm());
+  const double s = models.noise_variance(), square = alternating.squaredNorm(),
+               variance = s * (square / models.whitened(alternating).squaredNorm() - 1.0);
+  const Eigen::VectorXd loss = models.assess(rigid(Eigen::VectorXd::Zero(change.size()))).log_modal_evidence -
+                               models.assess(rigid(alternating)).log_modal_evidence;
+  const double ratio = kComparison.whole_mesh / kComparison.least_of_mesh;
+  EXPECT_GT(variance, s);
+  const auto expected = [&](double r) { return 0.5 * square / (s + r * r * variance); };
+  EXPECT_NEAR(loss[0], expected(1.0), 0.1 * expected(1.0));
+  EXPECT_NEAR(loss[loss.size() - 1], expected(ratio), 0.1 * expected(ratio));
+  EXPECT_GT(loss[0], loss[1]);
+}
+
 // With errors of the mesh that are r times as large as M allows, the sum of squares b^2 along them counts b^2 v / (v + r^2
 // M), and its variance is 2 v^2 w^2 a frame, times the frames that count as one. The test averages the p-value over r.
 TEST_F(CleanBar, AveragesTheTestOverTheSizesOfTheMeshsError) {
@@ -267,9 +309,9 @@ TEST_F(CleanBar, TakesTheErrorOfTheMeshFromTheCloserBase) {
 TEST_F(CleanBar, GivesARandomForceWhatNothingElseExplains) {
   const ModelComparison models(base_, Eigen::VectorXd::Zero(base_.rows.error.size()));
   const RandomForce force(base_);
-  EXPECT_LT(log_evidence_gained(force, models.assess(rigid(base_.rows.error)), models), 0.0);
+  EXPECT_LT(log_evidence_gained(force, models.assess(rigid(base_.rows.error)), models).maxCoeff(), 0.0);
   const Assessment bent = models.assess(rigid(base_.rows.error + slow()));
-  const double gain = log_evidence_gained(force, bent, models);
+  const double gain = log_evidence_gained(force, bent, models).minCoeff();
   EXPECT_GT(gain, 0.3 * 0.5 * slow().squaredNorm());
   EXPECT_LT(gain, 0.5 * bent.left.squaredNorm() / models.noise_variance());
 }

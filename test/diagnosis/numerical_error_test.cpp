@@ -145,9 +145,10 @@ Diagnosis diagnose_springs_on_coarse_mesh(const std::string& stiffness) {
   return diagnose(settings, coarse, recording, {});
 }
 
-// Fibres imitate the mesh's error as well.
+// Fibres imitate the mesh's error as well. The test of all squares passes with these springs.
 TEST(Diagnose, NamesAnEffectBesideTheErrorOfTheMesh) {
-  const Diagnosis d = diagnose_springs_on_coarse_mesh("400");
+  const Diagnosis d = diagnose_springs_on_coarse_mesh("150");
+  EXPECT_LT(d.z, MisfitTest::beyond_chance);
   EXPECT_EQ(d.verdict, Verdict::missing);
   ASSERT_FALSE(d.set.empty());
   EXPECT_EQ(d.set.front(), "foundation");
@@ -155,7 +156,7 @@ TEST(Diagnose, NamesAnEffectBesideTheErrorOfTheMesh) {
 
 // Weak springs are less than what another mesh would change. So nothing is named, and E's interval tells of them.
 TEST(Diagnose, NamesNothingThatTheLargestErrorOfTheMeshMayBe) {
-  const Diagnosis d = diagnose_springs_on_coarse_mesh("300");
+  const Diagnosis d = diagnose_springs_on_coarse_mesh("100");
   EXPECT_EQ(d.verdict, Verdict::numerics);
   EXPECT_LT(d.z, MisfitTest::bound);
   const ParameterEstimate& modulus = d.estimate.parameters.front();

@@ -107,6 +107,14 @@ TEST(LogBayesFactorOfTest, AveragesOverTheAlternatives) {
   EXPECT_NEAR(log_bayes_factor_of_test(1000.0), 5e5, 100.0);
 }
 
+TEST(BelievedGain, IsNoMoreThanTheWholeEvidenceOrWhatTheModesOrTheTestShow) {
+  const double of_test = log_bayes_factor_of_test(2.5);
+  EXPECT_EQ(believed_gain(100.0, 20.0, 2.5), 20.0);
+  EXPECT_EQ(believed_gain(15.0, 20.0, 2.5), 15.0);
+  EXPECT_EQ(believed_gain(100.0, -20.0, 2.5), of_test);
+  EXPECT_EQ(believed_gain(-5.0, 20.0, 2.5), -5.0);
+}
+
 TEST(LogBayesFactorOfTest, IsOneOnAverageUnderTheHypothesis) {
   constexpr double step = 1e-3;
   double mean = 0.0;
