@@ -8,8 +8,9 @@ struct ComparisonNumbers {
   double whole_mesh = 4.0 / 3.0;  ///< of what a mesh refined once changes, at second order: error of any mesh as fine
   double least_of_mesh = 0.5;     ///< of what a mesh refined once changes: smallest error in directions that D lacks
   double unknown_mesh = 0.02;     ///< of the motion: what a finer mesh changes where that cannot be computed
-  double worthwhile = 5.0;        ///< log evidence from which an unknown is fitted
-  double smallest = 1e-3;     ///< of its prior's standard deviation: smallest size that an added amplitude's prior holds
+  double worthwhile = 5.0;  ///< log evidence from which an unknown is fitted; twice this is worth an effect beside a model
+                            ///< that leaves no structure
+  double smallest = 1e-3;   ///< of its prior's standard deviation: smallest size that an added amplitude's prior holds
   double most_unknown = 0.2;  ///< probability of "none of these" up to which an effect is named: a wrong name costs five
                               ///< times what an abstention does
   double promising = 0.2;     ///< share of the structured error from which an effect is one of several, or is run in full

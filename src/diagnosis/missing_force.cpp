@@ -179,7 +179,7 @@ MissingForce missing_force(const RecordingFit& recording_fit, const Eigen::Vecto
   return out;
 }
 
-RandomForce::RandomForce(const FittedModel& model) : frames(model.rows.frames) {
+RandomForce::RandomForce(const FittedModel& model) {
   const Modes modes = modes_of(*model.recording_fit, model.fit.w);
   transitions = modes.transitions;
   along = model.recording_fit->rows_along(model.fit.w, modes.shapes, model.rows);
@@ -190,8 +190,9 @@ Eigen::VectorXd log_evidence_gained(const RandomForce& force, const Assessment& 
   const double s = comparison.noise_variance(), tried = log_of_tried_priors(force.along.cols());
   Eigen::MatrixXd rows(alone.left.size(), 1 + force.along.cols());
   rows << alone.left, force.along;
-  return comparison.by_mesh_error(rows, [&](const Eigen::MatrixXd& along, const FrameRows& frames) {
-    const std::vector<FrameEvidence> evidence = evidence_of(along.col(0), along.rightCols(along.cols() - 1), frames, s);
+  return comparison.by_mesh_error(comparison.along_modes(rows), [&](const Eigen::MatrixXd& along) {
+    const std::vector<FrameEvidence> evidence =
+        evidence_of(along.col(0), along.rightCols(along.cols() - 1), comparison.modal_frames(), s);
     const ForcePrior prior = likeliest_force_prior(force.transitions, evidence, force.scale);
     const double without = along.col(0).squaredNorm() / s;
     return 0.5 * (without - smooth_force(force.transitions, evidence, prior).deviance) - tried;

@@ -24,7 +24,6 @@ struct RandomForce {
 
   std::vector<ModalTransition> transitions;  ///< to each frame
   Eigen::MatrixXd along;                     ///< rows / displacement of each mode [sigma/(m kg^1/2)]
-  FrameRows frames;                          ///< of the rows
   double scale = 0.0;                        ///< rms of the forces that move the modes
 };
 /// Returns the log evidence that what a model leaves along the lowest modes is the work of such a force, beyond that of

@@ -120,10 +120,19 @@ double size_of_mesh_error(double quantile) {
   return kComparison.least_of_mesh * std::pow(kComparison.whole_mesh / kComparison.least_of_mesh, quantile);
 }
 
-Eigen::MatrixXd unknowns(const Linearisation& model, const MeshAllowance& mesh) {
-  Eigen::MatrixXd out(model.columns.rows(), model.columns.cols() + mesh.columns.cols());
-  out << model.columns, mesh.columns;
+Eigen::MatrixXd side_by_side(const Eigen::MatrixXd& left, const Eigen::MatrixXd& right) {
+  Eigen::MatrixXd out(left.rows(), left.cols() + right.cols());
+  out << left, right;
   return out;
+}
+
+// Returns the shapes of a frame's rows and the unit column of each row that is a force.
+Eigen::MatrixXd with_forces(const Eigen::MatrixXd& shapes, const Eigen::VectorXi& nodes) {
+  std::vector<Eigen::Index> forces;
+  for (Eigen::Index i = 0; i < nodes.size(); ++i) {
+    if (nodes[i] == kForceRow) forces.push_back(i);
+  }
+  return with_unit_columns(shapes, forces);
 }
 
 // Returns the widths of the amplitudes' priors over the stated width.
@@ -183,11 +192,7 @@ ModelComparison::ModelComparison(const FittedModel& base, const Eigen::VectorXd&
       base_cost_(base.rows.error.squaredNorm()) {
   for (Eigen::Index k = 0; k < frames_.count(); ++k) {
     const auto [from, size] = frames_[k];
-    std::vector<Eigen::Index> forces;
-    for (Eigen::Index i = 0; i < size; ++i) {
-      if (nodes_[from + i] == kForceRow) forces.push_back(i);
-    }
-    const Eigen::MatrixXd shapes = with_unit_columns(along_.middleRows(from, size), forces);
+    const Eigen::MatrixXd shapes = with_forces(along_.middleRows(from, size), nodes_.segment(from, size));
     modal_.push_back(orthonormal(used_.segment(from, size).asDiagonal() * shapes));
     modal_frames_.append(modal_.back().cols());
   }
@@ -197,6 +202,7 @@ ModelComparison::ModelComparison(const FittedModel& base, const Eigen::VectorXd&
 
 void ModelComparison::allow_for_mesh(const Eigen::VectorXd& change) {
   mesh_ = allowance(change);
+  modal_mesh_ = {along_modes(mesh_.columns), along_modes(mesh_.basis), mesh_.variances, {}};
 }
 
 MeshAllowance ModelComparison::allowance(const Eigen::VectorXd& change) const {
@@ -255,10 +261,10 @@ void ModelComparison::note(const ModelComparison& other) {
 
 Assessment ModelComparison::assess(const Explained& explained) const {
   Assessment out = assess(explained, mesh_);
-  Eigen::MatrixXd rows(explained.error.size(), 1 + explained.linearisation.columns.cols() + mesh_.columns.cols());
-  rows << explained.error, unknowns(explained.linearisation, mesh_);
-  out.log_modal_evidence = by_mesh_error(rows, [&](const Eigen::MatrixXd& along, const FrameRows&) {
-    return Laplace(explained.linearisation, along.rightCols(along.cols() - 1), along.col(0), noise_variance_).log_evidence;
+  const Linearisation& model = explained.linearisation;
+  const Eigen::MatrixXd rows = along_modes(side_by_side(explained.error, model.columns));
+  out.log_modal_evidence = by_mesh_error(side_by_side(rows, modal_mesh_.columns), [&](const Eigen::MatrixXd& along) {
+    return Laplace(model, along.rightCols(along.cols() - 1), along.col(0), noise_variance_).log_evidence;
   });
   if (!explained.mesh) return out;
   Assessment own = assess(explained, *explained.mesh);
@@ -270,7 +276,7 @@ Assessment ModelComparison::assess(const Explained& explained) const {
 
 Assessment ModelComparison::assess(const Explained& explained, const MeshAllowance& mesh) const {
   const Linearisation& model = explained.linearisation;
-  const Eigen::MatrixXd j = unknowns(model, mesh);
+  const Eigen::MatrixXd j = side_by_side(model.columns, mesh.columns);
   const Laplace laplace(model, whitened_by(mesh, noise_variance_, frames_, j),
                         whitened_by(mesh, noise_variance_, frames_, explained.error), noise_variance_);
   Assessment out;
@@ -291,17 +297,14 @@ Eigen::MatrixXd ModelComparison::along_modes(const Eigen::MatrixXd& rows) const 
   return out;
 }
 
-Eigen::VectorXd ModelComparison::by_mesh_error(
-    const Eigen::MatrixXd& rows,
-    const std::function<double(const Eigen::MatrixXd&, const FrameRows&)>& log_evidence) const {
-  const Eigen::MatrixXd along = along_modes(rows);
-  MeshAllowance mesh;
-  mesh.basis = along_modes(mesh_.basis);
+Eigen::VectorXd ModelComparison::by_mesh_error(const Eigen::MatrixXd& along,
+                                               const std::function<double(const Eigen::MatrixXd&)>& log_evidence) const {
+  MeshAllowance mesh = modal_mesh_;
   Eigen::VectorXd out(kModalSizes);
   for (int i = 0; i < kModalSizes; ++i) {
     const double r = size_of_mesh_error(i / (kModalSizes - 1.0)) / kComparison.least_of_mesh;
-    mesh.variances = r * r * mesh_.variances;
-    out[i] = log_evidence(whitened_by(mesh, noise_variance_, modal_frames_, along), modal_frames_);
+    mesh.variances = r * r * modal_mesh_.variances;
+    out[i] = log_evidence(whitened_by(mesh, noise_variance_, modal_frames_, along));
   }
   return out;
 }
@@ -348,15 +351,15 @@ MisfitTest ModelComparison::test_where(const Eigen::VectorXd& error, Eigen::Inde
     const Eigen::Index modes = std::min<Eigen::Index>(along_.cols(), std::max<Eigen::Index>(1, size / 4));
     Eigen::VectorXd residual(size), used(size);
     Eigen::MatrixXd shapes(size, modes);
-    std::vector<Eigen::Index> forces;
+    Eigen::VectorXi nodes(size);
     for (Eigen::Index i = 0; i < size; ++i) {
       const Eigen::Index r = rows[static_cast<std::size_t>(i)];
       residual[i] = error[r];
       used[i] = used_[r];
       shapes.row(i) = along_.row(r).head(modes);
-      if (nodes_[r] == kForceRow) forces.push_back(i);
+      nodes[i] = nodes_[r];
     }
-    out.add(residual, used, with_unit_columns(shapes, forces));
+    out.add(residual, used, with_forces(shapes, nodes));
   }
   return out;
 }

@@ -69,10 +69,13 @@ class ModelComparison {
   MeshAllowance allowance(const Eigen::VectorXd& change) const;
   /// Returns the rows (N x k) in which the covariance is s I: along B_k they shrink by the root of s / (s + L_k).
   Eigen::MatrixXd whitened(const Eigen::MatrixXd& rows) const;
-  /// Returns log_evidence(rows) for each size of the mesh's error. `log_evidence` gets the rows along the modes, Q_k^T
-  /// rows, in which noise and that error have the covariance s I, and their frames.
-  Eigen::VectorXd by_mesh_error(const Eigen::MatrixXd& rows,
-                                const std::function<double(const Eigen::MatrixXd&, const FrameRows&)>& log_evidence) const;
+  /// Returns Q_k^T rows, frame under frame: modal_frames() has their frames.
+  Eigen::MatrixXd along_modes(const Eigen::MatrixXd& rows) const;
+  const FrameRows& modal_frames() const { return modal_frames_; }
+  /// Returns log_evidence(rows) for each size of the mesh's error. The rows are along_modes(), and `log_evidence` gets them
+  /// as those in which noise and that error have the covariance s I.
+  Eigen::VectorXd by_mesh_error(const Eigen::MatrixXd& along,
+                                const std::function<double(const Eigen::MatrixXd&)>& log_evidence) const;
   /// Assesses a model. Its evidence is compared with that of others, so it allows for the base's mesh. Its test allows for
   /// the error of its own mesh, where that is known.
   Assessment assess(const Explained& model) const;
@@ -85,8 +88,6 @@ class ModelComparison {
 
  private:
   Assessment assess(const Explained& model, const MeshAllowance& mesh) const;
-  /// Returns Q_k^T rows, frame under frame.
-  Eigen::MatrixXd along_modes(const Eigen::MatrixXd& rows) const;
   /// Tests what a model with `fitted` parameters leaves.
   void test_left(double fitted, const MeshAllowance& mesh, Assessment& out) const;
 
@@ -98,6 +99,7 @@ class ModelComparison {
   std::vector<Eigen::MatrixXd> modal_;     ///< Q_k of each frame
   FrameRows modal_frames_;                 ///< of the rows along them
   MeshAllowance mesh_;                     ///< of the base
+  MeshAllowance modal_mesh_;               ///< the same of the rows along the modes, without `of_frame`
   double base_cost_ = 0.0;
   double noise_variance_ = 0.0;
   double noise_level_ = MisfitTest::most_noise;  ///< v
