@@ -18,11 +18,20 @@ constexpr std::pair<double, double> kNoChange{1, 1};
 // These are factors on the common level and on its step, for each mode on its own.
 constexpr std::pair<double, double> kOwn[] = {{0, 0}, {0.3, 0.3}, {3, 3}, {1, 0}, {1, 0.1}, {1, 0.3}, {1, 3}, {1, 10}};
 
+// Their sizes have an upper bound, so that the filter allocates nothing in its loop over frames.
+template <int most_rows, int most_columns>
+using Bounded = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, most_rows, most_columns>;
+using State = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 3 * most_force_modes, 1>;
+using Covariance = Bounded<3 * most_force_modes, 3 * most_force_modes>;
+using Square = Bounded<most_force_modes, most_force_modes>;
+using Wide = Bounded<most_force_modes, 3 * most_force_modes>;
+
 /// Returns the state, x = (q, v, f), after a transition.
-Eigen::MatrixXd after(const ModalTransition& t, const Eigen::MatrixXd& x) {
+template <class Matrix>
+Matrix after(const ModalTransition& t, const Matrix& x) {
   const Eigen::Index m = t.qq.size();
   const auto q = x.topRows(m).array(), v = x.middleRows(m, m).array(), f = x.bottomRows(m).array();
-  Eigen::MatrixXd out(x.rows(), x.cols());
+  Matrix out(x.rows(), x.cols());
   out.topRows(m) = (q.colwise() * t.qq + v.colwise() * t.qv + f.colwise() * t.qf).matrix();
   out.middleRows(m, m) = (q.colwise() * t.vq + v.colwise() * t.vv + f.colwise() * t.vf).matrix();
   out.bottomRows(m) = f.matrix();
@@ -39,6 +48,19 @@ Eigen::VectorXd before(const ModalTransition& t, const Eigen::VectorXd& r) {
   return out;
 }
 
+/// Returns each frame's L with information = L L^T.
+std::vector<Square> roots_of(const std::vector<FrameEvidence>& evidence) {
+  std::vector<Square> out;
+  out.reserve(evidence.size());
+  for (const FrameEvidence& frame : evidence) {
+    const Eigen::LDLT<Eigen::MatrixXd> factor(frame.information);
+    const Eigen::MatrixXd l = factor.matrixL();
+    out.emplace_back(factor.transpositionsP().transpose() *
+                     (l * factor.vectorD().cwiseMax(0.0).cwiseSqrt().asDiagonal()).eval());
+  }
+  return out;
+}
+
 /// It holds the state before a frame's evidence, and what that evidence does to it.
 struct Passed {
   Eigen::VectorXd x;
@@ -47,40 +69,39 @@ struct Passed {
   Eigen::MatrixXd grasp;  ///< covariance after it: P - P (grasp, 0; 0, 0) P
 };
 
-struct Filtered {
-  std::vector<Passed> passed;  ///< one for each frame
-  double deviance = 0.0;
-};
-
-Filtered filter_force(const std::vector<ModalTransition>& transitions, const std::vector<FrameEvidence>& evidence,
-                      const ForcePrior& prior) {
+/// Filters all frames and returns the deviance. What happens at each frame is added to `passed`, where it is not null.
+double filter_force(const std::vector<ModalTransition>& transitions, const std::vector<FrameEvidence>& evidence,
+                    const std::vector<Square>& roots, const ForcePrior& prior, std::vector<Passed>* passed = nullptr) {
   const Eigen::Index m = prior.level.size(), size = 3 * m;
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(size);
-  Eigen::MatrixXd p = Eigen::MatrixXd::Zero(size, size);
+  State x = State::Zero(size);
+  Covariance p = Covariance::Zero(size, size);
   p.diagonal().tail(m) = prior.level.cwiseAbs2();
-  Filtered out;
+  Eigen::LLT<Square> factor(m);
+  Wide y(m, size);
+  double deviance = 0.0;
   for (std::size_t k = 0; k < evidence.size(); ++k) {
+    const Square& l = roots[k];
     x = after(transitions[k], x);
-    p = after(transitions[k], after(transitions[k], p).transpose());
+    p = after<Covariance>(transitions[k], after(transitions[k], p).transpose());
     p.diagonal().tail(m) += prior.walk.cwiseAbs2();
-    // The information is L L^T, so the gain needs no more than I + L^T P L.
-    const Eigen::LDLT<Eigen::MatrixXd> factor(evidence[k].information);
-    Eigen::MatrixXd l = factor.matrixL();
-    l = factor.transpositionsP().transpose() * (l * factor.vectorD().cwiseMax(0.0).cwiseSqrt().asDiagonal()).eval();
-    const Eigen::MatrixXd lp = l.transpose() * p.topRows(m);
-    const Eigen::LLT<Eigen::MatrixXd> solver(Eigen::MatrixXd::Identity(m, m) + lp.leftCols(m) * l);
-    const Eigen::VectorXd q = x.head(m);
-    const Eigen::VectorXd innovation = evidence[k].seen - evidence[k].information * q;
-    const Eigen::VectorXd pull = innovation - l * solver.solve(lp.leftCols(m) * innovation);
-    const Eigen::VectorXd step = p.leftCols(m) * pull;
-    out.deviance += evidence[k].square - 2.0 * evidence[k].seen.dot(q) + q.dot(evidence[k].information * q) -
-                    innovation.dot(step.head(m)) + 2.0 * Eigen::MatrixXd(solver.matrixL()).diagonal().array().log().sum();
-    out.passed.push_back({x, p, pull, l * solver.solve(l.transpose())});
+    // The information is L L^T, so the gain needs no more than I + L^T P L = C C^T. The covariance falls by y^T y.
+    y.noalias() = l.transpose() * p.topRows(m);
+    Square inner = Square::Identity(m, m);
+    inner.noalias() += y.leftCols(m) * l;
+    factor.compute(inner);
+    const State q = x.head(m);
+    const State innovation = evidence[k].seen - evidence[k].information * q;
+    const State explained = factor.solve(y.leftCols(m) * innovation);
+    const State pull = innovation - l * explained;
+    const State step = p.leftCols(m) * pull;
+    deviance += evidence[k].square - 2.0 * evidence[k].seen.dot(q) + q.dot(evidence[k].information * q) -
+                innovation.dot(step.head(m)) + 2.0 * factor.matrixLLT().diagonal().array().log().sum();
+    if (passed) passed->push_back({x, p, pull, l * factor.solve(l.transpose())});
     x += step;
-    p -= lp.transpose() * solver.solve(lp);
-    p = 0.5 * (p + p.transpose()).eval();
+    factor.matrixL().solveInPlace(y);
+    p.noalias() -= y.transpose() * y;
   }
-  return out;
+  return deviance;
 }
 
 }  // namespace
@@ -101,11 +122,10 @@ ModalTransition::ModalTransition(ModalStep step, double span, Eigen::Index modes
 
 SmoothedForce smooth_force(const std::vector<ModalTransition>& transitions, const std::vector<FrameEvidence>& evidence,
                            const ForcePrior& prior) {
-  const Filtered filtered = filter_force(transitions, evidence, prior);
-  const std::vector<Passed>& passed = filtered.passed;
+  std::vector<Passed> passed;
   const Eigen::Index m = prior.level.size();
   SmoothedForce out;
-  out.deviance = filtered.deviance;
+  out.deviance = filter_force(transitions, evidence, roots_of(evidence), prior, &passed);
   // This does without the covariances' inverses: those of forces that never change have none.
   Eigen::VectorXd r = Eigen::VectorXd::Zero(3 * m);
   out.displacement.resize(passed.size());
@@ -123,9 +143,10 @@ SmoothedForce smooth_force(const std::vector<ModalTransition>& transitions, cons
 ForcePrior likeliest_force_prior(const std::vector<ModalTransition>& transitions,
                                  const std::vector<FrameEvidence>& evidence, double scale) {
   const Eigen::Index m = evidence.front().seen.size();
+  const std::vector<Square> roots = roots_of(evidence);
   const auto deviances = [&](const std::vector<ForcePrior>& priors) {
     std::vector<double> out(priors.size());
-    for_each_index(priors.size(), [&](std::size_t i) { out[i] = filter_force(transitions, evidence, priors[i]).deviance; });
+    for_each_index(priors.size(), [&](std::size_t i) { out[i] = filter_force(transitions, evidence, roots, priors[i]); });
     return out;
   };
   std::vector<ForcePrior> common, own;

@@ -7,6 +7,8 @@
 
 namespace tissue_stiffness {
 
+constexpr int most_force_modes = 12;  ///< on which a random force may act
+
 /// A transition takes a body's modes from one frame to the next, under a constant force each:
 ///   q' = qq q + qv v + qf f,  v' = vq q + vv v + vf f.
 struct ModalTransition {
@@ -38,7 +40,7 @@ struct SmoothedForce {
 
 /// Estimates modes that start from rest under forces that walk at random from frame to frame, and are seen through the
 /// residual. A Kalman filter is followed by the smoother of de Jong (1989, J. Am. Stat. Assoc. 84(408)), which inverts no
-/// covariance. There is one transition to each frame.
+/// covariance. There is one transition to each frame, and at most `most_force_modes` modes.
 SmoothedForce smooth_force(const std::vector<ModalTransition>& transitions, const std::vector<FrameEvidence>& evidence,
                            const ForcePrior& prior);
 

@@ -13,7 +13,6 @@
 namespace tissue_stiffness {
 namespace {
 
-constexpr int kModes = 12;
 constexpr double kLikelier = 10.0;   // fall of the deviance that a force must bring
 constexpr std::size_t kNodes = 120;  // nodes of the surface at which the force is told
 constexpr double kSameSpan = 1e-6;   // relative difference of spans that count as one
@@ -89,7 +88,7 @@ Modes modes_of(const RecordingFit& recording_fit, const Eigen::VectorXd& w) {
   const Eigen::VectorXd theta = recording_fit.model().parameters().theta(w);
   double time = recording_fit.recording().first_stamp + recording_fit.model().settings().time.start;
   ReducedTrajectory run(*reduced, theta, time);
-  const Eigen::Index all = run.frequencies().size(), count = std::min<Eigen::Index>(kModes, all);
+  const Eigen::Index all = run.frequencies().size(), count = std::min<Eigen::Index>(most_force_modes, all);
   Modes out;
   out.shapes = run.mode_shapes(static_cast<int>(count));
   out.square = run.frequencies().head(count).cwiseAbs2();
