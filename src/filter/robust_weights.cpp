@@ -28,12 +28,13 @@ Eigen::VectorXd robust_weights(const Eigen::VectorXd& standardised, int group) {
   const Eigen::Map<const Eigen::MatrixXd> rows(standardised.data(), group, groups);
   const Eigen::VectorXd size = rows.colwise().norm().transpose() / std::sqrt(static_cast<double>(group));
 
+  Eigen::VectorXd weights = Eigen::VectorXd::Ones(standardised.size());
+  if ((size.array() <= robust_core).all()) return weights;  // whatever the median is
   std::vector<double> finite;
   finite.reserve(static_cast<std::size_t>(groups));
   for (Eigen::Index i = 0; i < groups; ++i) {
     if (std::isfinite(size[i])) finite.push_back(size[i]);
   }
-  Eigen::VectorXd weights = Eigen::VectorXd::Ones(standardised.size());
   if (finite.empty()) return weights;
   const double reach = robust_core * std::max(1.0, median_of(std::move(finite)) / normal_median(group));
   for (Eigen::Index i = 0; i < groups; ++i) {

@@ -1,19 +1,22 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdlib>
+#include <thread>
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
 
 namespace tissue_stiffness {
 
-/// Keeps freed memory in the process for later allocations of any thread. It is for programs that end soon, where
-/// requesting the large matrices from the system again takes a tenth of a diagnosis. It must be called before anything
-/// else, and does nothing without GNU's C library.
+/// Keeps freed memory in the process for later allocations. It is for programs that end soon, where requesting the large
+/// matrices from the system again takes a tenth of a diagnosis. Each thread has a heap: with one heap for all, threads that
+/// wait for it take up to half of a diagnosis. It must be called before anything else, and does nothing without GNU's C
+/// library.
 inline void keep_freed_memory() {
 #ifdef __GLIBC__
   constexpr int never = -1, ahead = 64 * 1024 * 1024;  // [byte]
-  mallopt(M_ARENA_MAX, 1);
+  mallopt(M_ARENA_MAX, static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
   mallopt(M_MMAP_MAX, 0);
   mallopt(M_TRIM_THRESHOLD, never);
   mallopt(M_TOP_PAD, ahead);
