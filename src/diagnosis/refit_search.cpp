@@ -20,7 +20,7 @@ constexpr std::size_t kVariants = 12;     // of each leader, those with most evi
 constexpr int kRounds = 3;                // in which they are tried
 constexpr std::size_t kTogether = 2;      // nonlinear refits that are fitted side by side
 
-/// The search goes stage by stage, and only while nothing explains the recording.
+/// The search goes stage by stage. Once something explains the recording, only other variants of what leads are tried.
 class RefitSearch {
  public:
   RefitSearch(const Screening& screening, RefitList& refits) : screening_(screening), refits_(refits) {}
@@ -40,11 +40,13 @@ class RefitSearch {
     const bool about_run = screening_.base.recording_fit->may_be_linearised();
     about_run ? refit_in_turn() : refit_from_tangents();
     if (!screening_.settled && refits_.move_to_better_base() && !screening_.beside_another) return !explained();
-    if (!continues()) return false;
-    if (about_run) refit_other_tangents();
-    if (!explained()) refit_from_initial_segment();
-    if (about_run) return false;
-    if (!explained() && !screening_.beside_another) refit_faint_nonlinear_effects();
+    if (about_run && continues()) {
+      refit_other_tangents();
+      if (!explained()) refit_from_initial_segment();
+    } else if (!about_run && (explained() || continues())) {
+      refit_from_initial_segment();
+      if (!explained() && !screening_.beside_another) refit_faint_nonlinear_effects();
+    }
     return false;
   }
 
@@ -188,10 +190,11 @@ void RefitSearch::refit_faint_nonlinear_effects() {
 
 // Where phases have drifted apart a tangent says little: what is unexplained may be any effect's, of any direction and
 // strength. The best fits of the initial segment tell where to start. A leader that fits better then has its variants tried
-// anew.
+// anew, also where another effect explains the recording: effects are compared by their best variants.
 void RefitSearch::refit_from_initial_segment() {
-  std::vector<Start> starts = scanned();
-  for (int round = 0; round < kRounds && !explained(); ++round) {
+  std::vector<Start> starts;
+  if (!explained()) starts = scanned();
+  for (int round = 0; round < kRounds; ++round) {
     for (Start& variant : variants_of_leaders()) starts.push_back(std::move(variant));
     if (starts.empty()) return;
     fit(starts);
