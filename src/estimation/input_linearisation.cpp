@@ -150,6 +150,7 @@ std::vector<Eigen::VectorXd> InputLinearisation::points(const Eigen::VectorXd& w
   for (const double side : {1.0, -1.0}) {
     if (constants == Constants::held) break;
     for (const UncertainConstant& constant : models_.constants) {
+      if (constant.index == UncertainConstant::surface) continue;
       Eigen::VectorXd theta = centre;
       theta[constant.index] += side * kConstantStep * constant.std;
       out.push_back(std::move(theta));
@@ -159,8 +160,8 @@ std::vector<Eigen::VectorXd> InputLinearisation::points(const Eigen::VectorXd& w
 }
 
 InputLinearisation::Row InputLinearisation::row(std::size_t index, const std::vector<Eigen::VectorXd>& thetas,
-                                                const Eigen::MatrixXd& u, const ReducedModes& modes,
-                                                const Eigen::VectorXd& z) {
+                                                const Eigen::MatrixXd& u, const Eigen::VectorXd& offset,
+                                                const ReducedModes& modes, const Eigen::VectorXd& z) {
   const Frame& frame = q_.frames[index];
   const auto predict = [&](std::size_t i) {
     return predict_frame(models_.base, models_.operators, frame, thetas[i], u.col(static_cast<Eigen::Index>(i)));
@@ -174,11 +175,16 @@ InputLinearisation::Row InputLinearisation::row(std::size_t index, const std::ve
     const Eigen::VectorXd change = predict(1 + i).predicted - predict(1 + np + i).predicted;
     out.parameters.col(static_cast<Eigen::Index>(i)) = change / (2.0 * q_.spread[static_cast<Eigen::Index>(i)]);
   }
-  out.constants.resize(rows, static_cast<Eigen::Index>(nc));
+  out.constants.resize(rows, static_cast<Eigen::Index>(nc + (offset.size() > 0 ? 1 : 0)));
   for (std::size_t i = 0; i < nc; ++i) {
     const std::size_t high = 1 + 2 * np + i;
     out.constants.col(static_cast<Eigen::Index>(i)) =
         (predict(high).predicted - predict(high + nc).predicted) / (2.0 * kConstantStep);
+  }
+  if (offset.size() > 0) {
+    const Prediction further_out = predict_frame(models_.base, models_.operators, frame, thetas[0], offset);
+    out.constants.rightCols<1>() =
+        (further_out.predicted - there.predicted) * (models_.constants.back().std / models_.offset->outward);
   }
   const Eigen::MatrixXd& seen = motions_seen(frame, thetas[0], u.col(0));
   out.modes = modes_seen(frame, thetas[0], seen, modes);
@@ -290,6 +296,12 @@ void InputLinearisation::each_row(const Eigen::VectorXd& z, Constants constants,
   correct_loads(z);
   const std::vector<Eigen::VectorXd> thetas = points(z.head(p_), constants);
   const auto all = models_.runs->start_all(thetas, q_.start);
+  std::unique_ptr<Trajectory> further_out;
+  if (models_.offset && constants == Constants::varied) {
+    models_.offset->drive_like(models_.uncertain);
+    further_out = models_.offset->runs->start(thetas[0], q_.start);
+  }
+  Eigen::VectorXd offset;
   std::vector<LoadErrorResponse> responses;
   for (const Load& load : loads_)
     responses.emplace_back(models_.linear_form(), thetas[0], q_.start, load.course, load.basis);
@@ -305,6 +317,10 @@ void InputLinearisation::each_row(const Eigen::VectorXd& z, Constants constants,
       times.push_back(q_.frames[index].time - models_.base.sensors().delay(theta));
     all->advance(times);
     all->outputs(u);
+    if (further_out) {
+      further_out->advance(times[0]);
+      offset = further_out->output();
+    }
     for (std::size_t i = 0; i < loads_.size(); ++i) {
       responses[i].advance(times[0]);
       // The measured load is too large by B eta, so the motion under the true one is smaller.
@@ -312,7 +328,7 @@ void InputLinearisation::each_row(const Eigen::VectorXd& z, Constants constants,
       columns.topRows(own) = -responses[i].amplitudes();
       columns.bottomRows(forces) = -responses[i].further_reactions();
     }
-    visit(row(index, thetas, u, modes, z), amplitudes);
+    visit(row(index, thetas, u, offset, modes, z), amplitudes);
   }
 }
 

@@ -88,8 +88,9 @@ class InputLinearisation {
   std::vector<Eigen::VectorXd> points(const Eigen::VectorXd& w, Constants constants) const;
   Eigen::MatrixXd modes_seen(const Frame& frame, const Eigen::VectorXd& theta, const Eigen::MatrixXd& seen,
                              const ReducedModes& modes) const;
+  /// `u`: the output of a run for each theta; `offset`: that of the body whose surface lies further out, or empty.
   Row row(std::size_t index, const std::vector<Eigen::VectorXd>& thetas, const Eigen::MatrixXd& u,
-          const ReducedModes& modes, const Eigen::VectorXd& z);
+          const Eigen::VectorXd& offset, const ReducedModes& modes, const Eigen::VectorXd& z);
   const Eigen::MatrixXd& motions_seen(const Frame& frame, const Eigen::VectorXd& theta, const Eigen::VectorXd& u);
   Eigen::MatrixXd sensor_columns(const Frame& frame, const Prediction& there, const Eigen::VectorXd& u,
                                  const Eigen::MatrixXd& rigid) const;

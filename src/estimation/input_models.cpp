@@ -1,15 +1,20 @@
 #include "estimation/input_models.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <string>
 #include <utility>
 
 #include "effects/registry.hpp"
 #include "estimation/basis_error.hpp"
+#include "meshing/offset_surface.hpp"
 #include "meshing/surface.hpp"
 
 namespace tissue_stiffness {
 namespace {
+
+constexpr double kOffset = 0.5;       // of a tolerance: how far the surface is moved
+constexpr double kMostOffset = 0.05;  // of the shortest edge: at most so far, as nothing inside moves
 
 // A known Poisson's ratio is folded into one matrix; a model in which it is free keeps it apart.
 ModelSettings with_free_ratio(ModelSettings settings) {
@@ -45,6 +50,16 @@ Eigen::MatrixXd rigid_motions(const TetMesh& mesh) {
 
 }  // namespace
 
+OffsetBody::OffsetBody(const Model& body, double outward)
+    : model(body.settings(), offset_surface(body.mesh(), outward), body.body().regions), outward(outward) {
+  runs = make_study_model(model);
+}
+
+void OffsetBody::drive_like(const Model& body) {
+  for (const auto& [topic, course] : body.loads().courses()) *model.loads().courses().at(topic) = *course;
+  model.loads().set_first_stamp(body.loads().first_stamp());
+}
+
 InputModels::InputModels(const Model& model)
     : base(model.settings(), model),
       uncertain(with_free_ratio(model.settings()), model),
@@ -52,6 +67,10 @@ InputModels::InputModels(const Model& model)
       constants(model.parameters().uncertain_constants()),
       rigid(rigid_motions(base.mesh())) {
   runs = make_study_model(uncertain);
+  const double tolerance = base.settings().exact_inputs ? 0.0 : base.settings().mesh.surface_tolerance;
+  if (!(tolerance > 0.0)) return;
+  offset = std::make_unique<OffsetBody>(uncertain, std::min(kOffset * tolerance, kMostOffset * shortest_edge(base.mesh())));
+  constants.push_back({"mesh.surface", UncertainConstant::surface, 0.0, tolerance});
 }
 
 void InputModels::grow_basis(const MeshError::Question& question) {

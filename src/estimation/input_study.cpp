@@ -222,7 +222,8 @@ class InputFit {
     for (std::size_t i = 0; i < columns_.constants().size(); ++i) {
       const UncertainConstant& c = columns_.constants()[i];
       const auto shift = shifts.col(static_cast<Eigen::Index>(i));
-      answer.inputs.push_back({c.name, "value", "", c.std, 0.0, c.std, modulus_std(kTails * shift * shift.transpose())});
+      const std::string unit = c.index == UncertainConstant::surface ? "m" : "";
+      answer.inputs.push_back({c.name, "value", unit, c.std, 0.0, c.std, modulus_std(kTails * shift * shift.transpose())});
     }
   }
 
@@ -287,7 +288,9 @@ InputStudy::Answer InputStudy::study(const std::vector<const Question*>& questio
     models.uncertain.loads().set_first_stamp(question.first_stamp);
     models.base.loads().set_first_stamp(question.first_stamp);
     models.grow_basis(question);
-    models.runs->restrict_output_to(observed_nodes(models.operators, question.frames));
+    const std::vector<int> nodes = observed_nodes(models.operators, question.frames);
+    models.runs->restrict_output_to(nodes);
+    if (models.offset) models.offset->runs->restrict_output_to(nodes);
     parts.push_back(std::make_unique<JointRows::Part>(question, models, predicted[r]));
   }
   const JointRows rows(std::move(parts), parts_->sharing, parts_->parameters);

@@ -25,9 +25,10 @@ struct FreeParameter {
 /// A number that the model file declares, with its uncertainty.
 struct UncertainConstant {
   std::string name;  ///< label.parameter
-  int index = 0;     ///< in theta
+  int index = 0;     ///< in theta, or `surface`
   double value = 0.0;
   double std = 0.0;  ///< tolerance, 1 sigma [the parameter's unit]
+  static constexpr int surface = -1;  ///< how far out the surface lies [m], which is no parameter
 };
 
 /// All numbers of a model. The vector theta holds the values of every parameter of every effect in order, and then the

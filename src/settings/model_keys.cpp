@@ -23,6 +23,8 @@ std::vector<KeySpec> mesh_keys() {
                 "model file's folder"),
       number_key("mesh.scale", "", kPositive, kInfinity, 1, "metres a unit of the file"),
       number_key("mesh.scale_tolerance", "", 0, 1, 0.005, "by which every length of the mesh may be off, 1 sigma"),
+      number_key("mesh.surface_tolerance", "m", 0, kInfinity, 0.0,
+                 "by which the whole surface may lie too far out or in, 1 sigma"),
       number_key("mesh.max_edge_length", "m", kPositive, kInfinity, 0, edge),
       plain_key("mesh.revolve", Kind::map, "",
                 "the body that the first contour makes, turned about an axis through its middle"),

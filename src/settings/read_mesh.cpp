@@ -92,6 +92,7 @@ MeshSettings read_mesh(const Value& map, const std::string& directory) {
     mesh.max_edge_length = read_number(map, key("mesh.max_edge_length"));
   }
   mesh.scale_tolerance = read_number(map, key("mesh.scale_tolerance"));
+  mesh.surface_tolerance = read_number(map, key("mesh.surface_tolerance"));
   mesh.order = read_integer(map, key("mesh.order"));
   mesh.refine = read_integer(map, key("mesh.refine"));
   mesh.faceted = read_choice(map, key("mesh.boundary")) == "faceted";

@@ -1,10 +1,13 @@
 // Errors of loads, poses and constants are found where the data tell them, and are in the interval where they do not.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <utility>
 
 #include "bar.hpp"
+#include "meshing/offset_surface.hpp"
 
 namespace tissue_stiffness {
 namespace {
@@ -131,6 +134,64 @@ TEST(InputStudy, NamesTheInputThatMovesTheModulusMost) {
   const ParameterEstimate& e = last.estimate.parameters.front();
   const double variance = std::log1p(std::pow(e.std / e.mean, 2));  // of the logarithm
   EXPECT_NEAR(constants / (variance * last.estimate.variance.front().constants), 1.0, 0.1);
+}
+
+// A clamped bar that is bent slowly by a force F at its end sags by F L^3 / (3 E b h^3 / 12). With its surface d further
+// out, b and h grow by 2 d each, and so does L.
+constexpr double kThickness = 0.02, kLength = 0.1, kSurface = 1e-4, kStiffBar = 200e3;
+double bending_stiffness(double outward) {
+  return std::pow(kThickness + 2.0 * outward, 4) / std::pow(kLength + 2.0 * outward, 3);
+}
+
+// Returns the estimate of a bar whose surface is that far out, with a model whose surface is elsewhere, and the tolerance
+// that it states.
+Estimate of_slow_bar(double outward, double of_model, double tolerance) {
+  ModelSettings model = box_settings(
+      {"inertia: {density: {value: 1000, tolerance: 0}}", modulus(prior(300e3, 3)), "fixed: {region: clamp}",
+       "traction: {region: tip, topic: /wrench, gain: 0, bias: 0, hysteresis: 0, delay: 0, direction: 0, noise: 0}"});
+  model.exact_inputs = false;
+  model.mesh.scale_tolerance = 0.0;
+  model.mesh.surface_tolerance = tolerance;
+  const TetMesh mesh = offset_surface(bar_mesh(), of_model), true_mesh = offset_surface(bar_mesh(), outward);
+  Experiment bar(model, true_mesh, {kStiffBar});
+  Estimator estimator(model, mesh);
+  estimator.set_first_stamp(0.0);
+  for (int k = 0; k < 260; ++k) {
+    LoadSample sample{"/wrench", 0.005 * k, Eigen::VectorXd::Zero(6)};
+    sample.value[2] = -0.1 * (1.0 - std::cos(5.0 * sample.time));
+    bar.add_load(sample);
+    estimator.add_load(sample);
+  }
+  std::vector<Frame> frames = see_all(bar, bar.film(0.0, kFilmed, 60), kNoise, 7);
+  for (Frame& frame : frames) {
+    Observation& seen = frame.observations.front();
+    for (Eigen::Index i = 0; i < seen.points.cols(); ++i)
+      seen.points.col(i) += mesh.nodes.col(seen.ids[i]) - true_mesh.nodes.col(seen.ids[i]);  // as on the model's surface
+  }
+  return step_through(estimator, frames).estimate;
+}
+
+TEST(InputStudy, CountsTheToleranceOfTheSurface) {
+  const Estimate estimate = of_slow_bar(0.0, 0.0, kSurface);
+  const auto of_surface = [](const InputUncertainty& input) { return input.input == "mesh.surface"; };
+  const auto found = std::find_if(estimate.inputs.begin(), estimate.inputs.end(), of_surface);
+  ASSERT_NE(found, estimate.inputs.end());
+  EXPECT_EQ(found->tolerance, kSurface);
+  const double expected = std::log(bending_stiffness(kSurface) / bending_stiffness(0.0));
+  EXPECT_NEAR(found->modulus_std / (std::sqrt(2.0) * expected), 1.0, 0.15);  // of Student's standard deviation
+}
+
+TEST(InputStudy, HoldsTheTruthOfABodyWhoseSurfaceIsOff) {
+  const double off = 2.0 * kSurface;
+  for (const auto& [outward, of_model] : {std::make_pair(off, 0.0), std::make_pair(0.0, off)}) {
+    const ParameterEstimate p = of_slow_bar(outward, of_model, kSurface).parameters.front();
+    std::printf("surface %.2f mm, the model's %.2f mm further out: E/truth %.3f (%.3f to %.3f)\n", 1e3 * outward,
+                1e3 * of_model, p.mean / kStiffBar, p.lower95 / kStiffBar, p.upper95 / kStiffBar);
+    EXPECT_NEAR(std::log(p.mean / kStiffBar) / std::log(bending_stiffness(outward) / bending_stiffness(of_model)), 1.0,
+                0.15);
+    EXPECT_TRUE(holds(p, kStiffBar));
+    EXPECT_FALSE(holds(of_slow_bar(outward, of_model, 0.0).parameters.front(), kStiffBar));
+  }
 }
 
 TEST(InputStudy, SharesOfTheVarianceAddUpToOne) {

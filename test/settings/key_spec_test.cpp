@@ -12,7 +12,7 @@ namespace {
 
 // Together they have every key.
 const char* const kModels[] = {
-    R"(mesh: {file: mesh.stl, scale: 0.001, scale_tolerance: 0.01, max_edge_length: 0.01, order: 1, boundary: faceted, discretisation_error: false}
+    R"(mesh: {file: mesh.stl, scale: 0.001, scale_tolerance: 0.01, surface_tolerance: 5.0e-4, max_edge_length: 0.01, order: 1, boundary: faceted, discretisation_error: false}
 regions:
   clamp: {box: {min: [0, 0, 0], max: [1, 1, 0]}}
   ball: {sphere: {center: [0, 0, 1], radius: 0.5}}

@@ -18,6 +18,7 @@ struct MeshSettings {
   std::string file;                  ///< absolute, or relative to the model file's folder (the reader resolves it)
   double scale = 1.0;                ///< metres per unit of the file
   double scale_tolerance = 0.0;      ///< relative error of every length of the mesh, 1 sigma [-]
+  double surface_tolerance = 0.0;    ///< by which the whole surface may lie too far out or in, 1 sigma [m]
   double max_edge_length = 0.0;      ///< [m]; 0: the surface keeps its edges
   int order = 2;                     ///< 2: 10-node tetrahedra, 1: 4-node
   int refine = 0;                    ///< number of times that every tetrahedron is cut into eight
