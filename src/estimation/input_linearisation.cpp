@@ -189,9 +189,10 @@ InputLinearisation::Row InputLinearisation::row(std::size_t index, const std::ve
   const Eigen::MatrixXd& seen = motions_seen(frame, thetas[0], u.col(0));
   out.modes = modes_seen(frame, thetas[0], seen, modes);
   out.direct = Eigen::MatrixXd::Zero(rows, direct_columns());
-  if (sensor_column_count() > 0)
+  if (sensor_column_count() > 0) {
     out.direct.leftCols(sensor_column_count()) =
         sensor_columns(frame, there, u.col(0), seen.rightCols(models_.rigid.cols()));
+  }
   if (mesh_columns_ > 0)
     out.direct.rightCols(mesh_columns_) = mesh_columns(index, out.modes, force_noise_.precision(frame, there));
   Prediction corrected = there;
@@ -313,6 +314,7 @@ void InputLinearisation::each_row(const Eigen::VectorXd& z, Constants constants,
   for (const std::size_t index : frames_) {
     q_.checkpoint();
     std::vector<double> times;
+    times.reserve(thetas.size());
     for (const Eigen::VectorXd& theta : thetas)
       times.push_back(q_.frames[index].time - models_.base.sensors().delay(theta));
     all->advance(times);
