@@ -11,7 +11,7 @@ namespace tissue_stiffness {
 
 /// Keeps freed memory in the process for later allocations. It is for programs that end soon, where requesting the large
 /// matrices from the system again takes a tenth of a diagnosis. Each thread has a heap: with one heap for all, threads that
-/// wait for it take up to half of a diagnosis. It must be called before anything else, and does nothing without GNU's C
+/// wait for it take a fifth of a long diagnosis. It must be called before anything else, and does nothing without GNU's C
 /// library.
 inline void keep_freed_memory() {
 #ifdef __GLIBC__
