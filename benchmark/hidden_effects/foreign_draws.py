@@ -225,6 +225,13 @@ def wrench(header, force):
     return message
 
 
+def state_prior_and_noise(model, truth, noise, rng):
+    """Puts a prior of E and the sensor's stated noise into the model."""
+    prior = {'prior': float(truth['young_modulus'][0] * rng.choice(STARTS)), 'factor': 3.0}
+    errors.of_effect(model, 'elasticity')[0]['young_modulus'] = prior
+    model['observations'] = [{'vertices': {'topic': '/tissue/vertices', 'noise': float(noise)}}]
+
+
 def write_draw(draw, truth_folder, folder):
     """model.yaml and recording.bag of a draw; returns the truth."""
     rng = np.random.default_rng(7000 + draw['number'])
@@ -232,9 +239,7 @@ def write_draw(draw, truth_folder, folder):
     noise = observe('stated' if draw['class'] == 'declared' else draw['kind'], truth, recording, rng)
     if draw['class'] == 'declared':
         misdeclare(draw, model, recording, rng)
-    prior = {'prior': float(truth['young_modulus'][0] * rng.choice(STARTS)), 'factor': 3.0}
-    errors.of_effect(model, 'elasticity')[0]['young_modulus'] = prior
-    model['observations'] = [{'vertices': {'topic': '/tissue/vertices', 'noise': float(noise)}}]
+    state_prior_and_noise(model, truth, noise, rng)
     errors.write_yaml(os.path.join(folder, 'model.yaml'), model)
     write_bag(os.path.join(folder, 'recording.bag'), recording)
     return truth

@@ -7,7 +7,6 @@ import sys
 import meshio
 import numpy as np
 
-import errors
 import foreign_draws
 import meshes
 from draw_folders import begin_draw, estimated, read_truth, write_model, write_truth
@@ -97,9 +96,7 @@ def recorded(args, draw, off, folder):
     recording['positions'] = recording['positions'] + moves[recording['vertices']]  # they are seen on the model's surface
     foreign_draws.write_bag(os.path.join(folder, 'recording.bag'), recording)
     model['regions'] = {name: {'vertices': [int(i) for i in inside(points, shape)]} for name, shape in model['regions'].items()}
-    prior = {'prior': float(truth['young_modulus'][0] * rng.choice(foreign_draws.STARTS)), 'factor': 3.0}
-    errors.of_effect(model, 'elasticity')[0]['young_modulus'] = prior
-    model['observations'] = [{'vertices': {'topic': '/tissue/vertices', 'noise': float(noise)}}]
+    foreign_draws.state_prior_and_noise(model, truth, noise, rng)
     for case in CASES:
         model['mesh'] = {'file': 'mesh.vtk', **({'surface_tolerance': float(tolerance)} if case == 'stated' else {})}
         write_model(folder, model, case)

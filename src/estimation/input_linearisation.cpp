@@ -183,8 +183,7 @@ InputLinearisation::Row InputLinearisation::row(std::size_t index, const std::ve
   }
   if (offset.size() > 0) {
     const Prediction further_out = predict_frame(models_.base, models_.operators, frame, thetas[0], offset);
-    out.constants.rightCols<1>() =
-        (further_out.predicted - there.predicted) * (models_.constants.back().std / models_.offset->outward);
+    out.constants.rightCols<1>() = (further_out.predicted - there.predicted) / models_.offset->tolerances;
   }
   const Eigen::MatrixXd& seen = motions_seen(frame, thetas[0], u.col(0));
   out.modes = modes_seen(frame, thetas[0], seen, modes);

@@ -50,10 +50,10 @@ Eigen::MatrixXd rigid_motions(const TetMesh& mesh) {
 
 }  // namespace
 
-OffsetBody::OffsetBody(const Model& body, double outward)
-    : model(body.settings(), offset_surface(body.mesh(), outward), body.body().regions), outward(outward) {
-  runs = make_study_model(model);
-}
+OffsetBody::OffsetBody(const Model& body, double tolerance)
+    : tolerances(std::min(kOffset, kMostOffset * shortest_edge(body.mesh()) / tolerance)),
+      model(body.settings(), offset_surface(body.mesh(), tolerances * tolerance), body.body().regions),
+      runs(make_study_model(model)) {}
 
 void OffsetBody::drive_like(const Model& body) {
   for (const auto& [topic, course] : body.loads().courses()) *model.loads().courses().at(topic) = *course;
@@ -69,7 +69,7 @@ InputModels::InputModels(const Model& model)
   runs = make_study_model(uncertain);
   const double tolerance = base.settings().exact_inputs ? 0.0 : base.settings().mesh.surface_tolerance;
   if (!(tolerance > 0.0)) return;
-  offset = std::make_unique<OffsetBody>(uncertain, std::min(kOffset * tolerance, kMostOffset * shortest_edge(base.mesh())));
+  offset = std::make_unique<OffsetBody>(uncertain, tolerance);
   constants.push_back({"mesh.surface", UncertainConstant::surface, 0.0, tolerance});
 }
 

@@ -12,12 +12,12 @@ namespace tissue_stiffness {
 
 /// The body of a model with its surface further out. It is run like the body itself, and both share what moves them.
 struct OffsetBody {
+  double tolerances;  ///< by which its surface lies further out
   Model model;
   std::unique_ptr<ForwardModel> runs;
-  double outward = 0.0;  ///< [m]
 
-  /// Throws as Model does.
-  OffsetBody(const Model& body, double outward);
+  /// `tolerance`: 1 sigma [m]. Throws as Model does.
+  OffsetBody(const Model& body, double tolerance);
   /// Takes over the loads of the body itself.
   void drive_like(const Model& body);
 };

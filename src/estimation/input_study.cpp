@@ -284,8 +284,7 @@ InputStudy::Answer InputStudy::study(const std::vector<const Question*>& questio
   for (std::size_t r = 0; r < questions.size(); ++r) {
     const Question& question = *questions[r];
     InputModels& models = *parts_->models[r];
-    for (const auto& [topic, course] : question.courses) *models.uncertain.loads().courses().at(topic) = course;
-    models.uncertain.loads().set_first_stamp(question.first_stamp);
+    question.drive(models.uncertain);
     models.base.loads().set_first_stamp(question.first_stamp);
     models.grow_basis(question);
     const std::vector<int> nodes = observed_nodes(models.operators, question.frames);

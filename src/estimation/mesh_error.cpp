@@ -43,11 +43,6 @@ double available_memory() {
   return std::numeric_limits<double>::infinity();
 }
 
-void drive(const MeshError::Question& question, Model& model) {
-  for (const auto& [topic, course] : question.courses) *model.loads().courses().at(topic) = course;
-  model.loads().set_first_stamp(question.first_stamp);
-}
-
 // Returns 1 for each free parameter that is a Young's modulus, else 0.
 Eigen::VectorXd young_moduli(const std::vector<FreeParameter>& free) {
   Eigen::VectorXd out(static_cast<Eigen::Index>(free.size()));
@@ -128,8 +123,8 @@ struct MeshError::Studies {
   }
 
   void prepare(const Question& q) {
-    drive(q, coarse);
-    drive(q, *fine);
+    q.drive(coarse);
+    q.drive(*fine);
     const std::vector<int> nodes = observed_nodes(operators, q.frames);
     coarse_runs->restrict_output_to(nodes);
     fine_runs->restrict_output_to(nodes);
@@ -210,6 +205,11 @@ MeshError::Question::Question(const Model& model, std::vector<Frame> seen, Eigen
       start(model.loads().first_stamp() + model.settings().time.start),
       first_stamp(model.loads().first_stamp()) {
   for (const auto& [topic, course] : model.loads().courses()) courses.emplace(topic, *course);
+}
+
+void MeshError::Question::drive(Model& model) const {
+  for (const auto& [topic, course] : courses) *model.loads().courses().at(topic) = course;
+  model.loads().set_first_stamp(first_stamp);
 }
 
 Eigen::VectorXd MeshError::Answer::believed(double mean_square) const {

@@ -66,6 +66,8 @@ class MeshError {
     /// Asks about a model that has its loads.
     Question(const Model& model, std::vector<Frame> seen, Eigen::VectorXd at, Eigen::VectorXd around,
              Eigen::VectorXd prior);
+    /// Gives its loads to a model.
+    void drive(Model& model) const;
   };
   struct Answer {
     /// If the finer mesh were the truth, this is estimate less truth in filter coordinates: the fit of the coarse model to

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "meshing/quality.hpp"
 #include "meshing/surface.hpp"
 
 namespace tissue_stiffness {
@@ -60,10 +61,7 @@ TetMesh offset_surface(const TetMesh& mesh, double outward) {
 
 double shortest_edge(const TetMesh& mesh) {
   double out = std::numeric_limits<double>::infinity();
-  for (Eigen::Index t = 0; t < mesh.tets.cols(); ++t) {
-    for (const auto& [a, b] : kTetEdges)
-      out = std::min(out, (mesh.nodes.col(mesh.tets(a, t)) - mesh.nodes.col(mesh.tets(b, t))).norm());
-  }
+  for (int t = 0; t < mesh.tet_count(); ++t) out = std::min(out, edge_lengths(mesh, t).minCoeff());
   return out;
 }
 

@@ -98,12 +98,19 @@ MeshQuality measure_quality(const TetMesh& mesh) {
     quality.least_dihedral_angle = std::min(quality.least_dihedral_angle, least_dihedral(x));
     const Eigen::VectorXd jacobians = node_jacobians(mesh, tet);
     quality.least_jacobian_ratio = std::min(quality.least_jacobian_ratio, jacobians.minCoeff() / jacobians.maxCoeff());
-    for (const auto& edge : kTetEdges) {
-      quality.mean_edge_length += (x.col(edge[0]) - x.col(edge[1])).norm() / (6.0 * mesh.tet_count());
-    }
+    quality.mean_edge_length += edge_lengths(mesh, tet).mean() / mesh.tet_count();
     quality.volume += volume;
   }
   return quality;
+}
+
+Eigen::Array<double, 6, 1> edge_lengths(const TetMesh& mesh, int tet) {
+  Eigen::Array<double, 6, 1> out;
+  for (int e = 0; e < 6; ++e) {
+    const auto [a, b] = kTetEdges[static_cast<std::size_t>(e)];
+    out[e] = (mesh.nodes.col(mesh.tets(a, tet)) - mesh.nodes.col(mesh.tets(b, tet))).norm();
+  }
+  return out;
 }
 
 std::string describe_quality(const TetMesh& mesh, const MeshQuality& quality) {

@@ -26,6 +26,9 @@ MeshQuality measure_quality(const TetMesh& mesh);
 /// Returns one line with counts, edge length, volume and quality.
 std::string describe_quality(const TetMesh& mesh, const MeshQuality& quality);
 
+/// Returns the lengths of the edges between a tetrahedron's corners, in the order of kTetEdges [m].
+Eigen::Array<double, 6, 1> edge_lengths(const TetMesh& mesh, int tet);
+
 /// Returns the Jacobian determinants of a tetrahedron's map from the reference element at its nodes: 1 value (4-node) or 10
 /// [m^3].
 Eigen::VectorXd node_jacobians(const TetMesh& mesh, int tet);

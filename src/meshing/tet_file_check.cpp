@@ -11,6 +11,7 @@
 #include "meshing/elevate.hpp"
 #include "meshing/file_cursor.hpp"
 #include "meshing/mesh_limits.hpp"
+#include "meshing/quality.hpp"
 #include "meshing/surface.hpp"
 #include "tissue_stiffness/types/error.hpp"
 
@@ -83,14 +84,6 @@ std::string describe_tet(const TetMesh& mesh, int tet) {
   return "tetrahedron " + std::to_string(tet) + " at " + format_point(centre);
 }
 
-double longest_edge(const TetMesh& mesh, int tet) {
-  double longest = 0.0;
-  for (const auto& edge : kTetEdges) {
-    longest = std::max(longest, (mesh.nodes.col(mesh.tets(edge[0], tet)) - mesh.nodes.col(mesh.tets(edge[1], tet))).norm());
-  }
-  return longest;
-}
-
 void swap_handedness(TetMesh& mesh) {
   mesh.tets.row(0).swap(mesh.tets.row(1));
   if (!mesh.quadratic()) return;
@@ -103,7 +96,7 @@ Eigen::VectorXd signed_volumes(const TetMesh& mesh, const std::string& where) {
   Eigen::VectorXd volumes(mesh.tet_count());
   for (int tet = 0; tet < mesh.tet_count(); ++tet) {
     volumes[tet] = tet_volume(mesh, tet);
-    const double length = longest_edge(mesh, tet);
+    const double length = edge_lengths(mesh, tet).maxCoeff();
     if (std::abs(volumes[tet]) > kFlatShare * length * length * length) continue;
     throw InputError(where, describe_tet(mesh, tet) + " without volume", "tetrahedra with a positive volume");
   }
